@@ -1,4 +1,4 @@
-//! The bundled font: its bytes, and how wide a text is in it.
+//! The bundled font: its data, and the width of texts in it.
 
 use skrifa::instance::{LocationRef, Size};
 use skrifa::{FontRef, MetadataProvider};
@@ -6,10 +6,10 @@ use skrifa::{FontRef, MetadataProvider};
 /// The font, `DejaVu Sans` reduced to the glyphs a figure needs; licence in `assets/LICENSE-DejaVu.txt`.
 pub(super) const BYTES: &[u8] = include_bytes!("assets/DejaVuSans.ttf");
 
-/// Its name.
+/// Name of the font.
 pub(super) const NAME: &str = "DejaVu Sans";
 
-/// Families in the order in which a viewer shall try them.
+/// Font families in the order in which a viewer tries them.
 pub(super) const FAMILY: &str = "DejaVu Sans, Helvetica, Arial, sans-serif";
 
 /// Height of the digits in em; half of it centres a line of text on a tick.
@@ -17,7 +17,7 @@ pub(super) const DIGIT_HEIGHT: f64 = 0.73;
 
 /// Width of a text in the unit of `size`.
 ///
-/// The bundled font has no kerning, so this is the sum of the advances. A character that it lacks counts one
+/// The bundled font has no kerning, so this is the sum of the advances. A character that it lacks counts as 1
 /// em.
 pub(super) fn width(text: &str, size: f64) -> f64 {
     size * advances(text).map(|(_, advance)| advance).sum::<f64>()
@@ -53,7 +53,7 @@ mod tests {
     use super::*;
     use resvg::usvg;
 
-    /// The width usvg's own shaper gives a text, from the distance by which it moves a following box.
+    /// Width of a text by usvg's own shaper, from the distance by which it moves a box that follows.
     fn shaped(text: &str) -> f64 {
         let mut options = usvg::Options::default();
         options.fontdb_mut().load_font_data(BYTES.to_vec());
@@ -73,7 +73,7 @@ mod tests {
             ["Frequency (Hz)", "−12.5", "10⁻³", "AVAToy", "ζ = 0.021 ± 0.003", "x₁ ≤ √2 × µm", "Größe"]
         {
             let (ours, theirs) = (width(text, 100.0), shaped(text));
-            // The shaper's own floats are single precision: a few units in 1e4.
+            // The shaper uses single precision: a few units in 1e4.
             assert!((ours - theirs).abs() < 0.02, "{text}: {ours} against {theirs}");
         }
     }

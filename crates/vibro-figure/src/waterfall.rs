@@ -142,7 +142,7 @@ struct Sheet<'a> {
 }
 
 impl<'a> Sheet<'a> {
-    /// Fills the frame: where no spectrum reaches its top, everything is drawn higher by up to 1.6.
+    /// Fills the frame: where no spectrum reaches its top, heights and depth are stretched by up to 1.6.
     fn new(cube: &'a Cube, frame: Rect) -> Sheet<'a> {
         let (w, h) = (frame.w, frame.h);
         let tops =

@@ -103,8 +103,8 @@ pub struct Minimum {
 /// where a step changes sum or parameters by less than this part, after about twenty evaluations a parameter
 /// at the latest: for searches that go on from there.
 ///
+/// # Errors
 /// As [`least_squares`], except for parameters that the data do not determine.
-/// As [`least_squares`], but for that.
 pub fn minimise(
     residuals: impl Fn(&[f64], &mut [f64]),
     n: usize,

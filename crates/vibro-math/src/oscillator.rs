@@ -56,8 +56,8 @@ impl Oscillator {
         self.omega2
     }
 
-    /// Largest factor from the bound ([`Oscillator::bound`]) of a motion to that of its derivative, b + √(b²
-    /// + Ω²) in 1/s.
+    /// b + √(b² + Ω²) in 1/s: largest factor from the bound ([`Oscillator::bound`]) of a motion to that of
+    /// its derivative.
     ///
     /// In the norm √(v² + Ω²x²) the derivative is the matrix [[0, Ω], [−Ω, −2b]], whose singular values are
     /// √(b² + Ω²) ± b.
