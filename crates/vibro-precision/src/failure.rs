@@ -13,7 +13,7 @@ use vibro_record::Error;
 pub enum Outcome {
     /// The answer agrees with the truth within what the method states, or what the check allows.
     Right,
-    /// No answer, or one without an uncertainty because of a stated doubt; with the reason.
+    /// No answer, or one that the method itself withholds or doubts; with the reason.
     Refused,
     /// An answer further off than it allows for, without a warning.
     Wrong,

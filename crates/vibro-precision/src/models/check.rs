@@ -236,7 +236,7 @@ mod tests {
         assert_eq!(judged(&[[0.5, 0.6 + 0.5 * off]], &[[0.5, 0.6]]), Outcome::Right);
         assert_eq!(judged(&[[0.5, 0.6 + 1.5 * off]], &[[0.5, 0.6]]), Outcome::Wrong);
         assert_eq!(judged(&[[0.5, f64::INFINITY]], &[[0.5, 0.6]]), Outcome::Wrong);
-        // A rest that lasts beyond the end of the task counts as one without end.
+        // A rest that ends close to the end of the task equals one without end.
         assert_eq!(judged(&[[0.5, f64::INFINITY]], &[[0.5, 0.99]]), Outcome::Wrong);
         assert_eq!(judged(&[[0.5, f64::INFINITY]], &[[0.5, task.until - off]]), Outcome::Right);
         // Rests near the shortest that counts may be missing or not.
