@@ -328,7 +328,7 @@ pub fn stretches(instants: &[f64], resolution: f64) -> Vec<Stretch> {
         |all: &Vec<Stretch>| 2 * all.iter().map(|s| s.samples.len()).sum::<usize>() >= instants.len();
     let whole: Vec<Stretch> = runs.iter().cloned().filter_map(of).collect();
     if shows {
-        // No second try with a wider tolerance: steps of any size contain some even stretches by chance.
+        // At least half of the instants must be even: irregular steps contain some even stretches by chance.
         return Some(whole).filter(enough).unwrap_or_default();
     }
     let cut = |tolerance: f64| -> Vec<Stretch> {
