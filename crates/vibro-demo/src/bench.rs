@@ -17,9 +17,9 @@ const FREQUENCY: f64 = 60.0;
 const ZETA: f64 = 0.02;
 const CONTACT: f64 = 500.0;
 const XI: f64 = 0.2;
-/// Corner of the low-pass of the second pulse.
+/// Corner in Hz of the low-pass of the second pulse.
 const CORNER: f64 = 2000.0;
-/// Steps of the motion in a sample of the bench.
+/// Integration steps for one sample of the bench.
 const STEPS: u32 = 64;
 
 fn bench(noise: &mut LinearNoise) -> String {
@@ -30,8 +30,8 @@ fn bench(noise: &mut LinearNoise) -> String {
         let shown = v + 1e-4 * noise.next();
         // Writing to a string cannot fail.
         let _ = writeln!(text, "{:.10},{force:.6},{shown:.7}", f64::from(i) / 1024.0);
-        // The mean of two: noise mostly below a quarter of the rate, so that little of it lies between the
-        // samples.
+        // The mean of two values puts most of the noise below a quarter of the sampling rate, so that little
+        // of it acts between the samples.
         let raw = 2.0 * noise.next();
         let next = 0.5 * (raw + before);
         before = raw;
@@ -58,7 +58,7 @@ fn decay(noise: &mut LinearNoise) -> String {
     text
 }
 
-/// Force on a unit mass at `t` seconds after the contact began.
+/// Force in N on a unit mass, at `t` in s after the contact began.
 fn contact(t: f64) -> f64 {
     let w = TAU * CONTACT;
     let damped = w * (1.0 - XI * XI).sqrt();
@@ -68,7 +68,7 @@ fn contact(t: f64) -> f64 {
     if t > 0.0 && t < 0.5 * TAU / w && force > 0.0 { force } else { 0.0 }
 }
 
-/// y″ + √2 Ω y′ + Ω² y = Ω² F in small steps.
+/// The pulse after the low-pass, y″ + √2 Ω y′ + Ω² y = Ω² F, integrated in small steps.
 fn filtered(noise: &mut LinearNoise) -> String {
     let mut text = String::from("time [s],acceleration [m/s²]\n");
     let (w, parts) = (TAU * CORNER, 2000);
@@ -95,7 +95,7 @@ fn pulse(noise: &mut LinearNoise) -> String {
     text
 }
 
-/// All files.
+/// Writes all files.
 pub fn recordings(sink: &mut Sink<'_>) -> Result<()> {
     let mut noise = LinearNoise(20);
     let truth = format!(

@@ -1,5 +1,5 @@
-//! What the instruments of the drop test write: a ball that falls down a tube onto a plate, an accelerometer
-//! on the plate, and a contact trace of the shaken rig.
+//! Recordings of the drop test: a ball that falls down a tube onto a plate, an accelerometer on the plate,
+//! and a contact trace of the shaken rig.
 //!
 //! - `DROP01.CSV` … `DROP05.CSV`: drops from 0.57 m, recorded until after the second impact;
 //! - `BOUNCE.CSV`: one longer record with a train of bounces;
@@ -17,15 +17,15 @@ use vibro_record::Result;
 pub const HEIGHT: f64 = 0.57;
 /// Restitution of every impact.
 pub const RESTITUTION: f64 = 0.2112;
-/// Of the ball that bounces longer.
+/// Restitution of the ball that bounces longer.
 pub const LIVELY: f64 = 0.62;
-/// Excitation of the contact trace in Hz, and its impacts a second.
+/// Excitation frequency of the contact trace in Hz; it has an impact every two cycles.
 pub const EXCITATION: f64 = 11.2;
 const GRAVITY: f64 = 9.806_65;
-/// Samples a second of the accelerometer: coarse, so that the files stay small.
+/// Sampling rate of the accelerometer in Hz: low, so that the files stay small.
 const RATE: f64 = 5000.0;
 
-/// Times and speeds of the impacts of a ball that falls at time 0.
+/// Times in s and speeds in m/s of the impacts of a ball that falls from rest at time 0.
 fn bounces(restitution: f64, impacts: usize) -> Vec<(f64, f64)> {
     let mut speed = (2.0 * GRAVITY * HEIGHT).sqrt();
     let mut time = speed / GRAVITY;
@@ -38,7 +38,8 @@ fn bounces(restitution: f64, impacts: usize) -> Vec<(f64, f64)> {
     found
 }
 
-/// Acceleration of the plate in m/s²: pulses of 0.6 ms, then its own decaying ring of 1300 Hz.
+/// Acceleration of the plate in m/s² as text: pulses of 0.6 ms, each followed by a decaying ringing at 1300
+/// Hz.
 fn plate(impacts: &[(f64, f64)], from: f64, seconds: f64, seed: u64) -> String {
     let mut noise = Noise::from_state(seed);
     let mut text = String::from("time (s),acceleration (m/s²)\n");
@@ -59,7 +60,8 @@ fn plate(impacts: &[(f64, f64)], from: f64, seconds: f64, seed: u64) -> String {
     text
 }
 
-/// Contact trace with mains hum: volts, one a line, no header, as the analyser wrote it.
+/// Contact trace with mains hum: volts, one a line, without a header, as the analyser wrote them; and its
+/// number of impacts.
 fn contact(seed: u64) -> (String, usize) {
     let (rate, n) = (128.0, 1024);
     let mut noise = Noise::from_state(seed);
@@ -84,12 +86,12 @@ fn contact(seed: u64) -> (String, usize) {
     (text, times.len())
 }
 
-/// All files, by name.
+/// All files, as name and content.
 pub fn all() -> Vec<(String, String)> {
     let mut files = Vec::new();
     let mut scatter = Noise::from_state(7);
     for drop in 1..=5 {
-        // No two impacts are alike: 2 % from drop to drop.
+        // Restitution scatters by 2 % from drop to drop.
         let r = RESTITUTION * (1.0 + 0.02 * near_normal(&mut scatter));
         files.push((format!("DROP{drop:02}.CSV"), plate(&bounces(r, 2), 0.3, 0.2, 100 + drop)));
     }
@@ -105,7 +107,7 @@ pub fn all() -> Vec<(String, String)> {
     files
 }
 
-/// Gives all files.
+/// Writes all files.
 ///
 /// # Errors
 /// Those of `sink`.

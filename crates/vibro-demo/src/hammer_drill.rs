@@ -13,10 +13,10 @@ use vibro_io::write::{Precision, wav::write};
 use vibro_record::units::Unit;
 use vibro_record::{Axis, Meta, Record, Result, Trace};
 
-/// Seconds of the record.
+/// Duration of the record in s.
 const SECONDS: f64 = 20.0;
 
-/// All files.
+/// Writes all files.
 pub fn recordings(sink: &mut Sink<'_>) -> Result<()> {
     let made = record::record(SECONDS);
     let mut wave = |name: &str, channels: Vec<Record>| {

@@ -1,6 +1,6 @@
-//! Example campaigns with their recordings: the same every time, since the noise has fixed seeds and nothing
-//! depends on the clock. (Where the rig moves irregularly, at one step of the sweeps, the last bit of a sine
-//! decides, and with it the compiler.)
+//! Example campaigns with their recordings. They are the same every time: the noise has fixed seeds and
+//! nothing depends on the clock. (At one step of the sweeps the rig moves irregularly: there the last bit of
+//! a sine, hence the compiler, changes the recording.)
 //!
 //! ```
 //! let demo = vibro_demo::DEMOS.iter().find(|demo| demo.name == "bench").unwrap();
@@ -21,7 +21,7 @@ mod two_mass_rig;
 
 use vibro_record::Result;
 
-/// Takes a file: its path within the folder of the example, and its bytes.
+/// Takes a file: its path in the folder of the example, and its bytes.
 pub type Sink<'a> = dyn FnMut(&str, &[u8]) -> Result<()> + 'a;
 
 /// An example campaign.
@@ -29,7 +29,7 @@ pub type Sink<'a> = dyn FnMut(&str, &[u8]) -> Result<()> + 'a;
 pub struct Demo {
     /// Name of its folder.
     pub name: &'static str,
-    /// What it shows.
+    /// Description in one line.
     pub about: &'static str,
     campaign: &'static str,
     recordings: fn(&mut Sink<'_>) -> Result<()>,
@@ -64,7 +64,7 @@ pub const DEMOS: [Demo; 4] = [
 ];
 
 impl Demo {
-    /// Makes its files, the campaign first: what stands in its way is seen before anything is computed.
+    /// Writes its files, the campaign first, so that an obstacle shows before anything is computed.
     ///
     /// # Errors
     /// Those of `sink`.

@@ -1,31 +1,31 @@
-//! Noise of the recordings. Each example keeps the generator with which it was first made: documents and
-//! tests hold numbers of these very files.
+//! Noise of the recordings. Each example keeps the generator with which it was first made, since documents
+//! and tests quote numbers from these files.
 
 use std::f64::consts::TAU;
 use vibro_math::Noise;
 
-/// One over the number of uniform values of 53 binary digits.
+/// Step of uniform numbers with 53 binary digits.
 const DIGIT: f64 = 1.0 / (1u64 << 53) as f64;
 
-/// A sum of twelve uniform numbers less six, which is close to normal, of variance 1, and needs no function
-/// of a mathematics library.
+/// A sum of twelve uniform numbers less six: nearly normal, of variance 1, and without a function of a
+/// mathematics library, so the same on every machine.
 pub fn near_normal(noise: &mut Noise) -> f64 {
     (0..12).map(|_| noise.uniform()).sum::<f64>() - 6.0
 }
 
-/// Normal numbers in pairs (Box and Muller 1958).
+/// Normal numbers, made in pairs (Box and Muller 1958).
 pub struct PairedNoise {
     uniform: Noise,
     spare: Option<f64>,
 }
 
 impl PairedNoise {
-    /// Noise of one channel at one point; each has its own, so that any point can be made without the others.
-    /// `draw` 0 is that of the files of the example; others are as if all were measured again.
+    /// Noise of one channel at one point. Each has its own, so that any point can be made without the others.
+    /// `draw` 0 gives the files of the example, other draws repeat the measurement.
     pub fn new(draw: u64, direction: u64, point: u64, channel: u64) -> PairedNoise {
         let state = (draw << 40) | (direction << 32) | (point << 8) | channel;
         let mut noise = PairedNoise { uniform: Noise::from_state(state), spare: None };
-        // Neighbouring states part after the first output.
+        // The first output of neighbouring states is similar; it is skipped.
         noise.uniform();
         noise
     }
@@ -47,12 +47,12 @@ impl PairedNoise {
     }
 }
 
-/// Marsaglia's xorshift with a multiplication (S. Vigna, ACM Trans. Math. Softw. 42 (2016) 30).
+/// Marsaglia's xorshift followed by a multiplication (S. Vigna, ACM Trans. Math. Softw. 42 (2016) 30).
 #[derive(Debug, Clone)]
 pub struct ShiftedNoise(u64);
 
 impl ShiftedNoise {
-    /// Numbers that belong to a seed.
+    /// The numbers of a seed.
     pub fn new(seed: u64) -> ShiftedNoise {
         let mut noise = ShiftedNoise(seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) | 1);
         for _ in 0..8 {
@@ -68,7 +68,7 @@ impl ShiftedNoise {
         self.0.wrapping_mul(0x2545_F491_4F6C_DD1D)
     }
 
-    /// From 0 to 1.
+    /// Uniform in 0 ≤ u < 1.
     pub fn uniform(&mut self) -> f64 {
         (self.next() >> 11) as f64 * DIGIT
     }
@@ -80,7 +80,7 @@ impl ShiftedNoise {
     }
 }
 
-/// Knuth's linear congruence of the MMIX.
+/// Linear congruential generator with the constants of Knuth's MMIX.
 pub struct LinearNoise(pub u64);
 
 impl LinearNoise {

@@ -14,7 +14,7 @@ use super::{Sink, noise};
 use campaign::{Direction, list, measure, truth_header};
 use vibro_record::Result;
 
-/// All files.
+/// Writes all files.
 pub fn recordings(sink: &mut Sink<'_>) -> Result<()> {
     let mut truth = truth_header();
     for direction in [Direction::Up, Direction::Down] {

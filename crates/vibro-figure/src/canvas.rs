@@ -1,7 +1,7 @@
-//! The one writer of SVG: paths, texts and images at fixed places.
+//! The canvas: the only writer of SVG, for paths, texts and images at fixed places.
 //!
-//! Coordinates are points (1/72 inch) with two decimals, so equal figures give equal bytes. Nothing refers to
-//! anything by an id, so any number of pictures can stand in one page.
+//! Coordinates are points (1/72 inch) with two decimals, so equal figures give equal bytes. No element refers
+//! to another by an id, so any number of pictures can share one page.
 
 use crate::{BLACK, Point, Rect, Rgb, font, png};
 use base64::{Engine, engine::general_purpose::STANDARD};
@@ -10,7 +10,7 @@ use resvg::tiny_skia::{ColorU8, Pixmap};
 use std::fmt::Write;
 use vibro_record::is_unprintable;
 
-/// How a line is drawn.
+/// Colour, width and dashes of a line; lengths in points.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Pen {
     pub colour: Rgb,
@@ -25,7 +25,7 @@ impl Pen {
     }
 }
 
-/// Which point of a text stands at its place.
+/// The point of a text that lies at its place.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Anchor {
     Start,
@@ -41,14 +41,14 @@ pub(crate) struct Text {
     pub at: Point,
     pub size: f64,
     pub anchor: Anchor,
-    /// Degrees by which it is turned, counter-clockwise.
+    /// Rotation in degrees, counter-clockwise.
     pub turn: f64,
     pub colour: Rgb,
-    /// Whether a white edge sets it off from what it lies on.
+    /// Whether a white edge sets it off from the background.
     pub halo: bool,
 }
 
-/// A small picture of coloured cells, drawn without smoothing.
+/// A small picture of coloured cells, drawn without smoothing between them.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Image {
     pub place: Rect,
@@ -83,7 +83,7 @@ impl Canvas {
         self.lines(&[vec![a, b]], pen);
     }
 
-    /// Closed areas with one fill and, where wanted, an outline.
+    /// Closed areas with one fill and, optionally, an outline.
     pub fn areas(&mut self, parts: &[Vec<Point>], fill: Rgb, outline: Option<Pen>) {
         self.shape(path(parts, true), Some(fill), outline);
     }
@@ -117,7 +117,7 @@ impl Canvas {
         }
     }
 
-    /// Cells row by row from the top, without those that are missing.
+    /// An image of cells, row by row from the top; missing cells stay transparent.
     pub fn image(&mut self, place: Rect, cells: &Array2<Option<Rgb>>) {
         let (down, across) = cells.dim();
         let Some(mut pixels) = Pixmap::new(across as u32, down as u32) else { return };
@@ -219,8 +219,8 @@ impl Text {
     }
 }
 
-/// The whole document, laid out for `width` by `height` mm and so many times larger, with a name for readers
-/// that cannot see it.
+/// The whole document, laid out for `width` by `height` mm and enlarged by `scale`, with a name for screen
+/// readers.
 pub(super) fn document(
     (width, height): (f64, f64),
     scale: f64,
@@ -253,7 +253,7 @@ pub(super) fn document(
     svg
 }
 
-/// Text for use between tags and in attributes; characters that XML 1.0 forbids (2.2), and those that steer,
+/// Text for use between tags and in attributes. Characters that XML 1.0 forbids (2.2) and control characters
 /// become `\u{FFFD}`.
 pub fn escaped(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
@@ -273,8 +273,8 @@ pub fn escaped(text: &str) -> String {
     out
 }
 
-/// Path data; after the first point each is relative to the one before, in whole hundredths, so that nothing
-/// accumulates.
+/// Path data. After the first point, steps from point to point in whole hundredths of a point, so that
+/// rounding does not accumulate.
 fn path(parts: &[Vec<Point>], closed: bool) -> String {
     let mut data = String::new();
     for part in parts.iter().filter(|p| p.len() >= 2) {
@@ -313,7 +313,7 @@ fn decimal(value: f64) -> String {
     text
 }
 
-/// A count of hundredths as a decimal without needless zeros.
+/// A count of hundredths as a decimal, without leading or trailing zeros.
 fn number(out: &mut String, hundredths: i64) {
     let text = (hundredths as f64 / 100.0).to_string();
     let (sign, size) = text.split_at(usize::from(hundredths < 0));
@@ -344,7 +344,7 @@ mod tests {
 
     #[test]
     fn relative_steps_end_where_the_line_ends() {
-        // A third of a hundredth a step would be lost wholly if steps were rounded on their own.
+        // Steps are a third of a hundredth: rounded one by one, all of them would vanish.
         let line: Vec<Point> = (0..=300).map(|i| (f64::from(i) / 300.0, 0.0)).collect();
         let data = path(&[line], false);
         let sum: f64 =

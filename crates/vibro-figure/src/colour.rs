@@ -1,8 +1,8 @@
-//! Colours that survive colour blindness and a grey printer.
+//! Colours that remain distinct for colour-blind readers and on a grey printer.
 
 use serde::{Deserialize, Serialize};
 
-/// sRGB, 8 bits a channel.
+/// A colour in sRGB, 8 bits a channel.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct Rgb(pub u8, pub u8, pub u8);
 
@@ -18,13 +18,13 @@ pub const SERIES: [Rgb; 7] = [
     Rgb(0, 0, 0),
 ];
 
-/// Frames, ticks and text.
+/// Colour of frames, ticks and text.
 pub const BLACK: Rgb = Rgb(0, 0, 0);
-/// Reference lines and leaders.
+/// Colour of reference lines and leaders.
 pub(crate) const GREY: Rgb = Rgb(110, 110, 110);
-/// Lines that only guide the eye.
+/// Colour of lines that only guide the eye.
 pub(crate) const PALE: Rgb = Rgb(205, 205, 205);
-/// Paper.
+/// Colour of the paper.
 pub const WHITE: Rgb = Rgb(255, 255, 255);
 
 /// Every sixteenth colour of the map *viridis* (Smith, van der Walt and Firing 2015, released under CC0),
@@ -81,8 +81,8 @@ mod tests {
     #[test]
     fn the_map_grows_lighter_throughout_and_clamps() {
         let steps: Vec<f64> = (0..=400).map(|i| luminance(viridis(f64::from(i) / 400.0))).collect();
-        // Neighbours may fall to the same 8-bit colour, or back by the rounding of one channel (at most 1/255
-        // of its slope).
+        // Neighbours may round to the same 8-bit colour, or fall back by the rounding of one channel (at most
+        // 1/255 of its slope).
         assert!(steps.windows(2).all(|w| w[1] > w[0] - 0.004), "{steps:?}");
         assert!(steps.windows(40).all(|w| w[39] > w[0]), "{steps:?}");
         assert_eq!(viridis(-3.0), viridis(0.0));
@@ -93,8 +93,8 @@ mod tests {
     #[test]
     fn series_stand_out_from_paper_and_from_each_other() {
         for (i, a) in SERIES.iter().enumerate() {
-            // 3:1 is the least contrast of graphical objects in WCAG 2.1, 1.4.11; the two light colours of
-            // the palette come last among the colours and reach 2:1.
+            // 3:1 is the least contrast of graphical objects in WCAG 2.1, 1.4.11; for the three lighter
+            // colours of the palette, which come last before black, 2:1 is allowed.
             let contrast = 1.05 / (luminance(*a) + 0.05);
             assert!(contrast > if (3..6).contains(&i) { 2.0 } else { 3.0 }, "{a} {contrast}");
             assert!(SERIES[i + 1..].iter().all(|b| a != b));

@@ -1,4 +1,4 @@
-//! From figures to pictures: the layout of the panels.
+//! Draws figures: the layout of their panels.
 
 use crate::canvas::Lettering;
 use crate::{Canvas, Extent, Figure, Insets, Panel, Rect, Sheet, canvas, plot};
@@ -10,28 +10,28 @@ pub struct Drawing {
     pub name: String,
     /// Width and height in mm.
     pub size: (f64, f64),
-    /// How much larger it stands in print.
+    /// Factor by which it is enlarged in print.
     pub(super) scale: f64,
     pub(super) canvas: Canvas,
 }
 
 impl Drawing {
-    /// The picture as an SVG document with real text; it refers to nothing outside and has no ids, so that
-    /// several can stand in one page.
+    /// The picture as an SVG document with real text. It refers to nothing outside and has no ids, so that
+    /// several can share one page.
     pub fn svg(&self) -> String {
         let elements = (&*self.canvas.elements, Lettering::Words);
         canvas::document(self.size, self.scale, &self.name, &self.canvas.images, elements)
     }
 }
 
-/// White edge around everything.
+/// White edge around the figure, in points.
 const EDGE: f64 = 3.0;
 
 impl Figure {
-    /// Draws the figure: lays out the panels and draws them. Nothing outside is needed, so figures can be
-    /// drawn at once.
+    /// Draws the figure: lays out the panels and draws each of them. It needs nothing outside the figure, so
+    /// figures can be drawn in parallel.
     pub fn draw(&self) -> Drawing {
-        // A size that is no size becomes the nearest that is.
+        // A size outside 20 to 1000 mm is set to the nearest limit; NaN to 86 mm.
         let millimetres = |v: f64| if v.is_nan() { 86.0 } else { v.clamp(20.0, 1000.0) };
         let size = (millimetres(self.width), millimetres(self.height));
         let points = 72.0 / 25.4;
@@ -39,7 +39,8 @@ impl Figure {
         let mut canvas = Canvas::default();
         let columns = self.columns.clamp(1, self.panels.len().max(1));
         let mut sheets = sheets(self, columns);
-        // A legend that finds no place inside makes its frame smaller, which can cost another its place.
+        // A legend without a free place inside makes its frame smaller, which can take away another legend's
+        // place.
         let layout = loop {
             let layout = Layout::new(&sheets, columns, page);
             let plots = sheets.iter_mut().enumerate().filter_map(|(i, sheet)| Some((i, sheet.as_mut()?)));
@@ -59,7 +60,7 @@ impl Figure {
     }
 }
 
-/// All plots with their axes; those over one another have one abscissa where the figure says so.
+/// All plots with their axes; plots of one column share their abscissa where the figure asks for it.
 fn sheets<'a>(figure: &'a Figure, columns: usize) -> Vec<Option<Sheet<'a>>> {
     let across = |panel: &Panel| match panel {
         Panel::Plot(plot) => plot::extents(plot).0,
@@ -76,26 +77,26 @@ fn sheets<'a>(figure: &'a Figure, columns: usize) -> Vec<Option<Sheet<'a>>> {
     figure.panels.iter().enumerate().map(sheet).collect()
 }
 
-/// Frames in rows and columns, all of one size, with the room that the neediest panel of a row or column
-/// takes.
+/// Frames in rows and columns, all of one size. Each row and column has the space that its panel with the
+/// largest need takes.
 struct Layout {
     page: Rect,
     columns: Vec<Insets>,
     rows: Vec<Insets>,
-    /// Size of a frame.
+    /// Width and height of a frame in points.
     size: (f64, f64),
 }
 
 impl Layout {
-    /// Distance between neighbouring panels.
+    /// Distance between neighbouring panels in points.
     const BETWEEN: f64 = 9.0;
 
     fn new(sheets: &[Option<Sheet<'_>>], columns: usize, page: Rect) -> Layout {
         let rows = sheets.len().div_ceil(columns).max(1);
         let bare = |n: usize| vec![Insets::default(); n];
         let mut layout = Layout::filling(page, bare(columns), bare(rows));
-        // Ticks, hence the room for their numbers, and that of a legend depend on the size of the frame:
-        // thrice is enough.
+        // Ticks, and the space for their numbers and for a legend, depend on the size of the frame: three
+        // rounds are enough.
         for _ in 0..3 {
             let (mut across, mut down) = (bare(columns), bare(rows));
             for (i, sheet) in sheets.iter().enumerate() {
@@ -108,7 +109,7 @@ impl Layout {
         layout
     }
 
-    /// Makes the frames fill the page.
+    /// Gives the frames the largest size that fits the page.
     fn filling(page: Rect, columns: Vec<Insets>, rows: Vec<Insets>) -> Layout {
         let share = |whole: f64, taken: f64, n: usize| {
             ((whole - taken - Layout::BETWEEN * (n - 1) as f64) / n as f64).max(10.0)
@@ -118,7 +119,7 @@ impl Layout {
         Layout { page, columns, rows, size: (w, h) }
     }
 
-    /// Frame with the room around it.
+    /// Frame with the space around it.
     fn cell(&self, index: usize) -> Rect {
         let Layout { page, columns, rows, size: (w, h) } = self;
         let (column, row) = (index % columns.len(), index / columns.len());

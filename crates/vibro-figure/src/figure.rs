@@ -18,15 +18,15 @@ pub struct Figure {
     /// What the figure shows, in a few words. It is not drawn: it is the figure's name for readers that
     /// cannot see it, and stands over its caption on a page.
     pub title: String,
-    /// What stands below it; empty for none.
+    /// Caption below the figure; empty for none.
     pub caption: String,
     /// Width in mm.
     pub width: f64,
     /// Height in mm.
     pub height: f64,
-    /// Panels beside each other.
+    /// Panels in a row.
     pub columns: usize,
-    /// Whether the panels of a column have one abscissa, named under the lowest.
+    /// Whether the panels of a column share one abscissa, named under the lowest.
     pub shared_x: bool,
     /// Panels, row by row.
     pub panels: Vec<Panel>,
@@ -34,18 +34,18 @@ pub struct Figure {
 
 /// One part of a figure.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-// A figure has a few panels.
+// A figure has few panels: the size of the largest kind does not matter.
 #[allow(clippy::large_enum_variant)]
 pub enum Panel {
     /// Series over two axes.
     Plot(Plot),
-    /// Spectra behind each other.
+    /// Spectra drawn one behind the other.
     Waterfall(Waterfall),
     /// Classes in rows and columns.
     Grid(Grid),
 }
 
-/// Series over two axes, on a map where wanted.
+/// Series over two axes, with a map under them where wanted.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Plot {
     /// Title over the frame; empty for none.
@@ -58,16 +58,16 @@ pub struct Plot {
     pub heatmap: Option<Heatmap>,
     /// Series, the later over the earlier.
     pub series: Vec<Series>,
-    /// Texts that name points of the data.
+    /// Texts that label points of the data.
     pub notes: Vec<Note>,
     /// Where the names of the series stand.
     pub legend: Legend,
-    /// Whether it shows a panel before it once more, as on a logarithmic axis: a page that can change its
-    /// axes leaves it out.
+    /// Whether it repeats an earlier panel, for example on a logarithmic axis. A page whose axes can be
+    /// changed leaves it out.
     pub again: bool,
 }
 
-/// A text with a line to the point that it names.
+/// A text with a line to the point that it labels.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Note {
     /// The text.
@@ -113,7 +113,7 @@ impl Figure {
         Figure { height: millimetres, ..self }
     }
 
-    /// Sets how many panels stand beside each other.
+    /// Sets the number of panels in a row.
     pub fn columns(self, columns: usize) -> Figure {
         Figure { columns, ..self }
     }
@@ -147,7 +147,7 @@ impl Plot {
         self
     }
 
-    /// Names a point of the data, given in the units of the axes.
+    /// Labels a point of the data, given in the units of the axes.
     pub fn note(mut self, text: impl Into<String>, x: f64, y: f64) -> Plot {
         self.notes.push(Note { text: text.into(), x, y });
         self
@@ -163,7 +163,7 @@ impl Plot {
         Plot { legend, ..self }
     }
 
-    /// Says that it shows a panel before it once more.
+    /// Marks the plot as a repeat of an earlier panel.
     pub fn again(self) -> Plot {
         Plot { again: true, ..self }
     }

@@ -14,7 +14,7 @@ pub(super) const DIGIT_HEIGHT: f64 = 0.73;
 
 /// Width of a text in the unit of `size`.
 ///
-/// The bundled font has no kerning, so this is the sum of the advances. A character that it lacks counts one
+/// The bundled font has no kerning, so this is the sum of the advances. A character that it lacks counts as 1
 /// em.
 pub(super) fn width(text: &str, size: f64) -> f64 {
     size * advances(text).map(|(_, advance)| advance).sum::<f64>()

@@ -14,7 +14,7 @@ pub(super) enum Form {
     Markers(Vec<Point>, Marker, f64, Rgb),
 }
 
-/// What a series consists of, the lowest first.
+/// The forms of a series, the lowest first.
 pub(super) fn forms(series: &Series, look: SeriesLook, place: &Place<'_>) -> Vec<Form> {
     let frame = place.frame;
     let line = |from: Point, to: Point| vec![Form::Lines(clipped(&[from, to], frame), look.pen)];
@@ -26,7 +26,7 @@ pub(super) fn forms(series: &Series, look: SeriesLook, place: &Place<'_>) -> Vec
             let bars = Form::Lines(error_bars(series, place), Pen::solid(look.colour, OUTLINE));
             let places = series.x.iter().zip(&series.y).map(|(x, y)| place.at(*x, *y));
             let points: Vec<Point> = places.filter(|p| frame.grown(EDGE).contains(*p)).collect();
-            // Many points are smaller, down to half, so that they stay apart.
+            // Many markers are drawn smaller, down to half size, so that they stay apart.
             let size = MARKER * (60.0 / points.len().max(1) as f64).sqrt().clamp(0.5, 1.0);
             joined.into_iter().chain([bars, Form::Markers(points, look.marker, size, look.colour)]).collect()
         }
@@ -46,7 +46,7 @@ pub(super) fn forms(series: &Series, look: SeriesLook, place: &Place<'_>) -> Vec
     }
 }
 
-/// What rounding may put a point out of its frame.
+/// Distance in points by which rounding may put a point outside its frame.
 const EDGE: f64 = 0.01;
 
 impl Form {
@@ -58,14 +58,14 @@ impl Form {
         }
     }
 
-    /// Enters the form where words must not cover it.
+    /// Adds the lines and boxes of the form, which texts must not cover.
     pub fn enter(&self, clutter: &mut Clutter) {
         match self {
             Form::Lines(parts, _) => clutter.add_lines(parts),
             Form::Areas(parts, ..) => {
                 for part in parts {
                     clutter.add_lines(std::slice::from_ref(part));
-                    // Lines across an area stand for its inside.
+                    // Lines across an area stand in for its inside.
                     let half = part.len() / 2;
                     let across = part.iter().take(half).zip(part.iter().rev()).map(|(a, b)| vec![*a, *b]);
                     clutter.add_lines(&across.collect::<Vec<_>>());
@@ -85,10 +85,10 @@ pub(super) fn is_open(marker: Marker) -> bool {
     matches!(marker, Marker::OpenCircle | Marker::Square | Marker::Diamond | Marker::Limit)
 }
 
-/// How much larger open circles and squares are than filled ones: at the same place both are seen.
+/// Size of open circles and squares over that of filled ones: at the same place both are seen.
 const OPEN: f64 = 1.3;
 
-/// Markers of one form, half width and colour. Open ones are white inside.
+/// Draws markers of one form, half width in points and colour. Open ones are white inside.
 pub(super) fn markers(canvas: &mut Canvas, points: &[Point], marker: Marker, size: f64, colour: Rgb) {
     let size = if matches!(marker, Marker::OpenCircle | Marker::Square) { OPEN * size } else { size };
     let polygon = |corners: &[Point]| -> Vec<Vec<Point>> {
@@ -126,13 +126,13 @@ pub(super) fn markers(canvas: &mut Canvas, points: &[Point], marker: Marker, siz
     canvas.areas(&polygon(corners), fill, outline);
 }
 
-/// A curve cut to the frame, with no more points than are seen.
+/// A curve cut to the frame, thinned to the points that can be seen.
 fn curve(series: &Series, place: &Place<'_>) -> Vec<Vec<Point>> {
     let points: Vec<Point> = series.x.iter().zip(&series.y).map(|(x, y)| place.at(*x, *y)).collect();
     clipped(&points, place.frame).iter().map(|part| thinned(part, 0.015)).collect()
 }
 
-/// Places of the two curves of a band, or of the ends of error bars.
+/// Places on the page of the two curves of a band, or of the ends of error bars.
 fn ends(series: &Series, place: &Place<'_>) -> Vec<[Point; 2]> {
     let ends = series.x.iter().zip(series.low.iter().zip(&series.high));
     ends.map(|(x, (low, high))| [(place.at(*x, *low).0, place.up(place.y.at_low(*low))), place.at(*x, *high)])
@@ -171,7 +171,7 @@ fn band(series: &Series, place: &Place<'_>) -> Vec<Vec<Point>> {
         .collect()
 }
 
-/// Bars from zero, or from the lower edge where zero has no place.
+/// Bars from zero, or from the lower edge where the axis has no zero.
 fn bars(series: &Series, place: &Place<'_>) -> Vec<Vec<Point>> {
     let bar = |(edges, height): (&[f64], &f64)| {
         let ends = [(edges[0], 0.0), (edges[0], *height), (edges[1], *height), (edges[1], 0.0)];

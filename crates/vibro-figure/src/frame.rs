@@ -3,7 +3,7 @@
 use crate::style::{DESCENT, FRAME, GAP, LARGE, LEADING, SMALL, TICK, TICKS};
 use crate::{Anchor, Axis, BLACK, Canvas, Point, Rect, Text, Ticks, font};
 
-/// Room around a frame.
+/// Space around a frame on each side, in points.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(super) struct Insets {
     pub left: f64,
@@ -33,28 +33,28 @@ pub(super) struct Place<'a> {
 }
 
 impl Place<'_> {
-    /// Place of a value pair; not finite where one has none.
+    /// Place on the page of a pair of values; not finite where a value has none on its axis.
     pub fn at(&self, x: f64, y: f64) -> Point {
         (self.across(self.x.at(x)), self.up(self.y.at(y)))
     }
 
-    /// Place of a fraction of the abscissa.
+    /// Abscissa on the page of a fraction of the horizontal axis.
     pub fn across(&self, fraction: f64) -> f64 {
         self.frame.x + fraction * self.frame.w
     }
 
-    /// Place of a fraction of the ordinate.
+    /// Ordinate on the page of a fraction of the vertical axis.
     pub fn up(&self, fraction: f64) -> f64 {
         self.frame.bottom() - fraction * self.frame.h
     }
 }
 
-/// Ticks along `length` points of a horizontal axis, as many as their numbers leave room for.
+/// Ticks along `length` points of a horizontal axis, as many as their numbers allow.
 pub(super) fn across(axis: &Axis, length: f64) -> Ticks {
     spread(axis, length, length / 28.0, 6.0, |label| font::width(label, SMALL))
 }
 
-/// Ticks along `length` points of a vertical axis.
+/// Ticks along `length` points of a vertical axis, as many as their numbers allow.
 pub(super) fn upward(axis: &Axis, length: f64) -> Ticks {
     spread(axis, length, length / 17.0, 2.0, |_| SMALL)
 }
@@ -70,18 +70,18 @@ fn spread(axis: &Axis, length: f64, most: f64, gap: f64, size: impl Fn(&str) -> 
     let mut candidates = (2..=most).rev().map(|most| axis.ticks(most));
     let mut ticks = candidates.find(|ticks| !touch(ticks)).unwrap_or_else(|| axis.ticks(2));
     if touch(&ticks) {
-        // Not even two numbers fit: the ticks stay, the first is named.
+        // Not even two numbers fit: the ticks stay, only the first has its number.
         ticks.major.iter_mut().skip(1).for_each(|t| t.label.clear());
     }
     ticks
 }
 
-/// Width of the widest number.
+/// Width of the widest number in points.
 pub(super) fn widest(ticks: &Ticks) -> f64 {
     ticks.major.iter().map(|t| font::width(&t.label, SMALL)).fold(0.0, f64::max)
 }
 
-/// Room that axes need around a frame of about this size.
+/// Space that axes need around a frame of about this size, in points.
 pub(super) fn insets(x: &Axis, y: &Axis, size: (f64, f64), named_x: bool) -> Insets {
     let (tx, ty) = (across(x, size.0), upward(y, size.1));
     let half = |at: Option<&crate::ticks::Tick>, end: f64, axis: &Axis| {
@@ -102,7 +102,7 @@ pub(super) fn insets(x: &Axis, y: &Axis, size: (f64, f64), named_x: bool) -> Ins
     }
 }
 
-/// An axis along a line of the page.
+/// An axis along a line on the page.
 pub(super) struct Ruler<'a> {
     pub axis: &'a Axis,
     pub ticks: &'a Ticks,
@@ -110,7 +110,7 @@ pub(super) struct Ruler<'a> {
     pub to: Point,
 }
 
-/// Where the numbers of an axis stand.
+/// Side of the axis on which its numbers are written.
 #[derive(Clone, Copy)]
 pub(super) enum Side {
     Below,
@@ -124,7 +124,7 @@ impl Ruler<'_> {
         (self.from.0 + t * (self.to.0 - self.from.0), self.from.1 + t * (self.to.1 - self.from.1))
     }
 
-    /// Tick marks that go this way.
+    /// Tick marks in the direction `way`.
     pub fn marks(&self, way: Point) -> Vec<Vec<Point>> {
         let long = self.ticks.major.iter().map(|tick| (tick.at, TICK));
         let short = self.ticks.minor.iter().map(|at| (*at, TICK / 2.0));
@@ -135,7 +135,7 @@ impl Ruler<'_> {
         long.chain(short).map(mark).collect()
     }
 
-    /// Writes the numbers.
+    /// Writes the numbers, `away` points from the axis.
     pub fn numbers(&self, canvas: &mut Canvas, side: Side, away: f64) {
         let beside = font::DIGIT_HEIGHT * SMALL / 2.0;
         let (dx, dy, anchor) = match side {
@@ -150,7 +150,8 @@ impl Ruler<'_> {
     }
 }
 
-/// Draws frame, ticks on all four sides, numbers and names. Over a map the ticks stand outside.
+/// Draws frame, ticks on all four sides, numbers and names. Over a map the ticks point outwards, below and on
+/// the left only.
 pub(super) fn draw(canvas: &mut Canvas, place: &Place<'_>, named_x: bool, outside: bool) {
     let frame = place.frame;
     let (tx, ty) = (across(place.x, frame.w), upward(place.y, frame.h));
@@ -179,8 +180,8 @@ pub(super) fn draw(canvas: &mut Canvas, place: &Place<'_>, named_x: bool, outsid
     }
 }
 
-/// A name turned to read upwards, its baseline at `x`, beside the middle of `frame` and no longer than fits
-/// from a little above it to `below` its lower edge.
+/// A name that reads upwards, with its baseline at `x`, beside the middle of `frame`. It extends at most from
+/// 4 points above the frame to `below` points under its lower edge.
 pub(super) fn along(canvas: &mut Canvas, name: &str, x: f64, frame: Rect, below: f64) {
     const ABOVE: f64 = 4.0;
     let (name, size) = fitted(name, LARGE, frame.h + ABOVE + below);
@@ -190,7 +191,7 @@ pub(super) fn along(canvas: &mut Canvas, name: &str, x: f64, frame: Rect, below:
     canvas.text(Text { words: name, at, size, anchor, turn: 90.0, colour: BLACK, halo: false });
 }
 
-/// A text and its size such that it fits: smaller by a quarter at most, then cut.
+/// A text and its size such that it fits: at most a quarter smaller, then cut.
 pub(super) fn fitted(text: &str, size: f64, room: f64) -> (String, f64) {
     let size = (size * room / font::width(text, size).max(1.0)).clamp(0.75 * size, size);
     (font::fit(text, size, room + 0.01), size)

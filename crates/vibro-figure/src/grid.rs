@@ -1,15 +1,15 @@
-//! Grids of classes: named rows in groups, named columns, a colour and a letter a cell.
+//! Grids of classes: rows with names in groups, columns with names, and a colour and a letter in each cell.
 
 use crate::style::{FRAME, GAP, SMALL};
 use crate::{Anchor, Canvas, GREY, Pen, Rect, Rgb, WHITE, font};
 use serde::{Deserialize, Serialize};
 
-/// What a cell can be.
+/// A class that a cell can have.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Class {
     /// Name in the key.
     pub name: String,
-    /// Letter in the cell: told apart without colour.
+    /// Letter in the cell, to tell classes apart without colour.
     pub letter: String,
     /// Colour of the cell.
     pub colour: Rgb,
@@ -19,7 +19,7 @@ pub struct Class {
 struct Row {
     group: String,
     name: String,
-    /// Kind of each cell by its index; empty for none.
+    /// Index of the class of each cell; `None` for an empty cell.
     cells: Vec<Option<usize>>,
 }
 
@@ -31,31 +31,31 @@ pub struct Grid {
     rows: Vec<Row>,
 }
 
-/// Size of names and letters.
+/// Size of names and letters in points.
 const SIZE: f64 = 7.4;
 
-/// Least size of the names of columns.
+/// Smallest size of the names of columns in points.
 const LEAST: f64 = 5.5;
 
-/// Height of a row, distance between groups, room for names of columns and the key, in points.
+/// Height of a row, distance between groups, and height of the key, in points.
 const ROW: f64 = 9.6;
 const BETWEEN: f64 = 4.0;
 const KEY: f64 = 16.0;
 
 impl Grid {
-    /// A grid without rows: names of its columns, and what cells can be.
+    /// A grid without rows: the names of its columns, and the classes of its cells.
     pub fn new(columns: Vec<String>, kinds: Vec<Class>) -> Grid {
         Grid { columns, kinds, rows: Vec::new() }
     }
 
-    /// Adds a row below: the group that it stands in with its neighbours, its name, the kind of each cell by
-    /// its index.
+    /// Adds a row at the bottom: the group that it shares with its neighbours, its name, and the index of the
+    /// class of each cell.
     pub fn row(mut self, group: &str, name: &str, cells: Vec<Option<usize>>) -> Grid {
         self.rows.push(Row { group: group.to_owned(), name: name.to_owned(), cells });
         self
     }
 
-    /// Names of the columns, cut into words that stand under each other.
+    /// Names of the columns, split into words that are written one below the other.
     fn heads(&self) -> Vec<Vec<String>> {
         self.columns
             .iter()
@@ -63,12 +63,12 @@ impl Grid {
             .collect()
     }
 
-    /// Lines that the names of the columns take.
+    /// Number of lines that the names of the columns need.
     fn lines(&self) -> usize {
         self.heads().iter().map(Vec::len).max().unwrap_or(0)
     }
 
-    /// Height in mm of a figure that it fills.
+    /// Height in mm of a figure that contains only this grid.
     pub fn height(&self) -> f64 {
         let groups = self.rows.chunk_by(|a, b| a.group == b.group).count();
         let rows = (self.lines() + self.rows.len()) as f64 * ROW;
@@ -86,7 +86,7 @@ impl Grid {
         let (left, top) = (cell.x + groups + names, cell.y + self.lines() as f64 * ROW + GAP);
         let count = self.columns.len().max(1) as f64;
         let width = ((cell.right() - left) / count).clamp(4.0, 60.0);
-        // All heads as large as the widest word lets them be.
+        // All names have the largest size that the widest word allows.
         let word = widest(&mut heads.iter().flatten());
         let size = (SIZE * (width - 1.0) / word.max(1.0)).clamp(LEAST, SIZE);
         for (i, words) in heads.iter().enumerate() {

@@ -7,9 +7,9 @@ use serde::{Deserialize, Serialize};
 use std::ops::Range;
 use vibro_record::{Error, Result};
 
-/// Values over a grid, row by row, such as magnitudes over excitation (rows) and frequency (columns).
+/// Values over a grid, row by row, such as magnitudes over excitation level (rows) and frequency (columns).
 ///
-/// The cell of a value reaches half way to its neighbours, so that rows and columns may be uneven. A missing
+/// The cell of a value reaches half way to its neighbours: rows and columns may be unevenly spaced. A missing
 /// value (NaN) stays white.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Heatmap {
@@ -19,10 +19,10 @@ pub struct Heatmap {
     pub(super) key: Key,
 }
 
-/// Distance of a colour bar from the frame, and its width.
+/// Distance of a colour bar from the frame, and its width, in points.
 const AWAY: f64 = 7.0;
 const WIDTH: f64 = 8.0;
-/// Cells of a map in a point of the page: 300 dots per inch are all that print shows.
+/// Cells of a map per point (1/72 inch): print shows no more than 300 dots per inch.
 const CELLS: f64 = 300.0 / 72.0;
 
 /// What the colours mean.
@@ -44,7 +44,7 @@ impl Heatmap {
         Heatmap::of(x, y, values, Key::Quantity(spec))
     }
 
-    /// Map of classes: the value k means the k-th name, counted from 0; anything else is missing.
+    /// Map of classes: the value k means the k-th name, counted from 0; any other value counts as missing.
     ///
     /// # Errors
     /// As [`Heatmap::new`].
@@ -79,9 +79,9 @@ impl Heatmap {
         colour::SERIES[index % colour::SERIES.len()].tint(0.25)
     }
 
-    /// Colours of so many cells across and down between the limits of two axes, from the top; none where
-    /// nothing was measured. Where several values fall in a cell it has the largest, so that no narrow line
-    /// is lost, or for classes the one in its middle.
+    /// Colours of `across` × `down` cells between the limits of two axes, the top row first; `None` where
+    /// nothing was measured. A cell with several values shows the largest, so that no narrow line is lost;
+    /// for classes it shows the value in its middle.
     pub(super) fn cells(&self, x: &Axis, y: &Axis, across: usize, down: usize) -> Array2<Option<Rgb>> {
         let (columns, rows) = (cover(&self.x, x, across), cover(&self.y, y, down));
         let bar = self.colour_axis();
@@ -111,7 +111,7 @@ impl Heatmap {
     }
 }
 
-/// Room for the colour bar to the right of a frame of about this height.
+/// Width for the colour bar, in points, to the right of a frame of about this height.
 pub(super) fn bar_room(bar: &Axis, height: f64) -> f64 {
     let numbers = frame::widest(&frame::upward(bar, height));
     let name = if bar.title.is_empty() { 0.0 } else { GAP + 1.15 * LARGE };
@@ -153,8 +153,7 @@ pub(super) fn ascending(positions: &[f64], of: &str) -> Result<()> {
     }
 }
 
-/// From where to where each position has its cell: half way to its neighbours, and as far beyond the outer
-/// ones.
+/// Start and end of each position's cell: half way to its neighbours; the outer cells are symmetrical.
 fn spans(positions: &[f64]) -> Vec<(f64, f64)> {
     let steps: Vec<f64> = positions.windows(2).map(|w| w[1] - w[0]).collect();
     if steps.is_empty() {
@@ -176,7 +175,7 @@ fn cover(positions: &[f64], axis: &Axis, count: usize) -> Vec<Range<usize>> {
         if !inside.is_empty() {
             return inside;
         }
-        // Between two positions: the one whose cell has the middle.
+        // Between two positions: the one whose cell contains the middle.
         let middle = f64::midpoint(from, to);
         let at = spans.partition_point(|s| s.1 <= middle);
         if spans.get(at).is_some_and(|s| s.0 <= middle) { at..at + 1 } else { 0..0 }

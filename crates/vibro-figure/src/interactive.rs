@@ -1,4 +1,4 @@
-//! Figures as data for a page that draws them itself.
+//! Figures as data, for a page that draws them itself.
 
 use crate::style::{SeriesLook, looks};
 use crate::{Axis, Figure, Heatmap, Key, Panel, Plot, Scale, Shape, Sheet, Waterfall};
@@ -8,10 +8,10 @@ use serde::Serialize;
 use serde_json::{Value, json};
 
 impl Figure {
-    /// The figure for a page: panels with axes, series and matrices, all values as the axes show them. Lists
-    /// are base64 of 32-bit floats, least significant byte first; matrices are put into those of the
-    /// page, which the figure numbers. A panel that shows another once more is left out. `None` where a
-    /// page cannot draw a panel, as a table of classes.
+    /// The figure as data for a page: panels with axes, series and matrices, with all values in the unit of
+    /// their axes. Lists are base64 of 32-bit floats, least significant byte first. Matrices are added to
+    /// those of the page; the figure refers to them by number. A panel that repeats an earlier one is left
+    /// out. `None` where a page cannot draw a panel, such as a grid of classes.
     pub fn data(&self, matrices: &mut Matrices) -> Option<Value> {
         let again = |panel: &&Panel| matches!(panel, Panel::Plot(plot) if plot.again);
         let (known, shown) = (matrices.len(), self.panels.iter().filter(|panel| !again(panel)));
@@ -25,25 +25,25 @@ impl Figure {
         )
     }
 
-    /// Whether a panel has a heat map, whose picture is large.
+    /// Whether a panel has a heat map, whose image is large.
     pub fn has_map(&self) -> bool {
         self.panels.iter().any(|panel| matches!(panel, Panel::Plot(plot) if plot.heatmap.is_some()))
     }
 }
 
-/// The matrices of a page, each once: a waterfall and a map show the same. Base64 of 16-bit levels between
-/// `low` and `high` of the panel that shows it, logarithmic for magnitudes; 0 is a gap.
+/// The matrices of a page, each stored once: a waterfall and a map may show the same one. Base64 of 16-bit
+/// levels between `low` and `high` of the panel that shows it, logarithmic for magnitudes; 0 is a gap.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct Matrices(Vec<String>);
 
 impl Matrices {
-    /// How many there are.
+    /// Number of matrices.
     #[allow(clippy::len_without_is_empty)] // nobody asks
     pub fn len(&self) -> usize {
         self.0.len()
     }
 
-    /// The number of a matrix, which is added where it is new.
+    /// The number of a matrix; a new one is added.
     fn number(&mut self, levels: String) -> usize {
         self.0.iter().position(|known| *known == levels).unwrap_or_else(|| {
             self.0.push(levels);
@@ -63,7 +63,7 @@ impl Panel {
 }
 
 impl Axis {
-    /// A value as the axis shows it; NaN where it has none.
+    /// A value in the unit of the axis; NaN where it has no place on the axis.
     fn shown(&self, value: f64) -> f64 {
         match self.scale {
             Scale::Linear => value / 10f64.powi(self.power),
@@ -80,7 +80,8 @@ impl Axis {
             Scale::Db { .. } => u,
         };
         let reference = if let Scale::Db { reference } = self.scale { Some(reference) } else { None };
-        // A matrix has amplitudes: times the factor they are as shown, or levels over the reference are.
+        // A matrix holds amplitudes. This factor gives the values shown; on a decibel axis the reference
+        // does.
         let factor = if self.scale == Scale::Linear { self.shown(1.0) } else { 1.0 };
         let (low, high) = (end(self.lo), end(self.hi));
         json!({ "title": self.title, "log": log, "low": low, "high": high, "reference": reference, "factor": factor })
@@ -180,11 +181,11 @@ fn floats(values: impl Iterator<Item = f64>) -> Value {
     Value::String(STANDARD.encode(bytes))
 }
 
-/// Decades below the largest magnitude that levels reach.
+/// Decades below the largest magnitude that levels cover.
 const DECADES: f64 = 8.0;
 
-/// 16-bit levels from 1 to 65535 between `low` and `high`: of log₁₀ where all are magnitudes, 8 decades at
-/// most, in steps of 0.03 %; what lies deeper is at the lowest level.
+/// 16-bit levels from 1 to 65535 between `low` and `high`. Where all values are magnitudes, of their log₁₀,
+/// over at most 8 decades in steps of 0.03 %; smaller values get the lowest level.
 fn levels(values: impl Iterator<Item = f64> + Clone, quantity: bool, matrices: &mut Matrices) -> Value {
     let finite = values.clone().filter(|v| v.is_finite());
     let magnitudes = quantity && finite.clone().all(|v| v >= 0.0) && finite.clone().any(|v| v > 0.0);
@@ -228,7 +229,7 @@ mod tests {
         assert!((low[0] - 0.9).abs() < 1e-6 && low[1].is_nan());
     }
 
-    /// 65534 steps of 8 decades are 0.028 % each, so that a level is right to half of that.
+    /// 65534 steps of 8 decades are 0.028 % each, so a level is accurate to half of that.
     #[test]
     fn levels_keep_magnitudes_to_their_step() {
         let values = [1.0, 3e-4, 0.0, f64::NAN, 2e-9];
@@ -244,9 +245,9 @@ mod tests {
         let found: Vec<f64> = bytes.chunks_exact(2).map(value).collect();
         assert!((found[0] - 1.0).abs() < 1.5e-4 && (found[1] / 3e-4 - 1.0).abs() < 1.5e-4, "{found:?}");
         assert!(found[3].is_nan());
-        // Zero and what lies deeper than eight decades are at the lowest level.
+        // Zero and values below eight decades have the lowest level.
         assert!((found[2] / 1e-8 - 1.0).abs() < 1.5e-4 && found[4] == found[2]);
-        // Classes are as far apart as they are, and the lowest is its own.
+        // Classes keep their distances, and the lowest has its own level.
         let classes = levels([0.0, 1.0, 2.0].into_iter(), false, &mut matrices);
         assert_eq!((classes["low"].as_f64(), classes["log"].as_bool()), (Some(0.0), Some(false)));
         let matrix = array![[1.0, 2.0], [3.0, f64::NAN]];

@@ -1,17 +1,17 @@
-//! The names of series, and the place for them.
+//! Legends: the names of series, and a place for them.
 
 use crate::style::{LEADING, MARKER, OUTLINE, SMALL, SeriesLook};
 use crate::{Anchor, Canvas, Clutter, Form, Heatmap, Key, Marker, Pen, Point, Rect, Series, Shape, font};
 
-/// Length of a sample with a line and of one without, and its distance from the name.
+/// Lengths in points of a sample with a line, of one without, and the distance from sample to name.
 const SAMPLE: f64 = 18.0;
 const SHORT: f64 = 11.0;
 const BESIDE: f64 = 4.0;
-/// Distance between entries in a row, and of a legend from the frame.
+/// Distances in points between entries in a row, and of a legend from the frame.
 const BETWEEN: f64 = 12.0;
 const INSET: f64 = 6.0;
 
-/// Names with samples.
+/// Names of series with samples of their look.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(super) struct KeyList {
     entries: Vec<LegendEntry>,
@@ -27,7 +27,7 @@ struct LegendEntry {
 }
 
 impl KeyList {
-    /// Entries of all named series and classes; reference lines carry their names themselves. Headings have
+    /// Entries of all named series and classes. Reference lines carry their names themselves; headings have
     /// no sample.
     pub fn new(series: &[Series], looks: &[SeriesLook], map: Option<&Heatmap>) -> KeyList {
         let mut entries: Vec<LegendEntry> = Vec::new();
@@ -36,7 +36,7 @@ impl KeyList {
             let lined = *shape == Shape::Line || *shape == Shape::Points && stroke.is_some();
             let entry = LegendEntry { name: name.clone(), shape: *shape, lined, look: *look };
             let along = matches!(shape, Shape::Vertical | Shape::Horizontal);
-            // A branch in several pieces has one entry.
+            // A branch in several pieces gets one entry.
             if !name.is_empty() && !along && !entries.contains(&entry) {
                 entries.push(entry);
             }
@@ -56,26 +56,26 @@ impl KeyList {
         self.entries.is_empty()
     }
 
-    /// Width and height as a column no wider than `room`.
+    /// Width and height in points as one column, no wider than `room`.
     pub fn column(&self, room: f64) -> (f64, f64) {
         let widest = self.entries.iter().map(|e| self.width(e)).fold(0.0, f64::max);
         (widest.min(room), self.entries.len() as f64 * LEADING)
     }
 
-    /// Height in rows of this width.
+    /// Height in points, in rows of the width `room`.
     pub fn rows(&self, room: f64) -> f64 {
         self.flow(room).last().map_or(0.0, |(_, row)| (row + 1) as f64 * LEADING)
     }
 
-    /// The place in a frame where a column covers nothing: corners first, then edges; `None` where there is
-    /// none.
+    /// The first place in a frame where a column covers nothing: corners first, then edges; `None` where
+    /// there is none.
     pub fn free_place(&self, frame: Rect, clutter: &Clutter) -> Option<Rect> {
         let (w, h) = self.column(f64::INFINITY);
         let room = frame.grown(-INSET);
         if w > room.w || h > room.h {
             return None;
         }
-        // Fractions of the free way across and down: the edges above and below, then those at the sides.
+        // Fractions of the free width and height: upper and lower edge first, then the sides.
         let level = [0.0, 1.0].map(|y| [1.0, 0.0, 0.5, 0.25, 0.75].map(|x| (x, y)));
         let upright = [1.0, 0.0].map(|x| [0.5, 0.25, 0.75].map(|y| (x, y)));
         let at = |(x, y)| Rect { x: room.x + x * (room.w - w), y: room.y + y * (room.h - h), w, h };
@@ -83,14 +83,15 @@ impl KeyList {
         places.into_iter().find(|place| clutter.under(place.grown(INSET / 2.0)) == 0.0)
     }
 
-    /// Draws the entries from the upper left, in rows of the width `room`, under each other where that is 0.
+    /// Draws the entries from the upper left in rows of the width `room`; one below the other where `room` is
+    /// 0.
     pub fn draw(&self, canvas: &mut Canvas, place: Rect, room: f64) {
         for (entry, (x, row)) in self.entries.iter().zip(self.flow(room)) {
             entry.draw(canvas, (place.x + x, place.y + (row as f64 + 0.5) * LEADING), self.sample(), place.w);
         }
     }
 
-    /// Length of the samples, all alike so that names stand under each other.
+    /// Length of all samples in points: one length, so that the names are aligned.
     fn sample(&self) -> f64 {
         if self.entries.iter().any(|e| e.lined) { SAMPLE } else { SHORT }
     }
@@ -100,7 +101,7 @@ impl KeyList {
         before + font::width(&entry.name, SMALL)
     }
 
-    /// Where each entry begins, and in which row.
+    /// Abscissa and row of each entry.
     fn flow(&self, room: f64) -> Vec<(f64, usize)> {
         let (mut x, mut row) = (0.0, 0);
         let step = |entry: &LegendEntry| {

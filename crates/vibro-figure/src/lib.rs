@@ -1,8 +1,8 @@
 //! Figures as data, drawn as SVG and PNG.
 //!
-//! A [`Figure`] is data: panels with axes and series, no drawing. [`Figure::draw`] makes a [`Drawing`] of it,
-//! which is written as SVG or PNG. Drawing needs nothing but the figure, so that many can be drawn at once;
-//! the same figure gives the same bytes on every machine.
+//! A [`Figure`] is data: panels with axes and series, no drawing. [`Figure::draw`] turns it into a
+//! [`Drawing`], which is written as SVG or PNG. Drawing needs nothing but the figure, so that figures can be
+//! drawn in parallel; the same figure gives the same bytes on every machine.
 //!
 //! ```
 //! use vibro_figure::{AxisSpec, Figure, Plot, Series};
@@ -47,7 +47,7 @@ pub use medium::Medium;
 pub use series::{Ink, Marker, Series, Shape, Stroke};
 pub use waterfall::Waterfall;
 
-// What several modules speak of.
+// Used by several modules.
 use axis::{Axis, Extent, Room};
 use canvas::{Anchor, Canvas, Image, Pen, Text};
 use colour::{BLACK, GREY, PALE, Rgb, WHITE};

@@ -1,4 +1,4 @@
-//! What a figure is drawn for.
+//! Media for which a figure is drawn.
 
 use crate::canvas::Element;
 use crate::colour::{Rgb, SERIES};
@@ -17,10 +17,10 @@ pub enum Medium {
     Slide,
 }
 
-/// Width of a column in mm.
+/// Width of a column of a journal in mm.
 const COLUMN: f64 = 86.0;
 
-/// How much larger all is on a slide: 8 pt become 13 pt.
+/// Enlargement on a slide: 8 pt become 13 pt.
 const LARGER: f64 = 1.6;
 
 impl Figure {
@@ -36,8 +36,8 @@ impl Figure {
         }
     }
 
-    /// The figure in a column: panels under one another, each with the proportions that it had but no lower
-    /// than three quarters of its width.
+    /// The figure in one column: panels one below the other, each with its own ratio of height to width, kept
+    /// between 0.75 and 1.1.
     fn in_column(&self) -> Figure {
         if self.width <= COLUMN {
             return self.clone();
@@ -50,8 +50,7 @@ impl Figure {
 }
 
 impl Drawing {
-    /// The drawing in grey: the maps' colours are as light as their values, series and classes differ in
-    /// level.
+    /// The drawing in grey. The greys of maps follow their values; series and classes have distinct levels.
     fn grey(mut self) -> Drawing {
         let of = |colour: &mut Rgb| {
             let level = grey([colour.0, colour.1, colour.2]);
@@ -81,10 +80,10 @@ impl Drawing {
     }
 }
 
-/// Greys of the colours of series: neighbours far apart, and the last black as it is.
+/// Grey levels for the colours of series: neighbours differ widely, and the last stays black.
 const LEVELS: [u8; 7] = [50, 135, 95, 170, 200, 225, 0];
 
-/// The grey of a colour: that of its place among series or classes, else its luma (ITU-R BT.601).
+/// The grey level of a colour: that of its place among series or classes, else its luma (ITU-R BT.601).
 fn grey([r, g, b]: [u8; 3]) -> u8 {
     let places = SERIES.into_iter().zip(LEVELS).chain((0..).map(Heatmap::class_colour).zip(LEVELS));
     if let Some((_, level)) = places.into_iter().find(|(colour, _)| *colour == Rgb(r, g, b)) {

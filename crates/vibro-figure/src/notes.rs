@@ -1,24 +1,24 @@
-//! Words among the data: names of points with leaders, names of reference lines.
+//! Texts among the data: labels of points with leaders, and names of reference lines.
 
 use crate::style::{LEADER, MARKER, SMALL, TICK};
 use crate::{Anchor, BLACK, Canvas, Form, GREY, Note, Place, Point, Rect, Rgb, Series, Shape, Text, font};
 
-/// Part of the height of small text by which its baseline lies over the lower edge of its box.
+/// Height of the baseline above the lower edge of its box, over the height of small text.
 const DESCENT: f64 = 0.16;
 
-/// A place for words.
+/// A possible place of a text.
 #[derive(Debug, Clone, Copy)]
 struct Spot {
     area: Rect,
-    /// Whether they read upwards.
+    /// Whether the text reads upwards.
     upright: bool,
-    /// Where a leader ends; `None` where the words need none.
+    /// Start and end of the leader; `None` where the text needs none.
     leader: Option<(Point, Point)>,
-    /// How much is covered there, with small costs for distance.
+    /// Measure of the lines and boxes covered there, with small costs for distance.
     cost: f64,
 }
 
-/// Names reference lines: along themselves where that covers nothing, else from aside.
+/// Names reference lines: along the line where that covers nothing, else beside it with a leader.
 pub(super) fn name_lines(canvas: &mut Canvas, series: &[Series], place: &Place<'_>, clutter: &mut Clutter) {
     let frame = place.frame;
     for series in series.iter().filter(|s| !s.name.is_empty()) {
@@ -42,8 +42,8 @@ pub(super) fn name_lines(canvas: &mut Canvas, series: &[Series], place: &Place<'
     }
 }
 
-/// Writes notes near their points, where they cover least, with a line to the point from those that stand
-/// off.
+/// Writes notes near their points where they cover least, with a leader to the point from notes that are
+/// further away.
 pub(super) fn write_notes(canvas: &mut Canvas, notes: &[Note], place: &Place<'_>, clutter: &mut Clutter) {
     let inside = place.frame.grown(0.01);
     let points = notes.iter().map(|note| (note, place.at(note.x, note.y)));
@@ -57,7 +57,7 @@ pub(super) fn write_notes(canvas: &mut Canvas, notes: &[Note], place: &Place<'_>
     }
 }
 
-/// Writes a text in its place, where it has one.
+/// Writes a text at its place, if it has one.
 fn write(canvas: &mut Canvas, text: &str, spot: Option<Spot>, colour: Rgb, clutter: &mut Clutter) {
     let Some(Spot { area, upright, leader, .. }) = spot else { return };
     clutter.add_box(area);
@@ -80,14 +80,14 @@ fn write(canvas: &mut Canvas, text: &str, spot: Option<Spot>, colour: Rgb, clutt
     });
 }
 
-/// The best place along a line, on either side.
+/// The best place for a name along a line, on either side of it.
 fn beside(name: &str, line: f64, upright: bool, frame: Rect, clutter: &Clutter) -> Option<Spot> {
     let length = font::width(name, SMALL);
     let (start, end) = if upright { (frame.y, frame.bottom()) } else { (frame.x, frame.right()) };
     let way = end - start - length - 10.0;
     let steps = (0..=12).flat_map(|i| [(i, true), (i, false)]);
     best(steps.filter(|_| way >= 0.0).map(|(i, first)| {
-        // The upper end of an upright line and the right end of a level one come first.
+        // Preferred: the upper end of a vertical line, the right end of a horizontal one.
         let part = f64::from(i) / 12.0;
         let along = start + 5.0 + way * if upright { part } else { 1.0 - part };
         let side = if first { line - 1.5 - SMALL } else { line + 1.5 };
@@ -102,19 +102,19 @@ fn beside(name: &str, line: f64, upright: bool, frame: Rect, clutter: &Clutter) 
     }))
 }
 
-/// The best of places all around a point that has something of half width `taken` on it.
+/// The best place around a point; a marker of half width `taken` covers the point.
 fn around(text: &str, at: Point, taken: f64, frame: Rect, clutter: &Clutter) -> Option<Spot> {
     let (w, h) = (font::width(text, SMALL), SMALL);
     let frame = frame.grown(-TICK);
     let rays = (0..24).flat_map(|i| {
-        // Straight above first, so that it wins among equals.
+        // Straight above first: it wins among equal places.
         let angle = f64::from(i) * std::f64::consts::TAU / 24.0 - std::f64::consts::FRAC_PI_2;
         [4.5, 8.0, 13.0, 19.0, 27.0, 37.0, 50.0].map(|distance| (angle, distance))
     });
     best(rays.map(|(angle, distance)| {
         let from = |r: f64| (at.0 + r * angle.cos(), at.1 + r * angle.sin());
-        // The words touch the end of the ray with the side or corner that faces the point, and are moved into
-        // the frame sideways.
+        // The side or corner of the text that faces the point touches the end of the ray. The text is then
+        // shifted sideways into the frame.
         let end = from(distance);
         let facing = |c: f64| match c {
             c if c > 0.3 => 0.0,
@@ -144,7 +144,7 @@ pub(super) struct Clutter {
 }
 
 impl Clutter {
-    /// What these forms cover.
+    /// The lines and boxes of these forms.
     pub fn of(forms: &[Form]) -> Clutter {
         let mut clutter = Clutter::default();
         for form in forms {
@@ -161,19 +161,19 @@ impl Clutter {
         self.boxes.push(rect);
     }
 
-    /// How much a box there would cover: nothing at all gives 0.
+    /// Measure of the lines and boxes that a box there would cover; 0 for none.
     pub fn under(&self, rect: Rect) -> f64 {
         let lines: f64 = self
             .segments
             .iter()
             .filter_map(|&(a, b)| rect.cut(a, b))
-            // A line that only touches has no length but is touched.
+            // A line that only touches the box counts, too.
             .map(|(a, b)| 1.0 + (a.0 - b.0).hypot(a.1 - b.1))
             .sum();
         lines + self.boxes.iter().map(|b| 4.0 * rect.overlap(*b)).sum::<f64>()
     }
 
-    /// How many boxes a line from `a` to `b` would cross.
+    /// Number of boxes that a line from `a` to `b` would cross.
     pub fn crossed(&self, a: Point, b: Point) -> usize {
         self.boxes.iter().filter(|r| r.cut(a, b).is_some()).count()
     }
@@ -187,8 +187,7 @@ mod tests {
     const FRAME: Rect = Rect { x: 0.0, y: 0.0, w: 300.0, h: 200.0 };
 
     proptest! {
-        /// Four notes anywhere have room in a frame of this size, so none may cover another or leave the
-        /// frame.
+        /// Four notes always have room in a frame of this size: none may cover another or leave the frame.
         #[test]
         fn notes_stand_clear_of_each_other(points in prop::collection::vec((0.0..300.0f64, 0.0..200.0f64), 1..=4)) {
             let mut clutter = Clutter::default();

@@ -1,6 +1,6 @@
 //! Lines on the page: cut to a frame and thinned to what can be seen.
 
-/// A place in points (1/72 inch), x to the right; y down on the page, up in a projection.
+/// A place in points (1/72 inch): x to the right; y downwards on the page, upwards in a projection.
 pub(super) type Point = (f64, f64);
 
 /// A rectangle with sides along the page.
@@ -29,7 +29,7 @@ impl Rect {
         Rect { x: x - half, y: y - half, w: 2.0 * half, h: 2.0 * half }
     }
 
-    /// Wider by `by` on each side.
+    /// The rectangle, larger by `by` on each side.
     pub fn grown(self, by: f64) -> Rect {
         Rect { x: self.x - by, y: self.y - by, w: self.w + 2.0 * by, h: self.h + 2.0 * by }
     }
@@ -100,9 +100,9 @@ pub(super) fn clipped(line: &[Point], frame: Rect) -> Vec<Vec<Point>> {
     parts
 }
 
-/// The same line with fewer points, nowhere further than `tolerance` from it (Douglas and Peucker 1973),
-/// after runs of many points within a quarter of a point of width have been reduced to their first, lowest,
-/// highest and last.
+/// The line with fewer points, nowhere further than `tolerance` in points from it (Douglas and Peucker 1973).
+/// Before that, many points within a quarter of a point of width are reduced to their first, lowest, highest
+/// and last.
 pub(super) fn thinned(line: &[Point], tolerance: f64) -> Vec<Point> {
     let line = by_columns(line, 0.25);
     let Some(last) = line.len().checked_sub(1).filter(|last| *last >= 2) else { return line };
@@ -191,7 +191,7 @@ mod tests {
             let thin = thinned(&line, 0.0);
             let top = |l: &[Point]| l.iter().map(|p| p.1).fold(f64::NEG_INFINITY, f64::max);
             prop_assert_eq!(top(&line), top(&thin));
-            // 20 points of width in columns of a quarter, four points each, and one column begun.
+            // 20 points of width in columns of 0.25, four points in each, and one partial column.
             prop_assert!(thin.len() <= 4 * 81);
         }
     }

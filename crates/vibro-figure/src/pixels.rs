@@ -1,4 +1,4 @@
-//! A drawing as pixels: its cells first, then lines and texts over them.
+//! Draws figures as pixels: cells of maps first, then lines and texts over them.
 
 use crate::canvas::Lettering;
 use crate::png::encoded;
@@ -8,8 +8,8 @@ use resvg::usvg;
 use vibro_record::{Error, Result};
 
 impl Drawing {
-    /// The picture as PNG of `dpi` dots per inch (30 to 1200; 300 is usual in print), on white, in the
-    /// bundled font, with the resolution noted in the file.
+    /// The picture as PNG with `dpi` dots per inch (30 to 1200; 300 is usual in print), on white, in the
+    /// bundled font. The resolution is stored in the file.
     ///
     /// # Errors
     /// If the picture is too large to be held in memory as pixels.
@@ -48,6 +48,6 @@ impl Drawing {
     }
 }
 
-/// Pixels of the largest picture: four times a double column as high as wide at 1200 dots per inch, in memory
-/// 1.1 GB.
+/// Pixels of the largest picture: four times those of a square of a double column's width at 1200 dots per
+/// inch, 1.1 GB in memory.
 const MOST: u64 = 280_000_000;

@@ -1,4 +1,4 @@
-//! A plot on its sheet: axes settled, room measured, then drawn.
+//! A plot on its sheet: fixes the axes, measures the space around the frame, then draws.
 
 use crate::style::{self, FRAME, GAP, LARGE, LEADING, SMALL, SeriesLook, TICK};
 use crate::{
@@ -7,18 +7,18 @@ use crate::{
 };
 use vibro_record::units::notation::labelled;
 
-/// Most room of a legend beside the frame, in parts of the frame's width.
+/// Largest width of a legend beside the frame, over the frame's width.
 const BESIDE: f64 = 0.55;
-/// A plot with everything settled but its place.
+/// A plot with everything fixed except its place.
 #[derive(Debug)]
 pub(super) struct Sheet<'a> {
     plot: &'a Plot,
-    /// Where there is anything to show.
+    /// The axes; `None` where there is nothing to show.
     pub axes: Option<(Axis, Axis)>,
     bar: Option<Axis>,
     looks: Vec<SeriesLook>,
     keys: KeyList,
-    /// Where the names stand: inside the frame where automatic.
+    /// Place of the legend; inside the frame where automatic.
     names: Legend,
     named_x: bool,
 }
@@ -42,11 +42,11 @@ pub(super) fn extents(plot: &Plot) -> (Extent, Extent) {
 }
 
 impl<'a> Sheet<'a> {
-    /// Settles axes and looks; `shared` is the range of the abscissa, which panels may share.
+    /// Fixes axes and looks; `shared` is the range of the abscissa, which panels may share.
     pub fn new(plot: &'a Plot, shared: Extent, named_x: bool) -> Sheet<'a> {
         let has = |shapes: [Shape; 2]| plot.series.iter().any(|s| shapes.contains(&s.shape));
         let stand = has([Shape::Points, Shape::Bars]) && !has([Shape::Line, Shape::Band]);
-        // More room over data with notes, which mostly name peaks.
+        // More space above data with notes, which mostly label peaks.
         let above = Room::Above(if plot.notes.is_empty() { 0.06 } else { 0.2 });
         let (x_room, y_room) = match (&plot.heatmap, stand) {
             (Some(_), _) => (Room::Tight, Room::Tight),
@@ -55,7 +55,7 @@ impl<'a> Sheet<'a> {
         };
         let (x, y) = extents(plot);
         let axes = Axis::new(&plot.x, shared, x_room).zip(Axis::new(&plot.y, y, y_room));
-        // Limits without any data are no plot.
+        // Limits without data make no plot.
         let axes = axes.filter(|_| !x.is_empty() && !y.is_empty());
         let looks = style::looks(&plot.series);
         let keys = KeyList::new(&plot.series, &looks, plot.heatmap.as_ref());
@@ -68,7 +68,7 @@ impl<'a> Sheet<'a> {
         Sheet { plot, axes, bar, looks, keys, names, named_x }
     }
 
-    /// Room around a frame of about this size.
+    /// Space around a frame of about this size, in points.
     pub fn insets(&self, size: (f64, f64)) -> Insets {
         let bare = Insets { left: 2.5 * LARGE, bottom: 2.5 * LARGE, top: SMALL, right: GAP };
         let mut insets = self.axes.as_ref().map_or(bare, |(x, y)| frame::insets(x, y, size, self.named_x));
@@ -90,7 +90,7 @@ impl<'a> Sheet<'a> {
         insets
     }
 
-    /// Moves a legend that has no free place in this frame out of it; says whether it did.
+    /// Moves a legend without a free place in this frame out of it; returns whether it did.
     pub fn make_room(&mut self, frame: Rect) -> bool {
         let Some(place) = self.place(frame).filter(|_| self.names == Legend::Auto) else { return false };
         if self.free_place(&place, &Clutter::of(&self.forms(&place))).is_some() {
@@ -116,7 +116,7 @@ impl<'a> Sheet<'a> {
             heatmap::draw_bar(canvas, bar, frame);
         }
         let mut clutter = Clutter::of(&forms);
-        // The place of the names, and the width of their rows where they stand in rows.
+        // Place of the legend, and the width of its rows; 0 for a single column.
         let names = match self.names {
             Legend::Auto => self.free_place(&place, &clutter).map(|free| (free, 0.0)),
             Legend::Right => {
@@ -141,7 +141,8 @@ impl<'a> Sheet<'a> {
         self.axes.as_ref().map(|(x, y)| Place { x, y, frame })
     }
 
-    /// All series as shapes, areas under lines under markers, open ones under filled ones, which are smaller.
+    /// All series as forms: areas below lines below markers, open markers below filled ones, which are
+    /// smaller.
     fn forms(&self, place: &Place<'_>) -> Vec<Form> {
         let layer = |shape: Shape, look: &SeriesLook| match shape {
             Shape::Band => 0,
@@ -156,7 +157,7 @@ impl<'a> Sheet<'a> {
         order.into_iter().flat_map(|(series, look)| forms::forms(series, *look, place)).collect()
     }
 
-    /// Where the legend covers nothing, and leaves notes room beside their points.
+    /// A place where the legend covers nothing and leaves notes space beside their points.
     fn free_place(&self, place: &Place<'_>, clutter: &Clutter) -> Option<Rect> {
         let mut clutter = clutter.clone();
         for note in &self.plot.notes {
@@ -171,7 +172,7 @@ impl<'a> Sheet<'a> {
         canvas.label(&title, (frame.x, frame.y - names - 0.45 * LARGE), size, Anchor::Start);
     }
 
-    /// An empty frame that says so.
+    /// An empty frame with the words "no data".
     fn draw_nothing(&self, canvas: &mut Canvas, frame: Rect) {
         canvas.rect(frame, None, Some(FRAME));
         let (x, y) = frame.middle();

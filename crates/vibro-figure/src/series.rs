@@ -1,4 +1,4 @@
-//! What a plot can show over its axes.
+//! Series: the data that a plot shows over its axes.
 
 use serde::{Deserialize, Serialize};
 
@@ -11,11 +11,11 @@ use serde::{Deserialize, Serialize};
 pub struct Series {
     /// Name in the legend, or beside a reference line; empty for none.
     pub name: String,
-    /// Form.
+    /// Form in which the data are drawn.
     pub shape: Shape,
-    /// Abscissae; the borders of bars, one more than there are bars; the place of an upright reference line.
+    /// Abscissae; the edges of bars, one more than there are bars; the place of a vertical reference line.
     pub x: Vec<f64>,
-    /// Ordinates; the heights of bars; the place of a level reference line; none for a band.
+    /// Ordinates; the heights of bars; the place of a horizontal reference line; empty for a band.
     pub y: Vec<f64>,
     /// Lower ends of error bars, or lower curve of a band.
     pub low: Vec<f64>,
@@ -23,10 +23,10 @@ pub struct Series {
     pub high: Vec<f64>,
     /// Colour.
     pub ink: Ink,
-    /// Dashes and width of a line: those that belong to the colour where there are none here. Points are
-    /// joined by a line where there are.
+    /// Dashes and width of a line; where `None`, those of the colour. Points are joined by a line only where
+    /// this is set.
     pub stroke: Option<Stroke>,
-    /// Form of markers: that which belongs to the colour where there is none here.
+    /// Form of markers; where `None`, that of the colour.
     pub marker: Option<Marker>,
 }
 
@@ -47,7 +47,7 @@ pub enum Shape {
     Vertical,
     /// Horizontal reference line, named along itself.
     Horizontal,
-    /// No data: a heading in the legend, over the names of the series behind it.
+    /// No data: a heading in the legend, over the names of the series after it.
     Heading,
 }
 
@@ -57,10 +57,10 @@ pub enum Ink {
     /// The next of [`super::colour::SERIES`], with its own dashes and marker.
     #[default]
     Auto,
-    /// This one of [`super::colour::SERIES`], counted from 0 and again from the beginning: for series that
-    /// belong together.
+    /// The colour of this number in [`super::colour::SERIES`], from 0, starting again after the last: for
+    /// series that belong together.
     Nth(usize),
-    /// Grey, for what stands behind.
+    /// Grey, for the background.
     Grey,
     /// Black.
     Black,
@@ -111,7 +111,7 @@ pub enum Marker {
     /// Open triangle that points down: an upper limit.
     #[serde(rename = "open-limit")]
     Limit,
-    /// A letter: names in a legend what notes in the frame refer to.
+    /// A letter, to which notes in the frame refer; the legend says what it means.
     #[serde(untagged)]
     Letter(char),
 }
@@ -127,13 +127,13 @@ impl Series {
         Series { name: name.into(), shape, x: x.into(), y: y.into(), ..Series::default() }
     }
 
-    /// Line through points, in the next dashes.
+    /// Line through points, in the next colour and its dashes.
     pub fn line(name: impl Into<String>, x: impl Into<Vec<f64>>, y: impl Into<Vec<f64>>) -> Series {
         Series::new(name, Shape::Line, x, y)
     }
 
-    /// Line of a phase in degrees between −180 and 180: broken where it goes round the circle, rather than
-    /// drawn across the frame.
+    /// Line of a phase in degrees between −180 and 180: broken where it wraps, rather than drawn across the
+    /// frame.
     pub fn phase(name: impl Into<String>, x: &[f64], degrees: &[f64]) -> Series {
         let mut line = Series::line(name, [], []);
         for (x, phase) in x.iter().zip(degrees) {
@@ -147,12 +147,12 @@ impl Series {
         line
     }
 
-    /// Markers in the next form, without bars.
+    /// Markers in the next colour and its form, without error bars.
     pub fn points(name: impl Into<String>, x: impl Into<Vec<f64>>, y: impl Into<Vec<f64>>) -> Series {
         Series::new(name, Shape::Points, x, y)
     }
 
-    /// A heading in the legend, over the names of the series behind it.
+    /// A heading in the legend, over the names of the series after it.
     pub fn heading(words: impl Into<String>) -> Series {
         Series::new(words, Shape::Heading, [], []).ink(Ink::Black)
     }
@@ -199,7 +199,7 @@ impl Series {
         Series { marker: Some(marker), ..self }
     }
 
-    /// Gives points vertical bars of these half lengths.
+    /// Gives points vertical error bars of these half lengths, in the unit of the ordinate.
     pub fn y_error(mut self, std: impl Into<Vec<f64>>) -> Series {
         let std = std.into();
         let ends = |way: f64| self.y.iter().zip(&std).map(|(y, std)| y + way * std.abs()).collect();

@@ -1,43 +1,44 @@
-//! Sizes and pens of every figure, in points at print size.
+//! Sizes and pens of all figures, in points at print size.
 
 use crate::{BLACK, GREY, Ink, Marker, PALE, Pen, Rgb, Series, Shape, Stroke, WHITE, colour};
 
-/// Numbers at ticks, names in legends, notes.
+/// Size of numbers at ticks, names in legends, notes.
 pub(super) const SMALL: f64 = 8.0;
-/// Names of axes and panels.
+/// Size of the names of axes and panels.
 pub(super) const LARGE: f64 = 9.0;
-/// From one line of small text to the next.
+/// Distance from one line of small text to the next.
 pub(super) const LEADING: f64 = 11.0;
-/// Long ticks; short ones are half as long.
+/// Length of long ticks; short ones are half as long.
 pub(super) const TICK: f64 = 3.6;
-/// Least distance between things that must not touch.
+/// Smallest distance between elements that must not touch.
 pub(super) const GAP: f64 = 3.0;
-/// What letters such as g and brackets reach below the baseline of a large text.
+/// Depth of letters such as g, and of brackets, below the baseline of a large text.
 pub(super) const DESCENT: f64 = 2.2;
 
 pub(super) const FRAME: Pen = Pen::solid(BLACK, 0.75);
 pub(super) const TICKS: Pen = Pen::solid(BLACK, 0.6);
 pub(super) const LEADER: Pen = Pen::solid(GREY, 0.5);
 pub(super) const FLOOR: Pen = Pen::solid(PALE, 0.4);
-/// Width of data lines, of thin ones, of outlines and error bars.
+/// Widths of data lines, of thin lines, and of outlines and error bars.
 pub(super) const LINE: f64 = 1.1;
 pub(super) const THIN: f64 = 0.55;
 pub(super) const OUTLINE: f64 = 0.8;
 /// Half the width of a marker.
 pub(super) const MARKER: f64 = 2.1;
 
-/// How a series looks, with nothing left to choose.
+/// The look of a series, with every choice made.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct SeriesLook {
     pub colour: Rgb,
     /// Colour of its areas.
     pub fill: Rgb,
-    /// Pen of its line; of its outline where it is no line.
+    /// Pen of its line, or of its outline.
     pub pen: Pen,
     pub marker: Marker,
 }
 
-/// Chooses what was left to choose: series after series takes the next colour, dashes and marker.
+/// Completes the looks: each series without a colour of its own takes the next colour, with its dashes and
+/// marker.
 pub(super) fn looks(series: &[Series]) -> Vec<SeriesLook> {
     use Marker::{Circle, Cross, Diamond, FilledSquare, OpenCircle, Square, Triangle};
     const STROKES: [Stroke; 4] = [Stroke::Solid, Stroke::Dashed, Stroke::DashDot, Stroke::Dotted];

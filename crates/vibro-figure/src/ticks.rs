@@ -1,4 +1,4 @@
-//! Where an axis has its ticks, and what they say.
+//! Places and labels of the ticks of an axis.
 
 use vibro_record::units::notation::{engineering, fixed, power_of_ten};
 
@@ -16,7 +16,7 @@ pub(super) struct Ticks {
     pub minor: Vec<f64>,
 }
 
-/// Step `mantissa`·10^`exponent` that is divided in `parts` by minor ticks.
+/// A step of `mantissa`·10^`exponent`, divided into `parts` by minor ticks.
 #[derive(Debug, Clone, Copy)]
 struct TickStep {
     mantissa: i32,
@@ -24,27 +24,28 @@ struct TickStep {
     parts: i32,
 }
 
-/// Steps of 1, 2 and 5 times a power of ten.
+/// Steps of 1, 2 and 5 times a power of ten, each with its number of parts.
 const DECIMAL: [(i32, i32); 3] = [(1, 5), (2, 4), (5, 5)];
-/// Steps of angles in degrees, once an axis spans more than a few of them.
+/// Steps of angles in degrees, for axes of 20° to 3600°, each with its number of parts.
 const DEGREES: [(i32, i32); 9] =
     [(5, 5), (10, 5), (15, 3), (30, 3), (45, 3), (90, 3), (180, 2), (360, 4), (720, 2)];
 
 impl TickStep {
-    /// `count` steps. Division by a positive power of ten rounds once, so that 3·10⁻¹ is the number nearest
-    /// to 0.3.
+    /// The value of `count` steps. Division by a positive power of ten rounds once, so that 3·10⁻¹ is the
+    /// double nearest to 0.3.
     fn times(self, count: f64) -> f64 {
         let whole = count * f64::from(self.mantissa);
         let power = 10f64.powi(self.exponent.abs());
         if self.exponent < 0 { whole / power } else { whole * power }
     }
 
-    /// Counts of the step from `lo` to `hi`; a limit that misses one by rounding only has its tick.
+    /// Multiples of the step from `lo` to `hi`, as counts; a limit that misses one by rounding only includes
+    /// it.
     fn within(self, lo: f64, hi: f64) -> Vec<f64> {
         let first = (lo / self.times(1.0) - SLACK).ceil();
         let last = (hi / self.times(1.0) + SLACK).floor();
         let count = if last < first { 0 } else { (last - first) as usize + 1 };
-        // More than these are seen by nobody: the step is too fine.
+        // With more ticks than these the step is too fine to be used.
         (0..count.min(200)).map(|i| first + i as f64).collect()
     }
 
@@ -54,11 +55,12 @@ impl TickStep {
     }
 }
 
-/// What rounding may do to a limit, in steps or decades.
+/// Allowance for the rounding of a limit, in steps or decades.
 const SLACK: f64 = 1e-9;
 
-/// Ticks of a linear axis: at most `most`, and at least two where `most` allows, at multiples of 1, 2 or 5
-/// times a power of ten (of 15°, 30°, 45°, … where `degrees`). Labels are the values divided by 10^`power`.
+/// Ticks of a linear axis at multiples of 1, 2 or 5 times a power of ten (of 15°, 30°, 45°, … where
+/// `degrees`): at most `most`, and at least two where `most` allows. Labels are the values divided by
+/// 10^`power`.
 pub(super) fn linear(lo: f64, hi: f64, most: usize, power: i32, degrees: bool) -> Ticks {
     let span = hi - lo;
     if !(span > 0.0 && span.is_finite()) {
@@ -90,7 +92,7 @@ pub(super) fn linear(lo: f64, hi: f64, most: usize, power: i32, degrees: bool) -
 }
 
 /// Ticks of a logarithmic axis between the decades `lo` and `hi` (log₁₀ of its limits): powers of ten, with 2
-/// and 5 between them on a short axis, and round numbers on one that holds no two of these.
+/// and 5 between them on a short axis. An axis that contains fewer than two of these has round numbers.
 pub(super) fn logarithmic(lo: f64, hi: f64, most: usize) -> Ticks {
     if !(hi > lo && (hi - lo).is_finite()) {
         return Ticks::default();
@@ -105,7 +107,7 @@ pub(super) fn logarithmic(lo: f64, hi: f64, most: usize) -> Ticks {
             1..=9 => &[1],
             _ => &[],
         };
-        // A stride may jump over all but one decade: then the two ends are named.
+        // A stride may skip all but one decade: then the first and the last are labelled.
         let named = every(stride);
         (if named.len() < 2 { vec![first, last] } else { named }, multiples(lo, hi, digits))
     } else if (2..=most).contains(&short.len()) {
@@ -113,7 +115,7 @@ pub(super) fn logarithmic(lo: f64, hi: f64, most: usize) -> Ticks {
     } else {
         return of_values(lo, hi, most);
     };
-    // Plain decimals rather than powers of ten where these are short.
+    // Plain decimals instead of powers of ten where they are short.
     let plain = lo > -3.5 && hi < 4.5;
     let label = |&(decade, digit): &(i32, i32)| match digit {
         _ if plain => {
@@ -128,7 +130,7 @@ pub(super) fn logarithmic(lo: f64, hi: f64, most: usize) -> Ticks {
     Ticks { major, minor }
 }
 
-/// Round values at their logarithms, on less than half a decade.
+/// Ticks at round values on less than half a decade, placed at their logarithms.
 fn of_values(lo: f64, hi: f64, most: usize) -> Ticks {
     let ten = |u: f64| 10f64.powf(u.clamp(-300.0, 300.0));
     let power = engineering(ten(hi));
@@ -143,7 +145,7 @@ fn of_values(lo: f64, hi: f64, most: usize) -> Ticks {
     ticks
 }
 
-/// Decade and digit of every such multiple of a power of ten from `lo` to `hi`.
+/// Decade and digit of every multiple of a power of ten by one of `digits`, from `lo` to `hi`.
 fn multiples(lo: f64, hi: f64, digits: &[i32]) -> Vec<(i32, i32)> {
     ((lo - SLACK).floor() as i32..=hi.ceil() as i32)
         .flat_map(|e| digits.iter().map(move |&m| (e, m)))
@@ -151,7 +153,7 @@ fn multiples(lo: f64, hi: f64, digits: &[i32]) -> Vec<(i32, i32)> {
         .collect()
 }
 
-/// Place of a digit of a decade.
+/// Place of a digit in a decade, as log₁₀.
 fn place((decade, digit): (i32, i32)) -> f64 {
     f64::from(decade) + f64::from(digit).log10()
 }
@@ -165,7 +167,7 @@ mod tests {
         ticks.major.iter().map(|t| t.label.as_str()).collect()
     }
 
-    /// What holds for the ticks of every axis.
+    /// Conditions that the ticks of every axis meet.
     fn sound(ticks: &Ticks, lo: f64, hi: f64, most: usize) {
         let at: Vec<f64> = ticks.major.iter().map(|t| t.at).collect();
         assert!((2..=most.max(5)).contains(&at.len()), "{at:?} between {lo} and {hi}");

@@ -1,4 +1,5 @@
-//! Spectra behind each other: frequency to the right, excitation frequency to the back, amplitude up.
+//! Waterfalls: spectra one behind the other, frequency to the right, excitation frequency to the back,
+//! amplitude up.
 
 use crate::style::{DESCENT, FLOOR, FRAME, GAP, LARGE, LEADING, SMALL, TICK, TICKS};
 use crate::{
@@ -9,19 +10,19 @@ use ndarray::ArrayRef2;
 use serde::{Deserialize, Serialize};
 use vibro_record::Result;
 
-/// Room for numbers and a name at either side, before these are known.
+/// Space in points for numbers and a name on either side, before their widths are known.
 const SIDE: f64 = 34.0;
 
-/// How far a spectrum may be moved to have fewer points: a sixth of a dot at 300 dots per inch.
+/// Largest shift in points of a line that is thinned to fewer points: a sixth of a dot at 300 dots per inch.
 const TOLERANCE: f64 = 0.04;
 
-/// A waterfall in the unit cube: frequency to the right, excitation to the back, magnitude up.
+/// A waterfall scaled to the unit cube: frequency to the right, excitation to the back, magnitude up.
 #[derive(Debug, Clone)]
 struct Cube {
     x: Axis,
     depth: Axis,
     up: Axis,
-    /// Depth of each spectrum, from front to back, and its line; NaN where it is missing.
+    /// Depth of each spectrum, from front to back, and its points; NaN where a line is missing.
     spectra: Vec<(f64, Vec<Point>)>,
 }
 
@@ -34,14 +35,13 @@ pub struct Waterfall {
     height: AxisSpec,
     pub(super) frequency: Vec<f64>,
     pub(super) rows: Vec<(f64, Vec<f64>)>,
-    /// Name of the record whose spectra it shows: a line of that name on the page leads to them.
+    /// Name of the record whose spectra are shown: a line of that name on the page links to them.
     pub(super) record: String,
 }
 
 impl Waterfall {
     /// Spectra `magnitude`, one row for each of `excitation` and one column for each of `frequency` (both in
-    /// Hz), in the unit of `height`. A missing line is NaN and leaves a gap; rows stand in the order of their
-    /// excitation.
+    /// Hz), in the unit of `height`. A missing value is NaN and leaves a gap. Rows are sorted by excitation.
     ///
     /// # Errors
     /// If the shape of `magnitude` is not (excitations, frequencies), or the frequencies do not ascend.
@@ -64,12 +64,12 @@ impl Waterfall {
         Ok(Waterfall { x: AxisSpec::frequency(), height, frequency, rows, record })
     }
 
-    /// Names the record whose spectra it shows, as the lines of other figures name it.
+    /// Names the record whose spectra are shown, as the lines of other figures name it.
     pub fn of(self, record: impl Into<String>) -> Waterfall {
         Waterfall { record: record.into(), ..self }
     }
 
-    /// Shows this range of frequencies (Hz) only.
+    /// Shows only this range of frequencies in Hz.
     pub fn frequencies(self, low: f64, high: f64) -> Waterfall {
         Waterfall { x: self.x.limits(low, high), ..self }
     }
@@ -78,7 +78,7 @@ impl Waterfall {
     pub(super) fn axes(&self) -> Option<[Axis; 3]> {
         let x = Axis::new(&self.x, Extent::of(self.x.scale, self.frequency.iter().copied()), Room::Tight)?;
         let depths = Extent::of(Scale::Linear, self.rows.iter().map(|r| r.0));
-        // Not on the axes, so that the outer spectra can be read.
+        // With a margin at both ends, so that the outer spectra do not coincide with the axes.
         let depth = Axis::new(&AxisSpec::new("Excitation frequency", "Hz"), depths, Room::Margin)?;
         let seen = |axis: &Axis, value: f64| (0.0..=1.0).contains(&axis.at(value));
         let shown = self.rows.iter().filter(|row| seen(&depth, row.0));
@@ -89,7 +89,7 @@ impl Waterfall {
         Some([x, depth, up])
     }
 
-    /// Brings everything to the scale of the axes; `None` where there is nothing to show.
+    /// Scales everything to the axes; `None` where there is nothing to show.
     fn cube(&self) -> Option<Cube> {
         let [x, depth, up] = self.axes()?;
         let shown = |axis: &Axis, value: f64| Some(axis.at(value)).filter(|at| (0.0..=1.0).contains(at));
@@ -104,7 +104,7 @@ impl Waterfall {
         Some(Cube { x, depth, up, spectra })
     }
 
-    /// Draws it into a cell of the page.
+    /// Draws the waterfall into a cell of the page.
     pub(super) fn draw(&self, canvas: &mut Canvas, cell: Rect) {
         let bottom = 2.0 * GAP + LEADING + 1.3 * LARGE;
         let framed = |left: f64, right: f64| Rect {
@@ -118,7 +118,7 @@ impl Waterfall {
             canvas.rect(rough, None, Some(FRAME));
             return canvas.label("no data", rough.middle(), LARGE, Anchor::Middle);
         };
-        // With the numbers known, the room beside them is too, and that of the names beyond them.
+        // Drawn with the space that the numbers and names need, now that their widths are known.
         let sheet = Sheet::new(&cube, rough);
         let numbers = |axis: &Axis, length: f64| TICK + 2.0 + frame::widest(&frame::upward(axis, length));
         let left = numbers(&cube.up, sheet.rise) + GAP + DESCENT + LARGE;
@@ -129,20 +129,20 @@ impl Waterfall {
     }
 }
 
-/// A cube in its frame.
+/// A cube with its place on the page, in points.
 struct Sheet<'a> {
     cube: &'a Cube,
     frame: Rect,
     /// Width of a spectrum.
     along: f64,
-    /// Way of the back edge to the right and up.
+    /// Horizontal extent of the back edge, and its height.
     back: Point,
     /// Height of the amplitude axis.
     rise: f64,
 }
 
 impl<'a> Sheet<'a> {
-    /// Fills the frame: where no spectrum reaches its top, all is drawn that much higher.
+    /// Fills the frame: where no spectrum reaches its top, heights and depth are stretched by up to 1.6.
     fn new(cube: &'a Cube, frame: Rect) -> Sheet<'a> {
         let (w, h) = (frame.w, frame.h);
         let tops =
@@ -157,14 +157,14 @@ impl<'a> Sheet<'a> {
         (self.frame.x + right, self.frame.bottom() - depth * self.back.1 - up * self.rise)
     }
 
-    /// Draws from back to front: each spectrum is white below its line and hides what stands behind it.
+    /// Draws from back to front: each spectrum is white below its line and hides those behind it.
     fn draw_spectra(&self, canvas: &mut Canvas) {
         let ticks = frame::across(&self.cube.x, self.along);
         let across = ticks.major.iter().map(|tick| self.cube.x.at_scaled(tick.at)).chain([0.0, 1.0]);
         let floor = across.map(|x| vec![self.at(x, 0.0, 0.0), self.at(x, 1.0, 0.0)]);
         let back = vec![self.at(0.0, 1.0, 0.0), self.at(1.0, 1.0, 0.0)];
         canvas.lines(&floor.chain([back]).collect::<Vec<_>>(), FLOOR);
-        // The denser the spectra stand, the thinner they are.
+        // The more spectra, the thinner their lines.
         let width = (0.25 * self.back.1 / self.cube.spectra.len() as f64).clamp(0.3, 0.6);
         for (depth, line) in self.cube.spectra.iter().rev() {
             for run in line.split(|p| p.1.is_nan()).filter(|run| run.len() > 1) {
@@ -196,7 +196,7 @@ impl<'a> Sheet<'a> {
         let (name, size) = fitted(&x.title, LARGE, self.along + 2.0 * LEADING);
         let below = self.frame.bottom() + TICK + 2.0 + LEADING + 0.8 * LARGE;
         canvas.label(&name, (self.frame.x + self.along / 2.0, below), size, Anchor::Middle);
-        // Along the axis to the back, clear of the lower right corners of its numbers.
+        // Beside the axis to the back, clear of the lower right corners of its numbers.
         let length = self.back.0.hypot(self.back.1).max(1.0);
         let (right, rise) = (self.back.0 / length, self.back.1 / length);
         let corner = (TICK + 2.0 + frame::widest(&tz)) * rise + font::DIGIT_HEIGHT * SMALL / 2.0 * right;

@@ -1,12 +1,12 @@
-//! Bisection: where between two arguments something ceases to hold.
+//! Bisection: the border between arguments at which a condition holds and others at which it does not.
 
-/// Halvings after which only rounding is left of an interval between numbers of one size: 52 binary digits,
-/// and eight for a border that is that much smaller than the interval.
+/// Halvings down to rounding for arguments of one magnitude: 52 binary digits, and eight for a border up to
+/// 256 times smaller than the interval.
 const TO_ROUNDING: usize = 60;
 
-/// What is left of the interval from `inside`, where `holds` is true, to `outside`, where it is not, after so
-/// many halvings: the last argument inside and the first one outside that were found. Either may be the
-/// larger. Ends early where no number lies between.
+/// Halves the interval from `inside`, where `holds` is true, to `outside`, where it is not, this many times.
+/// Returns the last argument inside and the first one outside that were found. Either may be the larger. Ends
+/// early where no number lies between.
 ///
 /// ```
 /// use vibro_math::bisected;
@@ -22,7 +22,7 @@ pub fn bisected(
     try_bisected(inside, outside, halvings, |x| Some(holds(x))).unwrap_or((inside, outside))
 }
 
-/// As [`bisected`]; `None` as soon as `holds` cannot tell.
+/// As [`bisected`]; `None` as soon as `holds` gives no answer.
 pub fn try_bisected(
     mut inside: f64,
     mut outside: f64,
@@ -43,7 +43,7 @@ pub fn try_bisected(
     Some((inside, outside))
 }
 
-/// The place between `inside` and `outside` up to which `holds`, to rounding.
+/// The argument between `inside` and `outside` up to which `holds` is true, to rounding.
 ///
 /// ```
 /// let root = vibro_math::border(1.0, 2.0, |x| x * x < 2.0);
@@ -60,7 +60,7 @@ mod tests {
 
     #[test]
     fn either_end_may_be_the_larger() {
-        // A power of two times the interval: no rounding.
+        // Halving an interval between whole numbers is exact.
         assert_eq!(bisected(0.0, 1.0, 3, |x| x < 0.3), (0.25, 0.375));
         assert_eq!(bisected(1.0, 0.0, 3, |x| x > 0.3), (0.375, 0.25));
     }
@@ -72,7 +72,7 @@ mod tests {
             calls += 1;
             x < 1.5
         });
-        // 52 binary digits between 1 and 2, after each of which one end is another.
+        // 52 binary digits between 1 and 2, one for each halving.
         assert!(below.next_up() == above && calls == 52, "{below} {above} {calls}");
     }
 

@@ -1,4 +1,4 @@
-//! Sine and cosine together, without a branch, fast enough for the inside of a root search.
+//! Sine and cosine together, without a branch, fast enough for the inner loop of a root search.
 //!
 //! The argument is reduced by π/2 in two parts (W. J. Cody and W. Waite, *Software Manual for the Elementary
 //! Functions*, 1980), the rest lies in ±π/4, where the polynomials of fdlibm (`k_sin.c` and `k_cos.c`, Sun
@@ -7,13 +7,13 @@
 
 /// 2/π.
 const PER_QUARTER: f64 = std::f64::consts::FRAC_2_PI;
-/// The first 33 bits of π/2: a multiple below 2²⁰ is exact.
+/// The first 33 bits of π/2: its multiples below 2²⁰ are exact.
 const QUARTER: f64 = 1.570_796_326_734_125_6;
 /// π/2 less [`QUARTER`].
 const QUARTER_REST: f64 = 6.077_100_506_506_192e-11;
-/// Beyond this the system's functions are called.
+/// Arguments beyond this are left to the system's functions.
 const FAR: f64 = 1e6;
-/// Added and taken away again it leaves the nearest whole number, for numbers below 2⁵¹.
+/// Adding and subtracting it rounds to the nearest whole number, for numbers below 2⁵¹.
 const ROUND: f64 = 6_755_399_441_055_744.0;
 
 /// sin x and cos x.
@@ -31,7 +31,7 @@ fn reduced(x: f64) -> (f64, f64) {
     let y = left - rest;
     let tail = (left - y) - rest;
     let z = y * y;
-    // Both polynomials in pairs of terms, which a processor works on at once.
+    // Both polynomials in pairs of terms, which a processor computes in parallel.
     let z2 = z * z;
     let high = (8.333_333_333_322_49e-3 + z * -1.984_126_982_985_795e-4)
         + z2 * ((2.755_731_370_707_006_8e-6 + z * -2.505_076_025_340_686_3e-8)
@@ -45,7 +45,8 @@ fn reduced(x: f64) -> (f64, f64) {
     let half = 0.5 * z;
     let w = 1.0 - half;
     let cos = w + (((1.0 - w) - half) + (z * low - y * tail));
-    // The last two bits of the whole number tell the quarter; bits are chosen and signs set without a branch.
+    // The last two bits of the whole number give the quadrant; values are swapped and signs set without a
+    // branch.
     let quarter = shifted.to_bits();
     let (sin, cos) = (sin.to_bits(), cos.to_bits());
     let swap = (sin ^ cos) & 0_u64.wrapping_sub(quarter & 1);
@@ -60,7 +61,7 @@ mod tests {
 
     #[test]
     fn it_is_the_systems_sine_and_cosine() {
-        // The system's values are right to an ulp of theirs, these to 2ε/3: together below 1.5ε.
+        // The system's values are accurate to one of their ulps, these to 2ε/3: together below 1.5ε.
         let check = |x: f64| {
             let (sin, cos) = sin_cos(x);
             let (s, c) = x.sin_cos();

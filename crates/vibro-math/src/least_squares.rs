@@ -1,6 +1,6 @@
-//! Nonlinear least squares: the MINPACK algorithm of the crate `levenberg-marquardt`, with what it leaves to
-//! its caller: a Jacobian by central differences, the covariance of the parameters, and the direction that
-//! the data do not determine.
+//! Nonlinear least squares: the MINPACK algorithm of the crate `levenberg-marquardt`. Added here are a
+//! Jacobian by central differences, the covariance of the parameters, and the parameters that the data do not
+//! determine.
 
 use levenberg_marquardt::{LeastSquaresProblem, LevenbergMarquardt};
 use nalgebra::storage::Owned;
@@ -12,11 +12,11 @@ use vibro_record::{Error, Result};
 pub struct Fit {
     /// Parameters at the minimum, in the order of the start.
     pub parameters: Vec<f64>,
-    /// Residuals there, as the model gave them.
+    /// Residuals at the minimum.
     pub residuals: Vec<f64>,
     /// (JᵀJ)⁻¹: covariance of the parameters where the residuals have unit variance.
     pub cofactor: DMatrix<f64>,
-    /// Whether a minimum was reached; else the parameters are the best that were met.
+    /// Whether a minimum was reached; else the parameters are the best ones found.
     pub converged: bool,
 }
 
@@ -26,7 +26,7 @@ impl Fit {
         self.residuals.iter().map(|r| r * r).sum()
     }
 
-    /// Residuals less parameters.
+    /// Number of residuals less number of parameters.
     pub fn degrees_of_freedom(&self) -> usize {
         self.residuals.len().saturating_sub(self.parameters.len())
     }
@@ -39,8 +39,7 @@ impl Fit {
         }
     }
 
-    /// Covariance of parameters `i` and `j`, s²(JᵀJ)⁻¹ᵢⱼ: for residuals of one unknown variance,
-    /// uncorrelated.
+    /// Covariance of parameters `i` and `j`, s²(JᵀJ)⁻¹ᵢⱼ, for uncorrelated residuals of one unknown variance.
     ///
     /// # Panics
     /// If `i` or `j` is no parameter.
@@ -86,26 +85,26 @@ pub fn least_squares(
     Ok(Fit { cofactor: cofactor(jacobian)?, parameters, residuals, converged })
 }
 
-/// Parameters that minimise a sum of squared residuals, with no word on how well they are determined.
+/// Parameters that minimise a sum of squared residuals, without their uncertainty.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Minimum {
     /// Parameters at the minimum, in the order of the start.
     pub parameters: Vec<f64>,
-    /// Residuals there.
+    /// Residuals at the minimum.
     pub residuals: Vec<f64>,
-    /// ∂rᵢ/∂pⱼ there.
+    /// ∂rᵢ/∂pⱼ at the minimum.
     pub jacobian: DMatrix<f64>,
-    /// Whether a minimum was reached; else the parameters are the best that were met.
+    /// Whether a minimum was reached; else the parameters are the best ones found.
     pub converged: bool,
 }
 
-/// As [`least_squares`], for callers that look into the Jacobian themselves: a combination of parameters on
-/// which nothing depends is no error, and stays about where it started. With a `gain`, such as a thousandth,
-/// no farther than to where a step gains less than that, over twenty evaluations a parameter at most: for
-/// searches that go on from there.
+/// As [`least_squares`], for callers that examine the Jacobian themselves: a combination of parameters on
+/// which no residual depends is no error, and stays near its start. With a `gain`, such as 0.001, it stops
+/// where a step changes sum or parameters by less than this part, after about twenty evaluations a parameter
+/// at the latest: for searches that go on from there.
 ///
 /// # Errors
-/// As [`least_squares`], but for that.
+/// As [`least_squares`], except for parameters that the data do not determine.
 pub fn minimise(
     residuals: impl Fn(&[f64], &mut [f64]),
     n: usize,

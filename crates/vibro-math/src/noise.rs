@@ -1,6 +1,6 @@
-//! Random numbers with a seed.
+//! Random numbers from a seed.
 
-/// Random numbers that are the same for a seed on every machine: uniform ones by splitmix64 (Steele, Lea and
+/// Random numbers that depend on the seed only, on every machine: uniform ones by splitmix64 (Steele, Lea and
 /// Flood 2014), normal ones by Box and Muller (1958).
 ///
 /// ```
@@ -13,18 +13,18 @@
 pub struct Noise(u64);
 
 impl Noise {
-    /// Numbers of this seed.
+    /// The numbers of this seed.
     pub fn new(seed: u64) -> Noise {
         Noise::from_state(seed.wrapping_mul(0x2545_F491_4F6C_DD1D))
     }
 
-    /// Numbers behind this state of splitmix64, as other programs count them. Those of neighbouring states
-    /// overlap where the states are a multiple of its step apart.
+    /// The numbers after this state of splitmix64, by which other programs count. The numbers of two states
+    /// overlap where the states differ by a multiple of the generator's step.
     pub fn from_state(state: u64) -> Noise {
         Noise(state)
     }
 
-    /// Uniform from 0, which is a value, to 1, which is none.
+    /// Uniform in 0 ≤ u < 1.
     pub fn uniform(&mut self) -> f64 {
         self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
         let mut z = self.0;

@@ -17,7 +17,7 @@ pub struct Oscillator {
     lambda2: f64,
     /// |λ| in 1/s.
     lambda: f64,
-    /// b + √(b² + Ω²) in 1/s.
+    /// b + √(b² + Ω²) in 1/s, see [`Oscillator::gain`].
     gain: f64,
     /// 1/Ω² in s².
     compliance: f64,
@@ -25,7 +25,8 @@ pub struct Oscillator {
     slow: f64,
 }
 
-/// Below this |λ²|t² the kernels are summed as series. Three terms then leave out less than 1e-18/720.
+/// Below this |λ²|t² the kernels are summed as series, whose first three terms then leave out less than
+/// 1e-18/720.
 const SERIES: f64 = 1e-6;
 
 impl Oscillator {
@@ -44,8 +45,8 @@ impl Oscillator {
         self.b
     }
 
-    /// The slowest rate in 1/s at which its free motion dies away: b, or that of the slower of two decays
-    /// above critical damping.
+    /// The slowest rate in 1/s at which the free motion decays: b, or above critical damping the slower of
+    /// its two decays.
     pub fn slowest(&self) -> f64 {
         self.slow
     }
@@ -55,8 +56,8 @@ impl Oscillator {
         self.omega2
     }
 
-    /// The most by which a bound of [`Oscillator::bound`] grows from a motion to its derivative, b + √(b² +
-    /// Ω²) in 1/s.
+    /// b + √(b² + Ω²) in 1/s: largest factor from the bound ([`Oscillator::bound`]) of a motion to that of
+    /// its derivative.
     ///
     /// In the norm √(v² + Ω²x²) the derivative is the matrix [[0, Ω], [−Ω, −2b]], whose singular values are
     /// √(b² + Ω²) ± b.
@@ -83,7 +84,7 @@ impl Oscillator {
         }
     }
 
-    /// Displacement and velocity at `t` ≥ 0 after displacement `x` and velocity `v`.
+    /// Displacement and velocity at `t` ≥ 0 in s after displacement `x` in m and velocity `v` in m/s.
     #[inline]
     pub fn free(&self, x: f64, v: f64, t: f64) -> (f64, f64) {
         let (c, s) = self.kernels(t);
@@ -96,21 +97,21 @@ impl Oscillator {
         -self.omega2 * x - 2.0 * self.b * v
     }
 
-    /// A bound on |x| for ever after displacement `x` and velocity `v`.
+    /// Bound on |x| at all later times after displacement `x` and velocity `v`.
     ///
     /// The energy v² + Ω²x² of a free motion never grows, so x² ≤ x₀² + (v₀/Ω)². Derivatives of a free motion
-    /// are free motions too, so the same bound serves them, at any damping, with no case for λ near zero.
+    /// are free motions, too: the same bound holds for them, at any damping, with no case for λ near zero.
     /// Infinite without a spring, where the displacement has no such bound.
     #[inline]
     pub fn bound(&self, x: f64, v: f64) -> f64 {
         if v == 0.0 { x.abs() } else { (x * x + v * v * self.compliance).sqrt() }
     }
 
-    /// Times in `0 < t < until` at which the free motion from displacement `x` and velocity `v` passes
+    /// Times in `0 < t < until` in s at which the free motion from displacement `x` and velocity `v` passes
     /// through zero, in their order.
     ///
-    /// x₀ cos λt + (v₀ + bx₀) sin(λt)/λ = 0, so tan λt = −x₀λ/(v₀ + bx₀): equal distances π/λ below critical
-    /// damping, at most one passage from there on.
+    /// x₀ cos λt + (v₀ + bx₀) sin(λt)/λ = 0, so tan λt = −x₀λ/(v₀ + bx₀): passages π/λ apart below critical
+    /// damping, at most one from critical damping on.
     pub fn passages(&self, x: f64, v: f64, until: f64) -> impl Iterator<Item = f64> + use<> {
         let (lambda, w) = (self.lambda, v + self.b * x);
         let (first, apart) = if x == 0.0 && w == 0.0 {
@@ -123,11 +124,12 @@ impl Oscillator {
             ((-x * lambda / w).atanh() / lambda, f64::INFINITY)
         };
         let passage = move |n: u32| if n == 0 { first } else { first + f64::from(n) * apart };
-        // No number is no passage, and the last.
+        // NaN is no passage and ends the list.
         (0..).map(passage).take_while(move |t| *t < until).filter(|t| *t > 0.0)
     }
 
-    /// 1 − C(T) and det(I − Φ(T)) = (1 − C)² + λ²S², both without cancellation at small damping.
+    /// 1 − C(T) and det(I − Φ(T)) = (1 − C)² + λ²S² over a period T in s, both without cancellation at small
+    /// damping; Φ is the matrix of the free motion.
     ///
     /// The determinant vanishes only without damping and with λT a whole multiple of 2π.
     pub fn closing(&self, period: f64) -> (f64, f64) {
@@ -211,7 +213,7 @@ mod tests {
 
     #[test]
     fn the_series_joins_the_closed_forms() {
-        // λ²t² on both sides of the switch, under- and overdamped: C and S change by no more than z does.
+        // λ²t² on both sides of the switch, under- and overdamped: C and S change by no more than λ²t² does.
         for sign in [1.0, -1.0] {
             let b = 3.0;
             let make = |z: f64| Oscillator::new(1.0, 2.0 * b, b * b + sign * z);
@@ -265,12 +267,12 @@ mod tests {
             for (x, v) in [(1e-3, 0.2), (1e-3, -0.5), (-2e-3, 0.01), (0.0, 0.3), (1e-3, 0.0), (0.0, 0.0)] {
                 let found: Vec<f64> = oscillator.passages(x, v, 1.0).collect();
                 for t in &found {
-                    // Rounding of λt, times the speed, against the size of the motion.
+                    // Allowed: the rounding of λt times the speed, and that of the size of the motion.
                     let (at, speed) = oscillator.free(x, v, *t);
                     let size = oscillator.bound(x, v);
                     assert!(at.abs() <= 64.0 * f64::EPSILON * (size + speed.abs() * t), "c {c}: {at} at {t}");
                 }
-                // Signs between samples 0.1 ms apart, where the period is 0.19 s.
+                // Counts changes of sign between samples 0.1 ms apart; the period is 0.19 s.
                 let at = |i: u32| oscillator.free(x, v, f64::from(i) * 1e-4).0;
                 let changes = (1..10_000).filter(|i| at(*i) * at(i + 1) < 0.0).count();
                 assert_eq!(found.len(), changes, "c {c}, {x} m, {v} m/s: {found:?}");

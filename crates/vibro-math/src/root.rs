@@ -1,4 +1,4 @@
-//! Roots that no step can pass, found with a bound on the curvature.
+//! Roots of functions with bounded curvature, found by steps that cannot pass a root.
 //!
 //! A function with value f ≥ 0, slope ḟ and |f̈| ≤ M for all later arguments stays above f + ḟh − Mh²/2, so
 //! the first root of that parabola, h = 2f/(√(ḟ² + 2Mf) − ḟ) for ḟ < 0 and (ḟ + √(ḟ² + 2Mf))/M otherwise, is
@@ -61,7 +61,7 @@ impl Bent {
     fn step(self, limits: Limits) -> f64 {
         let value = self.value.max(0.0);
         let safe = fall(value, self.slope, limits.curvature);
-        // Near a root Newton's step is known before the safe one.
+        // Near a root it lies within twice Newton's step; that reach is tried first.
         let mut reach = if self.slope < 0.0 { -2.0 * value / self.slope } else { 2.0 * safe };
         let mut step = safe;
         for _ in 0..3 {
@@ -80,7 +80,7 @@ impl Bent {
         step
     }
 
-    /// The root of f + ḟh + f̈h²/2 for ḟ < 0, where it is a clear one: at half the slope or more.
+    /// The root of f + ḟh + f̈h²/2 for ḟ < 0, where the slope at the root is at least half of ḟ.
     #[inline]
     fn clear_root(self) -> Option<f64> {
         let root = fall(self.value, self.slope, -self.bend);
@@ -88,12 +88,12 @@ impl Bent {
     }
 }
 
-/// The first root of f + ḟh − Kh²/2 behind 0, for f ≥ 0; ∞ if there is none.
+/// The first root of f + ḟh − Kh²/2 after 0, for f ≥ 0; ∞ if there is none.
 #[inline]
 fn fall(value: f64, slope: f64, bend: f64) -> f64 {
     let square = slope * slope + 2.0 * bend * value;
     if slope < 0.0 {
-        // Not a number, where the parabola has no root, becomes no limit.
+        // A parabola without a root, and NaN, set no limit.
         if square >= 0.0 { 2.0 * value / (square.sqrt() - slope) } else { f64::INFINITY }
     } else if bend > 0.0 {
         (slope + square.sqrt()) / bend
@@ -102,13 +102,13 @@ fn fall(value: f64, slope: f64, bend: f64) -> f64 {
     }
 }
 
-/// As [`first_fall`], for a function whose derivatives are known: fewer calls, and none for the last step.
+/// As [`first_fall`], for a function whose derivatives are known: it needs fewer calls, and none at the root.
 ///
-/// Returns the last argument called for and the step from there to the root. Over twice this step a Taylor
-/// series with five derivatives errs in f's slope by less than `rounding` (that of f's values) times M₃/M₂,
-/// and in f by less than `rounding`; the step is the root of the parabola through value, slope and bend, for
-/// the caller to refine. `limits` gives bounds from an argument on, and nothing where f stays above 0 for
-/// ever.
+/// Returns the last argument at which `f` was called and the step from there to the root. Over twice this
+/// step a Taylor series with five derivatives errs in f's slope by less than `rounding` (the error of f's
+/// values) times M₃/M₂, and in f by less than `rounding`. The step is the root of the parabola through value,
+/// slope and bend, for the caller to refine. `limits` gives bounds from an argument on, or `None` where f
+/// stays above 0 for ever.
 #[inline]
 pub fn first_landing(
     from: f64,
@@ -117,7 +117,7 @@ pub fn first_landing(
     mut f: impl FnMut(f64) -> Bent,
     mut limits: impl FnMut(f64) -> Option<Limits>,
 ) -> Option<(f64, f64)> {
-    /// Calls after which the bounds are taken anew: they fall as free motions die away.
+    /// Calls after which the bounds are computed again: they fall as free vibrations decay.
     const FRESH: u32 = 6;
     let mut bounds = limits(from)?;
     let mut calls = 0;
@@ -148,18 +148,18 @@ pub fn first_landing(
     })
 }
 
-/// What is seen of a function at an argument.
+/// What the value and the derivatives at one argument tell of the next root.
 pub(super) enum RootAhead {
-    /// A root so far ahead.
+    /// A root at this distance ahead.
     Root(f64),
-    /// No root is to come.
+    /// There is no further root.
     Never,
-    /// None within a step; whether the function falls.
+    /// No root within `step`; `falls` tells whether the function falls.
     Step { step: f64, falls: bool },
 }
 
-/// Goes from `from` to `to` by steps that pass no root: the last argument looked at, and how far ahead of it
-/// the root is.
+/// Goes from `from` to `to` by steps that pass no root. Returns the last argument looked at, and the distance
+/// from there to the root.
 #[inline]
 pub(super) fn walk(from: f64, to: f64, mut look: impl FnMut(f64) -> RootAhead) -> Option<(f64, f64)> {
     let mut t = from;
@@ -174,12 +174,12 @@ pub(super) fn walk(from: f64, to: f64, mut look: impl FnMut(f64) -> RootAhead) -
             if falls {
                 return Some((t, 0.0));
             }
-            // At rest on zero to the last digit: one digit on, where the curvature has shown its sign.
+            // At rest on zero to the last digit: goes on by one digit, until the curvature shows its sign.
             t += f64::EPSILON * t.abs().max(to - from);
         } else {
             t = next;
         }
-        // The last also where the function is not a number.
+        // Also ends where the function is not a number.
         if t > to || t.is_nan() {
             return None;
         }

@@ -6,9 +6,8 @@
 //!   Nørsett & Wanner 1993, *Solving Ordinary Differential Equations I*, II.5 and II.6; coefficients of their
 //!   program DOP853).
 //!
-//! A step is taken again with a smaller size until its estimated error is below the tolerance; its dense
-//! output is a polynomial in time, in which the first event is found by [`super::Polynomial`] without missing
-//! one.
+//! A step is repeated with a smaller size until its estimated error is below the tolerance. Its dense output
+//! is a polynomial in time, in which [`super::Polynomial`] finds the first event without missing one.
 
 mod dop853;
 mod dormand_prince;
@@ -19,7 +18,7 @@ pub use dormand_prince::DormandPrince;
 use super::Polynomial;
 use vibro_record::{Error, Result};
 
-/// Terms of a dense output, as a polynomial in the part of the step.
+/// Coefficients of a dense output, a polynomial in the time since the start of the step over its duration.
 pub(crate) const TERMS: usize = 8;
 
 /// Most stages of a scheme, those of its dense output included.
@@ -27,20 +26,20 @@ const STAGES: usize = 16;
 
 /// An embedded Runge–Kutta scheme.
 pub trait Scheme {
-    /// Places of the stages in the step, in parts of it.
+    /// Times of the stages since the start of the step, over its duration.
     const NODES: &'static [f64];
-    /// Weights of the stages before, for each stage but the first.
+    /// Weights of the earlier stages, for each stage but the first.
     const ROWS: &'static [&'static [f64]];
-    /// How many stages the step itself has; the stage after these is at its end, with the step's own weights.
+    /// Number of stages of the step itself; the stage after them is at its end, with the step's own weights.
     const STEP: usize;
     /// One over the order of the estimated error.
     const ROOT: f64;
 
-    /// Estimated error over tolerance, from the rates at the stages, the step, and the tolerated error of
-    /// each component.
+    /// Estimated error over tolerance, from the derivatives at the stages, the duration of the step, and the
+    /// tolerated error of each component.
     fn error<const N: usize>(rates: &[[f64; N]], step: f64, tolerated: &[f64; N]) -> f64;
 
-    /// Terms of the dense output.
+    /// Coefficients of the dense output.
     fn dense<const N: usize>(
         rates: &[[f64; N]],
         step: f64,
@@ -49,29 +48,30 @@ pub trait Scheme {
     ) -> [[f64; N]; TERMS];
 }
 
-/// Tolerated error of a step: `relative` times the size of a component, at least that of its `floor`.
+/// Tolerated error of a step: `relative` times the size of a component, or times its `floor` where that is
+/// larger.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Tolerance<const N: usize> {
     /// Relative error of a step; not below 1e-14.
     pub relative: f64,
-    /// Size of each component below which its error is not asked to fall further.
+    /// Size of each component below which its tolerated error does not fall further.
     pub floor: [f64; N],
 }
 
-/// One accepted step: its course by dense output.
+/// One accepted step, with the solution between its ends by dense output.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Step<const N: usize> {
-    /// Time at its start.
+    /// Time at its start in s.
     pub start: f64,
-    /// Its duration.
+    /// Its duration in s.
     pub duration: f64,
-    /// The solution at its end; more accurate than its dense output.
+    /// Solution at its end; more accurate than the dense output.
     pub end: [f64; N],
     terms: [[f64; N]; TERMS],
 }
 
 impl<const N: usize> Step<N> {
-    /// The solution at `t` after the start of the step.
+    /// The solution at the time `t` after the start of the step.
     pub fn at(&self, t: f64) -> [f64; N] {
         if t == self.duration {
             return self.end;
@@ -143,7 +143,7 @@ impl<S: Scheme, const N: usize> Integrator<S, N> {
         loop {
             let whole = step >= remaining;
             let h = step.min(remaining);
-            // A step too short for the clock, unless it is all that was asked for.
+            // A step that the time cannot resolve, unless it ends at `until`.
             if !whole && h <= 4.0 * f64::EPSILON * self.time.abs() || h.is_nan() || step < f64::MIN_POSITIVE {
                 return Err(Error::refused(format!(
                     "no step is small enough to integrate on from {} s with a relative error of {}",
@@ -163,7 +163,8 @@ impl<S: Scheme, const N: usize> Integrator<S, N> {
                 self.tolerance.relative * size
             });
             let error = S::error(&rates, h, &tolerated);
-            // 0.9 of what would just do, and never more than ten times or less than a fifth at once.
+            // 0.9 of the size that just meets the tolerance; at most ten times as large and at least a fifth
+            // at once.
             let factor = (0.9 * error.powf(-S::ROOT)).clamp(0.2, grow);
             if error <= 1.0 {
                 for stage in S::STEP + 1..S::NODES.len() {
@@ -175,12 +176,12 @@ impl<S: Scheme, const N: usize> Integrator<S, N> {
                 self.time = if whole { until } else { self.time + h };
                 self.y = end;
                 self.rate = rates[S::STEP];
-                // A step cut short by its end says nothing against the size before.
+                // A step cut short by `until` is no reason to reduce the step size.
                 self.step = if h < step { step.max(h * factor) } else { h * factor };
                 return Ok(taken);
             }
             grow = 1.0;
-            // Also where the error is not a number.
+            // The error may be NaN, too.
             step = h * if factor.is_nan() { 0.2 } else { factor };
         }
     }
@@ -191,7 +192,7 @@ impl<S: Scheme, const N: usize> Integrator<S, N> {
     }
 }
 
-/// Σ weights·rates of each component.
+/// Σ weights·derivatives, for each component.
 fn combine<const N: usize>(rates: &[[f64; N]], weights: &[f64]) -> [f64; N] {
     let mut sum = [0.0; N];
     for (rate, w) in rates.iter().zip(weights).filter(|(_, w)| **w != 0.0) {

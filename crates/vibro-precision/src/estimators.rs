@@ -1,6 +1,6 @@
-//! Estimators of what is measured, on records with a known truth.
+//! Estimators of measured quantities, on records with a known truth.
 //!
-//! What people write by hand stands beside the toolkit's own methods, over the same random records of fixed
+//! Common hand-written methods are compared with the toolkit's own, over the same random records of fixed
 //! seeds. Errors are root mean squares, so that they compare with the Cramér–Rao bound of the standard
 //! deviation.
 
@@ -29,14 +29,14 @@ pub(crate) fn scenes(quick: bool, progress: &mut dyn FnMut(&str)) -> Vec<Benchma
     all
 }
 
-/// What the estimators do at their borders; `quick` takes fewer records.
+/// The outcome of each estimator at each border; `quick` takes fewer records.
 ///
-/// An answer is right within three of its standard uncertainties; one without an uncertainty within what is
-/// the same for all methods of a border: half a line for a frequency, 5 % for an amplitude, 10 % for a
-/// damping ratio, 1 % for an impact frequency, 0.02 for ξ. It is refused where it is withheld, where a doubt
-/// takes its uncertainty away, and where its uncertainty is more than what is allowed. No doubt excuses
-/// an uncertainty that is stated. A method is wrong where more answers are off than chance allows, or one by
-/// more than 5.2 standard uncertainties: limits that methods whose errors are as they state them pass in
+/// An answer with an uncertainty is right within three of its standard uncertainties. One without is right
+/// within a limit that is the same for all methods of a border: half a line for a frequency, 5 % for an
+/// amplitude, 10 % for a damping ratio, 1 % for an impact frequency, 0.02 for ξ. It counts as refused where
+/// it is withheld, where a doubt removes its uncertainty, and where its uncertainty exceeds the limit. No
+/// doubt excuses a stated uncertainty. A method is wrong where more answers are off than chance allows, or
+/// one by more than 5.2 standard uncertainties: methods with correct uncertainties exceed these limits in
 /// fewer than one of a hundred full maps.
 pub fn failures(quick: bool) -> FailureMap {
     FailureMap::answered(Family::Estimators, questions(quick))
@@ -48,7 +48,7 @@ fn questions(quick: bool) -> Vec<BorderQuestion> {
     parts.iter().flat_map(|part| part(quick)).collect()
 }
 
-/// A scene of estimators: its texts, the bound, and what the methods made of it.
+/// A scene of estimators: its texts, its bound, and the results of the methods.
 fn scene(texts: [&str; 4], bound: f64, methods: Vec<MeasuredMethod>) -> BenchmarkScene {
     BenchmarkScene { bound: Some(bound), methods, ..BenchmarkScene::new(Family::Estimators, texts) }
 }
@@ -77,8 +77,8 @@ fn bounds(p: &[f64], steps: &[f64], noise: f64, model: impl Fn(&[f64]) -> Vec<f6
     (0..p.len()).map(|i| inverse.as_ref().map_or(f64::NAN, |m| m[(i, i)].sqrt() / size[i])).collect()
 }
 
-/// A sweep of one point, with the magnitudes of its force's lines where it was measured, or a known frequency
-/// in Hz.
+/// A sweep of one point, with the magnitudes of its force's spectral lines if measured, or with a known
+/// frequency in Hz.
 fn one_point(response: Spectrum, force: Option<Vec<f64>>, given: Option<f64>) -> Sweep {
     Sweep {
         name: String::new(),
@@ -109,12 +109,12 @@ mod tests {
         assert!(cells <= 500 && 2 * cells > 500, "{cells}");
     }
 
-    /// The whole map takes long: here the borders of one quantity stand for it.
+    /// The whole map takes long: the borders of one quantity are tested in its place.
     #[test]
     fn displacements_are_right_or_refused_at_their_borders() {
         let map = FailureMap::answered(Family::Estimators, integration::borders(true));
         assert_eq!(map.broken().collect::<Vec<_>>(), Vec::<&BorderCell>::new());
-        // Neither a map of refusals nor a check that all methods pass.
+        // Some answers must be right, and some methods must fail the check.
         let count =
             |ours, outcome| map.cells.iter().filter(|c| c.ours == ours && c.outcome == outcome).count();
         assert!(count(true, Outcome::Right) > 10, "{map:?}");
@@ -137,7 +137,7 @@ mod tests {
         let model = |p: &[f64]| (0..n).map(|i| p[0] * (TAU * p[1] * f64::from(i) + p[2]).cos()).collect();
         let found = bounds(&[1.0, 0.1234, 0.5], &[1e-4, 1e-8, 1e-4], sigma, model);
         let (eta, n) = (0.5 / (sigma * sigma), f64::from(n));
-        // The textbook leaves out the sums at twice the frequency: of the order 1/n.
+        // The textbook neglects the sums at twice the frequency, of the order 1/n.
         let expected = (12.0 / (eta * n * (n * n - 1.0))).sqrt() / TAU;
         assert!((found[1] / expected - 1.0).abs() < 5.0 / n, "{found:?} {expected}");
         assert!((found[0] / (1.0 / (n * eta).sqrt()) - 1.0).abs() < 5.0 / n);

@@ -1,4 +1,4 @@
-//! What methods do at the borders of what they can.
+//! The behaviour of methods at the borders of what they can do.
 
 use super::Family;
 use rayon::prelude::*;
@@ -7,21 +7,21 @@ use std::collections::HashSet;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use vibro_record::Error;
 
-/// What a method did at a border, told with the truth.
+/// Outcome of a method at a border, by comparison with the truth.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Outcome {
     /// The answer agrees with the truth within what the method states, or what the check allows.
     Right,
-    /// No answer, or none that claims to be one, and the reason is told.
+    /// No answer, or one that the method itself withholds or doubts; with the reason.
     Refused,
-    /// An answer further off than it allows for, without a word on what is wrong.
+    /// An answer further off than it allows for, without a warning.
     Wrong,
     /// No answer within the budget of steps.
     Stalled,
     /// It panicked.
     Crashed,
-    /// The scene is not asked of it, or its truth is not known; the reason is told.
+    /// Not tested: another kind of question, or no known truth; with the reason.
     #[serde(rename = "not asked")]
     NotAsked,
 }
@@ -33,30 +33,30 @@ impl Outcome {
     }
 }
 
-/// One method at one scene of a border.
+/// The outcome of one method at one scene of a border.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct BorderCell {
-    /// Which kind of method.
+    /// Kind of method.
     pub family: Family,
     /// Name of the method.
     pub method: String,
     /// Whether it is one of this library's.
     pub ours: bool,
-    /// The border, such as `grazing`, of estimators behind the quantity and a colon.
+    /// The border, such as `grazing`; for estimators after the quantity and a colon.
     pub border: String,
-    /// The scene at it, such as `1e-9 m`.
+    /// The scene at the border, such as `1e-9 m`.
     pub scene: String,
-    /// What came.
+    /// Outcome.
     pub outcome: Outcome,
-    /// By what that was decided, in a sentence.
+    /// Reason for the outcome, in a sentence.
     pub why: String,
-    /// Of estimators the answers that were held to the uncertainty that they state, and those that lie
-    /// beyond three of it.
+    /// For estimators: answers judged by their own uncertainty, and those of them that lie beyond three of
+    /// it.
     #[serde(skip)]
     pub stated: [usize; 2],
 }
 
-/// What each method did at each border, border by border.
+/// The outcome of each method at each border, border by border.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct FailureMap {
@@ -64,7 +64,7 @@ pub struct FailureMap {
     pub cells: Vec<BorderCell>,
 }
 
-/// What came of a question.
+/// Outcome of a question.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Found {
     pub outcome: Outcome,
@@ -77,7 +77,7 @@ impl Found {
         Found { outcome, why: why.into(), stated: [0; 2] }
     }
 
-    /// Right where `kept`, wrong otherwise.
+    /// Right if `kept`, else wrong.
     pub fn right_if(kept: bool, why: String) -> Found {
         Found::new(if kept { Outcome::Right } else { Outcome::Wrong }, why)
     }
@@ -95,7 +95,7 @@ impl From<Found> for Error {
     }
 }
 
-/// One cell of a map, still to be asked for.
+/// One cell of a map, with the question that is still to be answered.
 pub(crate) struct BorderQuestion {
     pub method: &'static str,
     pub ours: bool,
@@ -105,7 +105,7 @@ pub(crate) struct BorderQuestion {
 }
 
 impl FailureMap {
-    /// Asks every question, as many side by side as there are cores.
+    /// Answers every question, in parallel on all cores.
     pub(crate) fn answered(family: Family, questions: Vec<BorderQuestion>) -> FailureMap {
         let cell = |BorderQuestion { method, ours, border, scene, answer }: BorderQuestion| {
             let panicked = |_| Found::new(Outcome::Crashed, "it panicked, with its message printed");
@@ -117,7 +117,7 @@ impl FailureMap {
         FailureMap { cells: questions.into_par_iter().map(cell).collect() }
     }
 
-    /// Whether nothing was asked.
+    /// Whether there are no cells.
     pub fn is_empty(&self) -> bool {
         self.cells.is_empty()
     }
@@ -127,8 +127,8 @@ impl FailureMap {
         FailureMap { cells: self.cells.iter().filter(|c| c.family == family).cloned().collect() }
     }
 
-    /// The map of each quantity, which its borders name before a colon, with that name; the whole where none
-    /// does.
+    /// One map for each quantity, which its borders name before a colon, with that name; the whole map where
+    /// none does.
     pub fn parts(&self) -> Vec<(&str, FailureMap)> {
         fn split(cell: &BorderCell) -> (&str, &str) {
             cell.border.split_once(": ").unwrap_or(("", &cell.border))
@@ -141,13 +141,13 @@ impl FailureMap {
         parts.map(|cells| (split(&cells[0]).0, part(cells))).collect()
     }
 
-    /// Names of the methods, in the order in which they come.
+    /// Names of the methods, in the order of their first cells.
     pub fn methods(&self) -> Vec<&str> {
         let mut known = HashSet::new();
         self.cells.iter().map(|c| c.method.as_str()).filter(|name| known.insert(*name)).collect()
     }
 
-    /// The cells of this library's methods that should not be: wrong, stalled or crashed.
+    /// The cells of this library's methods with a forbidden outcome: wrong, stalled or crashed.
     pub fn broken(&self) -> impl Iterator<Item = &BorderCell> {
         let bad = [Outcome::Wrong, Outcome::Stalled, Outcome::Crashed];
         self.cells.iter().filter(move |c| c.ours && bad.contains(&c.outcome))

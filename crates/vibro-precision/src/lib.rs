@@ -1,9 +1,9 @@
-//! Speed against accuracy, and where methods break.
+//! Benchmarks: speed against accuracy of methods, and where they fail.
 //!
-//! A [`BenchmarkScene`] has a known truth; every method answers it with each of its settings, and error and
-//! time are measured together. A [`FailureMap`] tells what the methods do at the borders of what they can:
-//! right, refused with a reason, wrong without a word, stalled, crashed. Two families: models of the motion,
-//! and estimators of what is measured of it.
+//! A [`BenchmarkScene`] has a known truth. Every method answers it with each of its settings; error and time
+//! are measured together. A [`FailureMap`] shows how methods behave at the borders of what they can do:
+//! right, refused with a reason, wrong without a warning, stalled, crashed. There are two families: models of
+//! the motion, and estimators of measured quantities.
 //!
 //! ```no_run
 //! use vibro_precision::{Family, Results};
@@ -26,6 +26,6 @@ pub use failure::{BorderCell, FailureMap, Outcome};
 pub use results::Results;
 pub use scene::{BenchmarkScene, Family, MeasuredMethod};
 
-// What several modules speak of.
+// Used by several modules.
 use failure::{BorderQuestion, Found};
 use scene::timed;

@@ -1,4 +1,4 @@
-//! All that one run of the bench has measured, and what other programs have.
+//! The results of one run of the benchmarks, and those measured by other programs.
 
 use super::{BenchmarkScene, BorderCell, FailureMap, Family, MeasuredMethod};
 use serde::de::DeserializeOwned;
@@ -6,17 +6,17 @@ use serde::{Deserialize, Serialize};
 use std::path::Path;
 use vibro_record::{Error, Result};
 
-/// What `vibro precision --json` prints and reads again.
+/// The results that `vibro precision --json` prints and reads.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Results {
     /// The scenes.
     pub scenes: Vec<BenchmarkScene>,
-    /// What came at the borders; empty where they were not asked for.
+    /// Outcomes at the borders; empty where these were not run.
     #[serde(default, skip_serializing_if = "FailureMap::is_empty")]
     pub failures: FailureMap,
 }
 
-/// What another program has measured: one method with one setting on one scene.
+/// A result of another program: one method with one setting on one scene.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct AddedMeasurement {
@@ -31,7 +31,7 @@ struct AddedMeasurement {
 }
 
 impl Results {
-    /// Measures the scenes of a family, and its borders where `failures`; `quick` takes fewer settings,
+    /// Measures the scenes of a family, and with `failures` its borders; `quick` takes fewer settings,
     /// repeats, records and cycles.
     ///
     /// # Errors
@@ -60,10 +60,10 @@ impl Results {
         Ok(())
     }
 
-    /// Reads what an earlier run has printed, on another machine perhaps; fronts are marked anew.
+    /// Reads the results of an earlier run, perhaps of another machine, and marks the fronts again.
     ///
     /// # Errors
-    /// If the file cannot be read, is something else, or has a time or an error that is none.
+    /// If the file cannot be read or holds something else, or a time or an error in it is no positive number.
     pub fn from_path(path: &Path) -> Result<Results> {
         let mut results: Results = read(path, "what `vibro precision --json` printed")?;
         for scene in &mut results.scenes {
@@ -75,13 +75,13 @@ impl Results {
         Ok(results)
     }
 
-    /// Adds the lines of a JSON file, a list of objects with `scene`, `method`, `setting`, `error`, `time_ns`
-    /// and `why`, to the scenes that they name, and marks the fronts anew. Gives the scenes of lines that
-    /// were not measured: those are left out.
+    /// Adds results from a JSON file, a list of objects with `scene`, `method`, `setting`, `error`, `time_ns`
+    /// and `why`, to the scenes that they name, and marks the fronts again. Returns the scenes named that
+    /// were not measured; their results are left out.
     ///
     /// # Errors
-    /// If the file cannot be read, is not such a list, has a time or an error that is none, or gives a method
-    /// the name of one of this library's, whose line it would become.
+    /// If the file cannot be read or is no such list, if a time or an error in it is no positive number, or
+    /// if it gives a method the name of one of this library's, with which it would be confused.
     pub fn add(&mut self, path: &Path) -> Result<Vec<String>> {
         let lines: Vec<AddedMeasurement> =
             read(path, "a list of lines, each with scene, method, error and time_ns")?;
@@ -108,7 +108,7 @@ impl Results {
         Ok(left)
     }
 
-    /// Leaves out what belongs to another family.
+    /// Keeps the wanted families only.
     pub fn retain(&mut self, wanted: impl Fn(Family) -> bool) {
         self.scenes.retain(|scene| wanted(scene.family));
         self.failures.cells.retain(|cell: &BorderCell| wanted(cell.family));
@@ -120,9 +120,9 @@ fn read<T: DeserializeOwned>(path: &Path, expected: &str) -> Result<T> {
     serde_json::from_str(&text).map_err(|e| Error::usage(format!("{}: {e}", path.display()), expected))
 }
 
-/// Refuses what cannot have been measured.
+/// Refuses a time or an error that cannot have been measured.
 fn check(path: &Path, scene: &str, m: &MeasuredMethod) -> Result<()> {
-    // An error of 0 is one below what the truth resolves.
+    // An error of 0 means below the resolution of the truth.
     let numbers = [("time_ns", Some(m.time_ns)), ("error", m.error.filter(|e| *e != 0.0))];
     for (key, value) in numbers {
         if let Some(value) = value.filter(|v| !(v.is_finite() && *v > 0.0)) {

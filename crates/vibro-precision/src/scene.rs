@@ -1,11 +1,11 @@
-//! Scenes with a known truth, what methods make of them, and in which time.
+//! Scenes with a known truth, and the error and the time of each method on them.
 
 use serde::{Deserialize, Serialize};
 use std::hint::black_box;
 use std::time::Instant;
 use vibro_record::median;
 
-/// Which kind of method a scene asks.
+/// Kind of method that a scene tests.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Family {
@@ -29,30 +29,30 @@ impl Family {
 pub struct MeasuredMethod {
     /// Name of the method.
     pub method: String,
-    /// A model's setting: step, tolerance, …; empty where it has none. Of an estimator the record it was
-    /// given.
+    /// A model's setting: step, tolerance, …; empty where it has none. For an estimator, the record that it
+    /// was given.
     pub setting: String,
     /// Whether it is one of this library's.
     pub ours: bool,
-    /// Whether another program or library computes it; else it is code of this project, be it a method that
-    /// is common elsewhere.
+    /// Whether another program or library computes the answer; else it is code of this project, even where
+    /// the method is common elsewhere.
     #[serde(default)]
     pub other_program: bool,
-    /// Error, relative or in the unit that the scene names; the root mean square of an estimator's over all
-    /// records. None where it gave no answer.
+    /// Error, relative or in the unit that the scene names; for an estimator the root mean square over all
+    /// records. `None` where it gave no answer.
     pub error: Option<f64>,
     /// Median time of one answer in ns.
     pub time_ns: f64,
-    /// It gave no answer, or one that is not an answer to the scene.
+    /// Whether it gave no answer, or one that does not answer the scene.
     pub failed: bool,
     /// Why it failed.
     pub why: Option<String>,
-    /// No other is both faster and more accurate, of estimators none with the same record.
+    /// Whether no other method is both faster and more accurate; estimators compete on the same record only.
     pub front: bool,
 }
 
 impl MeasuredMethod {
-    /// A method's error, or why it has none; coded in this project.
+    /// A method of this project with its error, or the reason why it has none.
     pub(crate) fn new(
         (method, ours): (&str, bool),
         setting: String,
@@ -75,41 +75,43 @@ impl MeasuredMethod {
     }
 }
 
-/// A scene with a known truth and what each method made of it.
+/// A scene with a known truth, and the result of each method.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct BenchmarkScene {
     /// Name, short enough for a file.
     pub name: String,
-    /// Which kind of method it asks.
+    /// Kind of method that it tests.
     pub family: Family,
-    /// What it is, in one sentence.
+    /// Its description, in one sentence.
     pub says: String,
-    /// What the error is, with its unit.
+    /// Meaning of the error, with its unit.
     pub error_of: String,
     /// Where the truth comes from.
     pub truth: String,
     /// Cramér–Rao bound of the standard deviation, in the unit of the error.
     pub bound: Option<f64>,
-    /// The methods, those of one name one after another.
+    /// The methods; entries of one name follow one another.
     pub methods: Vec<MeasuredMethod>,
 }
 
-/// Errors that differ by less than this part are told apart by rounding, and by no chart.
+/// Relative difference of two errors below which they count as equal: it comes from rounding, and no chart
+/// shows it.
 const TIE: f64 = 1e-3;
 
 impl BenchmarkScene {
-    /// A scene that no method has been run on: its name, what it is, what the error is, where the truth comes
-    /// from.
+    /// A scene without results: its name, its description, the meaning of the error, and the origin of the
+    /// truth.
     pub(crate) fn new<S: Into<String>>(family: Family, texts: [S; 4]) -> BenchmarkScene {
         let [name, says, error_of, truth] = texts.map(Into::into);
         BenchmarkScene { name, family, says, error_of, truth, bound: None, methods: Vec::new() }
     }
 
-    /// Marks those than which no other is both faster and more accurate (the Pareto front); none that failed.
+    /// Marks the methods than which no other is both faster and more accurate (the Pareto front); none that
+    /// failed.
     ///
-    /// Errors within a thousandth of each other are the same, and the faster of two is on the front. A
-    /// setting of a model is the model's own choice; that of an estimator is the record, and only answers
-    /// to the same record compete.
+    /// Errors within a thousandth of each other count as equal, and the faster method is on the front. A
+    /// model may choose its setting, so all its settings compete; an estimator's setting is the record, and
+    /// only answers to the same record compete.
     pub(crate) fn mark_front(&mut self) {
         let beats = |a: &MeasuredMethod, b: &MeasuredMethod| match (a.error, b.error) {
             (Some(e), Some(error)) => {
@@ -128,13 +130,13 @@ impl BenchmarkScene {
     }
 }
 
-/// Shortest time worth reading from the clock, in ns: short answers are repeated until they fill it.
+/// Shortest time in ns that is read from the clock: shorter answers are repeated until they fill it.
 const READABLE: f64 = 20_000.0;
-/// Most time spent on the repeats of one method on one scene, in ns: in full, and quick.
+/// Most time in ns spent on repeats of one method on one scene, in a full and a quick run.
 const SPENT: [f64; 2] = [400e6, 30e6];
 
-/// The answer of `f` and the median time of one run in ns over up to `repeats`, after a first run that warms
-/// the caches and counts only where nothing is left for another.
+/// The answer of `f`, and the median time of one run in ns over up to `repeats`. A first run warms the
+/// caches; it is counted only where no time is left for another.
 pub(crate) fn timed<T>(repeats: usize, quick: bool, mut f: impl FnMut() -> T) -> (T, f64) {
     let mut clock = |runs: usize| {
         let start = Instant::now();

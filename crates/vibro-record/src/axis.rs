@@ -2,20 +2,20 @@
 
 use std::ops::Range;
 
-/// What the abscissa counts.
+/// Quantity of the abscissa.
 #[derive(Debug, Clone, PartialEq)]
 pub enum AxisKind {
     /// Seconds.
     Time,
     /// Hertz.
     Frequency,
-    /// Bare index: the file says nothing of its abscissa.
+    /// Bare index: the file does not state its abscissa.
     Index,
-    /// Something else, named with its unit, e.g. `temperature [K]`.
+    /// Another quantity, named with its unit, e.g. `temperature [K]`.
     Other(String),
 }
 
-/// Where the abscissa values are.
+/// Values of the abscissa.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Grid {
     /// Value `i` is `start + i·step`.
@@ -34,9 +34,9 @@ pub enum Grid {
 /// Abscissa: kind and grid, in SI (s or Hz).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Axis {
-    /// What it counts.
+    /// Quantity of the abscissa.
     pub kind: AxisKind,
-    /// Its values.
+    /// Values in s or Hz.
     pub grid: Grid,
 }
 
@@ -58,9 +58,8 @@ impl Axis {
 
     /// Axis from printed abscissa values, which may carry too few digits.
     ///
-    /// The grid is even, with step (last − first)/(n − 1), where every value lies within `resolution` (the
-    /// size of half a unit in the last printed digit, plus rounding) of it; otherwise the values are
-    /// kept.
+    /// The grid is even, with step (last − first)/(n − 1), where every value lies within twice `resolution`
+    /// (half a unit in the last printed digit) of it, plus rounding; otherwise the values are kept.
     pub fn from_values(kind: AxisKind, values: Vec<f64>, resolution: f64) -> Axis {
         let n = values.len();
         if n >= 2 {
@@ -68,7 +67,7 @@ impl Axis {
             let step = (values[n - 1] - start) / (n - 1) as f64;
             let scale = start.abs().max(values[n - 1].abs());
             let tolerance = resolution * 1.000_001 + 4.0 * f64::EPSILON * scale;
-            // Both end points carry their own rounding, hence twice the resolution.
+            // The end points are rounded as well as the value, hence twice the resolution.
             let near = |(i, v): (usize, &f64)| (v - (start + i as f64 * step)).abs() <= 2.0 * tolerance;
             if step.is_finite() && step > 0.0 && values.iter().enumerate().all(near) {
                 return Axis { kind, grid: Grid::Even { start, step, n } };
@@ -129,8 +128,8 @@ impl Axis {
         Axis { kind: self.kind.clone(), grid }
     }
 
-    /// Indices of the values from `from` on and before `to`; a value within a billionth of a step of a bound
-    /// lies on it.
+    /// Indices of the values from `from` on and before `to`. On an even axis a value within 1e-9 of a step of
+    /// a bound lies on it.
     ///
     /// ```
     /// use vibro_record::Axis;

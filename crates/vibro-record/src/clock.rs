@@ -1,39 +1,39 @@
-//! Clocks of loggers and telephones: the even grid that jittering instants mean, and the stretches between
-//! lost samples.
+//! Clocks of loggers and telephones: finds the even grid behind instants that jitter, and the stretches
+//! between lost samples.
 
 use crate::{Finding, median};
 use std::cmp::Ordering;
 use std::ops::Range;
 
-/// Largest jitter, as a part of a step, of an instant on an even grid. Below 1/6: where every third sample is
-/// lost, all that are left lie within 1/6 of a step of another even grid. No other pattern of lost samples
-/// has them nearer.
+/// Largest jitter of an instant about an even grid, in steps. Below 1/6: where every third sample is lost,
+/// the others lie within 1/6 of a step of another even grid. No other pattern of lost samples comes nearer to
+/// one.
 const JITTER: f64 = 0.15;
-/// The same with the rounding of what is printed, between lost samples that show as long steps. Beside one
-/// that does not show, instants are half a step from the line through all of them.
+/// Largest deviation by jitter and rounding together, in steps, where lost samples show as long steps. Below
+/// 1/2: one lost sample that does not show puts instants half a step off the fitted line.
 const ROUNDED: f64 = 0.4;
-/// Fewest instants that tell jitter from a lost sample: it bends the line through fewer so far that it lies
-/// near all of them.
+/// Fewest instants that tell jitter from a lost sample: a fitted line through fewer tilts until it lies near
+/// all of them, lost sample or not.
 const FEWEST: usize = 16;
 /// Parts of a record whose steps are compared for the uncertainty of the step.
 const PARTS: usize = 8;
-/// Instants that a part must have for a step of its own.
+/// Fewest instants of a part for a step of its own.
 const FEWEST_OF_PART: usize = 8;
-/// Part of a step: steps further from the usual one end a stretch, residuals that jump further hide a lost
-/// sample.
+/// In steps: a step that deviates further from the usual one ends a stretch; residuals that jump further hide
+/// a lost sample.
 const BREAK: f64 = 0.5;
-/// Printed digits that rows must span for the mean of their rounding to be far below one step.
+/// Printed digits that rows must span for the mean of their rounding errors to be far below one step.
 const CYCLES: f64 = 8.0;
-/// Fewest steps of one digit more that prove rounding: one or two may be lost samples, where a sample is as
-/// long as a digit.
+/// Fewest steps that are one digit longer for these to be rounding: one or two may be lost samples, where the
+/// sampling interval is about one digit.
 const FEWEST_SLIPS: usize = 3;
-/// Part of a step that a printed digit may have for lost samples to show as long steps.
+/// Size of a printed digit, in steps, below which every lost sample shows as a long step.
 const FINEST_HIDING: f64 = 0.25;
-/// Largest part of a step, as a printed digit, that hides no sample and shifts no instant visibly.
+/// Largest printed digit, in steps, that neither hides a lost sample nor shifts an instant visibly.
 const FINE: f64 = 2e-3;
-/// Samples a period at which analysers end their base band.
+/// Sampling rate over the end of the base band, as analysers set it.
 const BASE_BAND: f64 = 2.56;
-/// Error of an amplitude, as a part of it, that a person must know of.
+/// Relative error of an amplitude from which jitter is a caution instead of a note.
 const VISIBLE: f64 = 0.01;
 
 /// An even clock, found from instants that were rounded when printed and may jitter about it.
@@ -43,9 +43,9 @@ pub struct Clock {
     pub start: f64,
     /// Sampling interval in s.
     pub step: f64,
-    /// Its standard uncertainty in s: of rounding, and of steps that jitter, wander or drift.
+    /// Its standard uncertainty in s, from rounding and from steps that jitter, wander or drift.
     pub step_std: f64,
-    /// Standard deviation in s of the instants from the grid, beyond rounding; 0 where rounding explains all
+    /// Standard deviation in s of the instants about the grid, beyond rounding; 0 where rounding explains all
     /// of it.
     pub jitter: f64,
 }
@@ -54,9 +54,9 @@ impl Clock {
     /// Code of the finding that instants jitter.
     pub const JITTERS: &str = "axis-jitter";
 
-    /// The clock of `instants` in s, which were printed to within `resolution`, half a unit in the last
-    /// digit, rounded or cut off. `None` where they neither lie on an even grid that was printed so, nor,
-    /// of 16 and more, within 0.15 of a step beside; and where samples were lost.
+    /// The clock of `instants` in s, which were printed to within `resolution` in s: half a unit in the last
+    /// digit, rounded or cut off. `None` where samples were lost, and where the instants fit no even grid:
+    /// neither within rounding nor, for 16 and more, within rounding and 0.15 of a step.
     pub fn of(instants: &[f64], resolution: f64) -> Option<Clock> {
         Clock::rounded(instants, resolution).or_else(|| {
             let resolution = printed(instants, resolution);
@@ -65,8 +65,8 @@ impl Clock {
         })
     }
 
-    /// The clock of instants that are rounded and no more: the middle of all steps whose grid lies within
-    /// `resolution` of all of them. The true step is one of these, and anywhere among them.
+    /// The clock of instants that deviate by rounding only. Its step is the middle of all steps whose grid
+    /// lies within `resolution` of every instant: the true step is equally likely anywhere among these.
     pub fn rounded(instants: &[f64], resolution: f64) -> Option<Clock> {
         let (n, resolution) = (instants.len(), printed(instants, resolution));
         let (low, high) = steps_within(instants, resolution)?;
@@ -74,11 +74,11 @@ impl Clock {
         if step <= 0.0 || !step.is_finite() || !slips(instants).is_empty() {
             return None;
         }
-        // One or two lost samples that are shorter than a digit pass for the drift of a clock, which makes
-        // the step too long by 3/2n of it for each.
+        // One or two lost samples shorter than a digit look like a drift of the clock. Each makes the step
+        // too long by 3/(2n) of itself.
         let hidden = if step < 2.0 * resolution { 1.5 * step / (n - 1) as f64 } else { 0.0 };
-        // Clocks jitter below a digit, too: no step is known better than by least squares from errors of that
-        // size.
+        // Clocks jitter below a digit, too. So the uncertainty is at least that of least squares with
+        // independent errors of the size of rounding.
         let least = independent(resolution / 3f64.sqrt(), n);
         let step_std = ((high - low) / 12f64.sqrt()).hypot(hidden).hypot(least);
         let residuals = instants.iter().enumerate().map(|(i, t)| t - i as f64 * step);
@@ -86,7 +86,7 @@ impl Clock {
         Some(Clock { start: f64::midpoint(ends.0, ends.1), step, step_std, jitter: 0.0 })
     }
 
-    /// The clock, by least squares, of instants that lie within `tolerance` of an even grid with that step.
+    /// The clock by least squares, where all instants lie within `tolerance` in s (of the step) of its grid.
     fn within(instants: &[f64], resolution: f64, tolerance: impl Fn(f64) -> f64) -> Option<Clock> {
         let n = instants.len();
         if n < FEWEST {
@@ -116,8 +116,8 @@ impl Clock {
         self.step_std / self.step
     }
 
-    /// The finding that a column is used as even: that it is rounded; or the rate, the jitter, and what it
-    /// does to the amplitude of a sine at the end of the base band, 2πf·σ of it at most.
+    /// The finding that a column is used as even: either that it is rounded, or its rate, its jitter and the
+    /// largest relative error of a sine's amplitude, 2πfσ, at the end of the base band.
     pub fn finding(&self, column: &str) -> Finding {
         let (rate, std) = self.rate();
         if self.jitter == 0.0 {
@@ -137,26 +137,26 @@ impl Clock {
     }
 }
 
-/// Standard uncertainty of a step by the ends of `n` instants that are each off by at most `resolution`, with
-/// all errors between equally likely.
+/// Standard uncertainty of a step from the first and the last of `n` instants, each off by at most
+/// `resolution`, with all errors up to it equally likely.
 pub fn uniform_std(resolution: f64, n: usize) -> f64 {
     2.0 * resolution / (3f64.sqrt() * n.saturating_sub(1).max(1) as f64)
 }
 
-/// Whether digits of which a half is `resolution` are so fine that rounding shifts no instant visibly from a
-/// grid of that step.
+/// Whether printed digits are so fine that rounding shifts no instant visibly from a grid of that step;
+/// `resolution` is half a digit.
 pub fn is_fine(resolution: f64, step: f64) -> bool {
     2.0 * resolution <= FINE * step
 }
 
-/// The resolution of instants, with what binary numbers of their size are off.
+/// The resolution of instants in s, with the rounding of binary numbers of their size.
 fn printed(instants: &[f64], resolution: f64) -> f64 {
     let largest = instants.iter().fold(0.0, |largest: f64, t| largest.max(t.abs()));
     resolution * (1.0 + 1e-6) + 4.0 * f64::EPSILON * largest
 }
 
-/// The least and the largest step of an even grid that lies within `resolution` of all instants; `None` where
-/// there is none, and for fewer than three.
+/// The smallest and the largest step of an even grid within `resolution` of all instants; `None` where there
+/// is none, and for fewer than three instants.
 fn steps_within(instants: &[f64], resolution: f64) -> Option<(f64, f64)> {
     if instants.len() < 3 {
         return None;
@@ -165,16 +165,16 @@ fn steps_within(instants: &[f64], resolution: f64) -> Option<(f64, f64)> {
     (low <= high).then_some((low, high))
 }
 
-/// The largest such step, as far as instants know it that are later than others: the least (tⱼ − tᵢ +
-/// 2·resolution)/(j − i) of all i < j, of instants times `sign`. By Dinkelbach's iteration: the pair that
-/// violates the present step most gives the next one.
+/// The largest such step: the least (tⱼ − tᵢ + 2·resolution)/(j − i) over all i < j, of instants times
+/// `sign`; with the sign −1, minus the smallest step. By Dinkelbach's iteration: the pair that violates the
+/// present step most gives the next one.
 fn largest_step(instants: &[f64], sign: f64, resolution: f64) -> f64 {
     let n = instants.len();
     let (first, last) = (sign * instants[0], sign * instants[n - 1]);
     let mut step = (last - first + 2.0 * resolution) / (n - 1) as f64;
     loop {
-        // The highest deviation from the grid so far, and the deepest fall from it with the step that forbids
-        // it.
+        // The highest deviation from the grid so far, and the deepest fall below it with the step to which
+        // this pair limits the grid.
         let (mut top, mut worst) = ((0, first), (0.0, step));
         for (j, t) in instants.iter().map(|t| sign * t).enumerate() {
             let behind = (j - top.0) as f64;
@@ -185,7 +185,7 @@ fn largest_step(instants: &[f64], sign: f64, resolution: f64) -> f64 {
                 worst = (fall, (t - top.1 + 2.0 * resolution) / behind);
             }
         }
-        // Where an instant is missing nothing is less.
+        // A missing instant (NaN) compares as not less and ends the search.
         if worst.1.partial_cmp(&step) != Some(Ordering::Less) {
             return step;
         }
@@ -193,8 +193,8 @@ fn largest_step(instants: &[f64], sign: f64, resolution: f64) -> f64 {
     }
 }
 
-/// The one or two steps that stand out, as a lost sample does where a sample is about as long as a printed
-/// digit; none where there are more.
+/// Indices of the one or two steps that are much longer, as where a sample was lost and the sampling interval
+/// is about one printed digit; empty where three or more are, which is rounding.
 fn slips(instants: &[f64]) -> Vec<usize> {
     let steps = || instants.windows(2).map(|w| w[1] - w[0]);
     let (low, high) = steps().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), d| (a.min(d), b.max(d)));
@@ -206,9 +206,9 @@ fn slips(instants: &[f64]) -> Vec<usize> {
     if long.len() < FEWEST_SLIPS { long } else { Vec::new() }
 }
 
-/// Whether the residual of instants from the line through them jumps by about a sample or more. Where a
-/// printed digit is as long as a sample no step shows that, and no residual of its own; those before and
-/// behind do, cumulated: the jump at s that least squares find beside the line.
+/// Whether the residuals of the fitted line jump by more than half a step, which a lost sample causes. Where
+/// a printed digit is about as long as a sample, no single step or residual shows it; cumulated residuals do:
+/// `jump` is the least-squares jump after instant i. True, too, where there are too few instants to tell.
 fn hides_lost(instants: &[f64], clock: &Clock, resolution: f64) -> bool {
     if 2.0 * resolution < BREAK * clock.step {
         return false;
@@ -228,14 +228,15 @@ fn hides_lost(instants: &[f64], clock: &Clock, resolution: f64) -> bool {
     })
 }
 
-/// Standard uncertainty of the step of a line through `n` instants that are each off on their own, by `std`.
+/// Standard uncertainty of the step of a line through `n` instants with independent errors of standard
+/// deviation `std`.
 fn independent(std: f64, n: usize) -> f64 {
     std * (12.0 / (n as f64).powi(3)).sqrt()
 }
 
-/// Standard uncertainty of the step. Independent jitter of size σ gives σ·√(12/n³). The steps of eight parts
-/// differ by jitter, too, and as far as the clock wanders or drifts; their mean is as good as the line
-/// through all where deviations add up from step to step, and never better.
+/// Standard uncertainty of the step. Independent jitter of size σ gives σ·√(12/n³). Wander and drift of the
+/// clock are added from the scatter of the steps of eight parts. Their mean is as certain as the line through
+/// all instants where deviations add up from step to step, and else less certain.
 fn step_std(instants: &[f64], jitter: f64) -> f64 {
     let n = instants.len();
     let independent = independent(jitter, n);
@@ -249,7 +250,7 @@ fn step_std(instants: &[f64], jitter: f64) -> f64 {
     independent.hypot((squares / ((PARTS - 1) * PARTS) as f64).sqrt())
 }
 
-/// The line through instants by least squares.
+/// The least-squares line through instants over their numbers.
 struct FittedLine {
     centre: f64,
     mean: f64,
@@ -258,7 +259,7 @@ struct FittedLine {
 
 impl FittedLine {
     fn through(instants: &[f64]) -> FittedLine {
-        // Differences from the first: seconds since 1970 have few digits left for a step.
+        // Differences from the first: in seconds since 1970 few digits are left for a step.
         let (n, first) = (instants.len() as f64, instants[0]);
         let centre = (n - 1.0) / 2.0;
         let mean = first + instants.iter().map(|t| t - first).sum::<f64>() / n;
@@ -271,7 +272,7 @@ impl FittedLine {
     }
 }
 
-/// What lies between lost samples, pauses and restarts of a clock.
+/// Samples between lost samples, pauses and restarts of a clock.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Stretch {
     /// Its samples.
@@ -292,10 +293,10 @@ impl Stretch {
     }
 }
 
-/// The stretches of `instants` in s, printed to within `resolution`, that have an even clock, in order; empty
-/// where they hold less than half of the instants. No step of them is near two: that of a lost sample, so
-/// instants may be off as far as jitter and rounding together put them. Where a digit hides lost samples,
-/// stretches end before and begin behind where they may be.
+/// The stretches of `instants` in s, printed to within `resolution` in s, that have an even clock, in order;
+/// empty where they hold less than half of the instants. A step near two usual ones, as of a lost sample,
+/// ends a stretch; so within it instants may deviate by jitter and rounding together. Where a printed digit
+/// hides lost samples, a stretch ends before the place where one may be, and the next begins after it.
 pub fn stretches(instants: &[f64], resolution: f64) -> Vec<Stretch> {
     let resolution = printed(instants, resolution);
     let Some(usual) = usual_step(instants, resolution) else { return Vec::new() };
@@ -327,7 +328,7 @@ pub fn stretches(instants: &[f64], resolution: f64) -> Vec<Stretch> {
         |all: &Vec<Stretch>| 2 * all.iter().map(|s| s.samples.len()).sum::<usize>() >= instants.len();
     let whole: Vec<Stretch> = runs.iter().cloned().filter_map(of).collect();
     if shows {
-        // Steps of any size have even stretches, too, by chance.
+        // At least half of the instants must be even: irregular steps contain some even stretches by chance.
         return Some(whole).filter(enough).unwrap_or_default();
     }
     let cut = |tolerance: f64| -> Vec<Stretch> {
@@ -343,16 +344,17 @@ pub fn stretches(instants: &[f64], resolution: f64) -> Vec<Stretch> {
     tolerances.into_iter().map(cut).find(enough).unwrap_or_default()
 }
 
-/// The parts of a range between the indices of it that end one, counted from its start.
+/// Cuts a range after each of the indices `last`, which count from its start.
 fn cut_behind(range: Range<usize>, last: &[usize]) -> Vec<Range<usize>> {
     let mut first = range.start;
     let ends = last.iter().map(|i| range.start + i + 1).chain([range.end]);
     ends.map(|end| std::mem::replace(&mut first, end)..end).collect()
 }
 
-/// Pieces of `instants` that surely lie between lost samples: each as long as an even grid is within
-/// `tolerance` of it, from the first on and from the last back. Any other way to cut them into as few ends
-/// each piece between the two.
+/// Pieces of `instants` that surely lie between lost samples. The instants are cut into the longest pieces
+/// within `tolerance` of an even grid, once from the first on and once from the last back. A piece begins
+/// where the first cut begins it and ends where the second ends it: any other cut into as few pieces lies
+/// between.
 fn pieces(instants: &[f64], tolerance: f64) -> Vec<Range<usize>> {
     let n = instants.len();
     let back: Vec<f64> = instants.iter().rev().map(|t| -t).collect();
@@ -369,7 +371,7 @@ fn pieces(instants: &[f64], tolerance: f64) -> Vec<Range<usize>> {
     starts.zip(back.iter().rev().skip(1)).map(|(start, end)| *start..(n - end).max(*start)).collect()
 }
 
-/// How many of the first instants lie within `tolerance` of an even grid.
+/// Number of first instants that lie within `tolerance` of an even grid.
 fn longest_even(instants: &[f64], tolerance: f64) -> usize {
     let even = |n: usize| n < 3 || steps_within(&instants[..n], tolerance).is_some();
     let n = instants.len();
@@ -388,8 +390,8 @@ fn longest_even(instants: &[f64], tolerance: f64) -> usize {
     known
 }
 
-/// The usual step, by the median over so many that a printed digit is a small part of them; `None` where it
-/// is not above 0.
+/// The usual step in s: the median over a number of steps that is doubled until they span eight printed
+/// digits; `None` where it is not above 0.
 fn usual_step(instants: &[f64], resolution: f64) -> Option<f64> {
     let mut lag = 1;
     loop {
@@ -414,8 +416,8 @@ mod tests {
         }
     }
 
-    /// How often the true step lies within 2 of its standard uncertainties, and how large the uncertainty is
-    /// beside the actual scatter.
+    /// Share of draws whose true step lies within 2 standard uncertainties, and the rms uncertainty over the
+    /// rms error.
     fn coverage(instants: impl Fn(u64) -> Vec<f64>, step: f64) -> (f64, f64) {
         const DRAWS: u64 = 400;
         let found: Vec<Clock> =
@@ -441,15 +443,15 @@ mod tests {
             };
             (0..1000).map(|_| next()).collect::<Vec<_>>()
         };
-        // Student with 7 degrees of freedom has 91.4 % within 2; 400 draws scatter by 1.4 %, three times that
-        // is allowed.
+        // A Student distribution with 7 degrees of freedom has 91.4 % within 2. For 400 draws this scatters
+        // by 1.4 %; three times that is allowed.
         let (held, ratio) = coverage(wandering, 0.01);
         assert!((0.87..=0.96).contains(&held), "{held}");
-        // Both are the same for deviations that add up: 6σ²/5n. 400 draws of 7 degrees of freedom scatter by
-        // 4 %.
+        // For deviations that add up, the variances of eight parts and of the line are equal, 6σ²/5n. 400
+        // draws of 7 degrees of freedom scatter by 4 %.
         assert!((0.85..=1.2).contains(&ratio), "{ratio}");
-        // Of independent jitter the mean of eight parts is eight times less certain than the line; that is
-        // not too sure.
+        // For independent jitter the mean of eight parts is eight times less certain than the line, so the
+        // stated uncertainty is on the safe side.
         let (held, ratio) = coverage(independent, 0.01);
         assert!(held > 0.97, "{held}");
         assert!((6.5..=9.5).contains(&ratio), "{ratio}");
@@ -461,7 +463,7 @@ mod tests {
             let mut draw = uniform(seed);
             let n = 20 + (draw() * 300.0) as usize;
             let lost = 1 + (draw() * (n - 2) as f64) as usize;
-            // The line through few is off by a tenth of their jitter, too.
+            // A line fitted to few instants is itself off by a tenth of their jitter.
             let size = 1.8 * JITTER * draw();
             let mut instants: Vec<f64> = (0..n).map(|i| i as f64 + size * (draw() - 0.5)).collect();
             assert!(Clock::of(&instants, 0.0).is_some(), "{seed}");

@@ -1,12 +1,13 @@
-//! Codes of findings that others branch on: one name for who makes such a finding and for who looks for it.
+//! Codes of findings on which other code depends: one constant for the code that makes a finding and the code
+//! that looks for it.
 
 /// Samples are missing in a record.
 pub const SAMPLES_LOST: &str = "samples-lost";
-/// Times or frequencies that fall.
+/// Times or frequencies fall.
 pub const AXIS_BACKWARDS: &str = "axis-backwards";
 /// The unit of an axis is not stated.
 pub const AXIS_UNIT_ASSUMED: &str = "axis-unit-assumed";
-/// The sampling rate is that of the head.
+/// The sampling rate is taken from the head of the file.
 pub const RATE_FROM_HEAD: &str = "rate-from-head";
 /// The scaling of a spectrum is not stated.
 pub const SCALING_UNSAID: &str = "scaling-unsaid";
@@ -14,19 +15,19 @@ pub const SCALING_UNSAID: &str = "scaling-unsaid";
 pub const UNIT_UNSAID: &str = "unit-unsaid";
 /// The axis of a record is not stated.
 pub const ABSCISSA_UNSAID: &str = "abscissa-unsaid";
-/// Values are levels.
+/// Values are levels in decibels.
 pub const LEVELS_IN_DECIBELS: &str = "levels-in-decibels";
-/// The response to a blow has not died out where its record ends.
+/// The response to a blow has not decayed where its record ends.
 pub const RESPONSE_CUT_OFF: &str = "response-cut-off";
-/// Modes of such a response.
+/// Modes were fitted to such a response.
 pub const MODAL_BLOW_CUT_OFF: &str = "modal-blow-cut-off";
-/// Pulses of a drill scatter less than its samples resolve.
+/// Pulses of a drill scatter by less than its samples resolve.
 pub const DRILL_EDGES_SHARP: &str = "drill-edges-sharp";
 /// The mean velocity of a turn is not 0.
 pub const DRILL_MEAN_VELOCITY: &str = "drill-mean-velocity";
-/// A record holds another pulse.
+/// A record holds more than one pulse.
 pub const PULSE_NOT_ALONE: &str = "pulse-not-alone";
-/// A decay is not that of its modes.
+/// A decay is not that of the modes found.
 pub const DECAY_UNEXPLAINED: &str = "decay-unexplained";
 /// Another event follows a decay.
 pub const DECAY_CUT: &str = "decay-cut";

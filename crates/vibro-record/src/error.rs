@@ -1,7 +1,7 @@
 //! Errors that say where, what was found, what was expected and what to try.
 //!
-//! Every fallible function of this crate returns [`Error`]. What it is decides the exit code of the command:
-//! 1 where the data or the parameters do not allow an answer, 2 for wrong usage and for input that cannot be
+//! Every fallible function of this crate returns [`Error`]. Its kind sets the exit code of the command: 1
+//! where the data or the parameters do not allow an answer, 2 for wrong usage and for input that cannot be
 //! read.
 
 use crate::{nearest, pattern, shown, typed};
@@ -22,19 +22,19 @@ struct Inner {
     kind: Failure,
     /// Place in the input.
     place: Place,
-    /// What stands there, what the system refused, or why there is no answer.
+    /// What was found there, what the system refused, or why there is no answer.
     found: String,
-    /// What should stand there; empty where `found` says it all.
+    /// What was expected there; empty where `found` says it all.
     expected: String,
     /// The line at fault with a caret under it, ready to print.
     excerpt: String,
     /// What to try; empty where nothing would help.
     hint: Hint,
-    /// Keys of the settings that help, each with a value that can be tried, where one is known.
+    /// Keys of the settings that help, each with a value to try where one is known.
     settings: Vec<(&'static str, String)>,
-    /// Code of a refusal that others than a person read.
+    /// Code of a refusal, by which programs tell it from others.
     code: Option<&'static str>,
-    /// File or record of a refusal, which has no place in the input.
+    /// File or record that was refused; a refusal has no place in the input.
     record: Option<PathBuf>,
 }
 
@@ -45,11 +45,11 @@ pub enum Hint {
     Words(String),
     /// A command on the file that was read.
     OfFile(&'static str),
-    /// Another name in place of one.
+    /// A name that exists, in place of one that does not.
     Name {
-        /// What was named.
+        /// The name that was given.
         wrong: PathBuf,
-        /// What is there.
+        /// The existing name that was probably meant.
         meant: PathBuf,
     },
 }
@@ -163,36 +163,36 @@ impl Error {
         if absent { error.hint(instead(Path::new(""), path)) } else { error }
     }
 
-    /// A name for which there is no file in a folder, with the name there that was meant.
+    /// A name that is not in a folder; the hint is the name there that was probably meant.
     pub fn absent(found: impl Into<String>, folder: &Path, name: &Path) -> Self {
         Error::usage(found, "").hint(instead(folder, name))
     }
 
-    /// Names the setting that helps, as the key of a campaign: `low_pass`. The command line shows it as its
+    /// Names the setting that helps by its key in a campaign: `low_pass`. The command line shows it as its
     /// option.
     pub fn setting(self, key: &'static str) -> Self {
         self.set(key, "")
     }
 
-    /// Names the setting that is missing, as [`Error::setting`], with a value as it is written in a campaign.
+    /// Names the missing setting, as [`Error::setting`], with a value to try as a campaign would state it.
     pub fn set(mut self, key: &'static str, value: impl Into<String>) -> Self {
         self.0.settings.retain(|known| known.0 != key);
         self.0.settings.push((key, value.into()));
         self
     }
 
-    /// Keys of the settings that it is about.
+    /// Keys of the settings that the error names.
     pub fn settings(&self) -> impl DoubleEndedIterator<Item = &'static str> {
         self.0.settings.iter().map(|known| known.0)
     }
 
-    /// The settings that it is about, as `typed` says of a key and a value.
+    /// The settings that the error names, each written by `typed` from its key and its value.
     pub fn settings_with(&self, typed: impl Fn(&str, &str) -> String) -> Vec<String> {
         self.0.settings.iter().map(|(key, value)| typed(key, value)).collect()
     }
 
-    /// The text of the error with settings as `typed` says of a key and a value, such as `low_pass` as
-    /// `--low-pass`, and with its hint as `spelt` says.
+    /// The text of the error. `typed` writes a setting from its key and its value, such as `low_pass` as
+    /// `--low-pass`; `spelt` writes the hint.
     pub fn text_with(&self, typed: impl Fn(&str, &str) -> String, spelt: impl Fn(&Hint) -> String) -> String {
         let Inner { place, excerpt, hint, settings, .. } = &*self.0;
         let what = self.what(place);
@@ -200,7 +200,7 @@ impl Error {
         let all = self.settings_with(typed);
         let hint_text = spelt(hint);
         let advice = match (hint, settings.first()) {
-            // The key stands in a file, whatever was typed.
+            // The wrong name is in a file: the advice is what to write there, not what to type.
             (Hint::Name { .. }, Some((key, _))) if place.line.is_some() => {
                 format!("\n  try: write {key} = {:?}", hint.to_string())
             }
@@ -210,7 +210,7 @@ impl Error {
         what + &part("\n", excerpt, "") + &advice
     }
 
-    /// What was found and expected at this place.
+    /// What was found and what was expected, after `place`.
     fn what(&self, place: &Place) -> String {
         part("", &place.to_string(), ": ") + &self.0.found + &part("; expected ", &self.0.expected, "")
     }
@@ -220,7 +220,7 @@ impl Error {
         self.what(&Place { path: None, ..self.0.place.clone() })
     }
 
-    /// Adds what to try; in place of an earlier hint with its settings.
+    /// Sets what to try; an earlier hint is replaced, and its settings are dropped.
     pub fn hint(mut self, hint: impl Into<Hint>) -> Self {
         let first = self.advice().is_empty();
         self.0.settings.retain(|_| first);
@@ -228,7 +228,7 @@ impl Error {
         self
     }
 
-    /// Line of the file that it is about.
+    /// Line in the file at which the error was found.
     pub fn line(&self) -> Option<u64> {
         self.0.place.line
     }
@@ -238,12 +238,12 @@ impl Error {
         self.0.hint.to_string()
     }
 
-    /// What is known of input, to be completed; nothing of other errors.
+    /// The parts of an input error, to be completed; `None` for other errors.
     fn fault(&mut self) -> Option<&mut Inner> {
         Some(&mut *self.0).filter(|inner| inner.kind == Failure::Input)
     }
 
-    /// Adds to what was found, in brackets.
+    /// Adds a text in brackets to what was found.
     pub fn aside(mut self, text: impl fmt::Display) -> Self {
         if let Some(fault) = self.fault() {
             fault.found = format!("{} ({text})", fault.found);
@@ -273,7 +273,7 @@ impl Error {
         self
     }
 
-    /// Names the file where the place has none yet.
+    /// Names the file where none is named yet.
     pub fn in_file(mut self, path: impl AsRef<Path>) -> Self {
         if let Some(fault) = self.fault() {
             fault.place.path.get_or_insert_with(|| path.as_ref().to_owned());
@@ -281,7 +281,7 @@ impl Error {
         self
     }
 
-    /// Names the cell of a workbook that `cell` gives for line and column, in their place.
+    /// Names the cell of a workbook in place of line and column, from which `cell` gives it.
     pub fn in_cell(mut self, cell: impl FnOnce(u64, u64) -> Option<String>) -> Self {
         if let Some(Place { line: Some(line), column: Some(column), cell: named, .. }) =
             self.fault().map(|fault| &mut fault.place)
@@ -291,7 +291,7 @@ impl Error {
         self
     }
 
-    /// Names the file that named another one, which is said beside what was found.
+    /// Sets the file to `path`; the file that was at fault before is added in brackets.
     pub fn named_in(mut self, path: &Path) -> Self {
         if let Some(other) =
             self.fault().and_then(|fault| fault.place.path.take()).filter(|other| other != path)
@@ -301,7 +301,7 @@ impl Error {
         self.in_file(path)
     }
 
-    /// Says the place where none is known yet.
+    /// Sets the place where none is known yet.
     pub fn at(mut self, place: &Place) -> Self {
         if let Some(fault) = self.fault()
             && fault.place == Place::default()
@@ -311,7 +311,7 @@ impl Error {
         self
     }
 
-    /// Names the record that an answer was refused of.
+    /// Names the record for which an answer was refused.
     pub fn of_record(mut self, name: &str) -> Self {
         if self.0.kind == Failure::Refused {
             self.0.found = format!("{name}: {}", self.0.found);
@@ -320,19 +320,19 @@ impl Error {
         self
     }
 
-    /// The file or the record that it is about, where it names one.
+    /// The file or the record that the error names, if any.
     pub fn subject(&self) -> Option<&Path> {
         self.0.place.path.as_deref().or(self.0.record.as_deref())
     }
 
-    /// Whether it is wrong usage, of no place in a file, that neither advice nor a setting stands beside.
+    /// Whether it is wrong usage that names no place in a file, no hint and no setting.
     pub fn is_bare_usage(&self) -> bool {
         let Inner { kind, place, settings, .. } = &*self.0;
         let is_bare = self.advice().is_empty() && settings.is_empty();
         *kind == Failure::Input && *place == Place::default() && is_bare
     }
 
-    /// Why the data or the parameters do not allow an answer; nothing where it is another error.
+    /// Why the data or the parameters do not allow an answer; `None` for another error.
     pub fn refusal(&self) -> Option<&str> {
         (self.0.kind == Failure::Refused).then_some(self.0.found.as_str())
     }
@@ -348,7 +348,7 @@ impl Error {
     }
 }
 
-/// A text between two others; nothing where it is empty.
+/// A text between two others; empty where the text is.
 fn part(before: &str, text: &str, after: &str) -> String {
     if text.is_empty() { String::new() } else { [before, text, after].concat() }
 }
@@ -369,8 +369,8 @@ fn refusal(source: &std::io::Error) -> String {
     known.to_owned()
 }
 
-/// What to type in place of a name that is not there in a folder: the nearest one beside it, else one that
-/// begins so.
+/// What to type in place of a name that is not in a folder: the nearest name there, else one that begins
+/// alike, else the command that lists the folder.
 fn instead(folder: &Path, name: &Path) -> Hint {
     let path = folder.join(name);
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
@@ -381,7 +381,7 @@ fn instead(folder: &Path, name: &Path) -> Hint {
     let text =
         |name: Option<&OsStr>| name.map_or_else(String::new, |name| name.to_string_lossy().into_owned());
     let wrong = text(path.file_name());
-    // A pattern is like those of the names.
+    // A pattern is compared with the patterns of the names.
     let beside = beside.map(|name| if wrong.contains('*') { pattern(&name) } else { name });
     let mut beside: Vec<String> = beside.collect();
     beside.sort();
@@ -398,7 +398,7 @@ fn instead(folder: &Path, name: &Path) -> Hint {
     }
 }
 
-/// Letters of a name, at least, for one that begins so to be meant: fewer begin too many.
+/// Fewest letters of a wrong name for which a name that begins alike is suggested: fewer fit too many names.
 const SHORTEST: usize = 3;
 
 fn floor_char(text: &str, at: usize) -> usize {

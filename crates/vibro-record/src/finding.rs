@@ -1,5 +1,5 @@
-//! What an analysis, a model or a reader reports, as data: numbers with their uncertainty, and what a person
-//! should know of them.
+//! What an analysis, a model or a reader reports, as data: numbers with their uncertainty, and findings about
+//! them.
 
 use crate::units::notation::estimate;
 use serde::de::{MapAccess, Visitor};
@@ -8,11 +8,11 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::borrow::Cow;
 use std::fmt::{Display, Formatter};
 
-/// How much a finding weighs.
+/// Weight of a finding.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Severity {
-    /// What was done or assumed, as it should be.
+    /// States what was done or assumed; nothing is wrong.
     Note,
     /// A number is less certain than it looks, or was corrected; its uncertainty allows for it.
     Caution,
@@ -53,9 +53,9 @@ pub enum Fact {
 pub struct Finding {
     /// Stable code in kebab-case, listed in the documentation.
     pub code: Cow<'static, str>,
-    /// How much it weighs.
+    /// Its weight.
     pub severity: Severity,
-    /// What it is about: a channel, a file, a sweep; `None` for the whole answer.
+    /// Its subject: a channel, a file, a sweep; `None` for the whole answer.
     pub subject: Option<String>,
     /// Numbers in SI units and names, in the order in which they were added.
     #[serde(rename = "numbers", serialize_with = "as_map", deserialize_with = "of_map")]
@@ -95,17 +95,17 @@ impl Finding {
         Finding { code: code.into(), severity, subject: None, facts: Vec::new() }
     }
 
-    /// What was done or assumed.
+    /// A finding of what was done or assumed.
     pub fn note(code: &'static str) -> Finding {
         Finding::new(code, Severity::Note)
     }
 
-    /// What makes a number less certain than it looks.
+    /// A finding that a number is less certain than it looks.
     pub fn caution(code: &'static str) -> Finding {
         Finding::new(code, Severity::Caution)
     }
 
-    /// What may make a number wrong.
+    /// A finding that a number may be wrong.
     pub fn doubt(code: &'static str) -> Finding {
         Finding::new(code, Severity::Doubt)
     }
@@ -133,7 +133,7 @@ impl Finding {
         self
     }
 
-    /// Says what it is about.
+    /// Sets the subject.
     pub fn about(mut self, subject: impl Into<String>) -> Finding {
         self.subject = Some(subject.into());
         self
@@ -149,7 +149,8 @@ impl Finding {
         if let Fact::Number(value) = self.fact(name)? { Some(*value) } else { None }
     }
 
-    /// Findings of records, given as name and findings: one that all share once, any other about its record.
+    /// Collects the findings of records, given as name and findings: a finding that all records share appears
+    /// once, any other with its record as subject.
     pub fn gathered(records: &[(&str, &[Finding])]) -> Vec<Finding> {
         let everywhere = |found: &&Finding| records.iter().all(|(_, findings)| findings.contains(found));
         let first = records.first().map_or(&[][..], |(_, findings)| findings);
@@ -171,7 +172,7 @@ impl Finding {
     }
 }
 
-/// Value, standard uncertainty, unit, method, and how many samples it rests on.
+/// Value, standard uncertainty, unit, method, and number of samples used.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Estimate {
     /// Best value, in `unit`; NaN (null in JSON) where there is none.
@@ -180,14 +181,14 @@ pub struct Estimate {
     pub std: Option<f64>,
     /// SI unit.
     pub unit: &'static str,
-    /// Number of samples, lines or points behind it.
+    /// Number of samples, spectral lines or points used.
     pub n: usize,
-    /// How it was found.
+    /// Method of estimation.
     pub method: String,
 }
 
 impl Estimate {
-    /// A value with its standard uncertainty. An uncertainty that is not finite is not known.
+    /// A value with its standard uncertainty. An uncertainty that is not finite counts as unknown.
     pub fn new(
         value: f64,
         std: Option<f64>,
@@ -199,7 +200,7 @@ impl Estimate {
     }
 
     /// The same with a further relative standard uncertainty: that of the sampling rate, to which the value
-    /// or its inverse is proportional, or what interpolation may have taken of it.
+    /// or its inverse is proportional, or the loss by interpolation.
     pub fn with_relative(mut self, relative: f64) -> Estimate {
         self.std = self.std.map(|std| std.hypot(relative * self.value));
         self

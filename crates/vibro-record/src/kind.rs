@@ -1,9 +1,10 @@
-//! What a value should be, as data, and the value of that kind that is meant by another text.
+//! The kinds of value that a person types, as data, and the correction of a text that was meant as such a
+//! value.
 
 use crate::nearest;
 use std::fmt;
 
-/// What a value that a person types should be. As an error it says that another one was typed.
+/// Kind of a value that a person types. As an error it says that the value typed is of another kind.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Kind {
     /// A number.
@@ -16,24 +17,24 @@ pub enum Kind {
     Text,
     /// One of these names.
     Names(&'static [&'static str]),
-    /// A number of a quantity, or a word in its place.
+    /// A number of this quantity, or this word in its place.
     NumberOr(&'static str, &'static str),
-    /// Two numbers with this mark between them.
+    /// Two numbers with this character between them.
     Pair(char),
-    /// Two times in s with a colon between them, or one of them and the colon.
+    /// Two times in s with a colon between them; one of them may be missing.
     Part,
-    /// So many values in a list.
+    /// This number of values in a list.
     Values(usize),
     /// A list of values, or of tables.
     List,
     /// Keys with their values.
     Table,
-    /// In words.
+    /// Any other, described in words.
     Other(String),
 }
 
 impl Kind {
-    /// It in words, with `quote` around names.
+    /// The kind in words, with `quote` around names.
     pub fn words(&self, quote: &str) -> String {
         let quoted = |name: &&str| format!("{quote}{name}{quote}");
         match self {
@@ -56,7 +57,8 @@ impl Kind {
         }
     }
 
-    /// The text of this kind that is meant by another one, as the value of `key`, typed without quotes.
+    /// The correct text of this kind that was probably meant by `text`, typed without quotes as the value of
+    /// `key`.
     pub fn meant(&self, key: &str, text: &str) -> Option<String> {
         match self {
             Kind::Number => meant_number(key, text),
@@ -89,7 +91,7 @@ impl std::error::Error for Kind {}
 /// A number.
 ///
 /// # Errors
-/// If it is none.
+/// If the text is no number.
 pub fn number(text: &str) -> Result<f64, Kind> {
     text.trim().parse().map_err(|_| Kind::Number)
 }
@@ -97,26 +99,26 @@ pub fn number(text: &str) -> Result<f64, Kind> {
 /// A whole number from `LEAST` to `MOST`.
 ///
 /// # Errors
-/// If it is none, or lies outside.
+/// If it is no whole number, or outside.
 pub fn whole<T: TryFrom<i64>, const LEAST: i64, const MOST: i64>(text: &str) -> Result<T, Kind> {
     let number = text.parse().ok().filter(|number| (LEAST..=MOST).contains(number));
     number.and_then(|number| T::try_from(number).ok()).ok_or(Kind::Whole(LEAST, MOST))
 }
 
-/// Two numbers with a mark between them.
+/// Two numbers with `mark` between them.
 ///
 /// # Errors
-/// If that is not what stands there.
+/// If the text is anything else.
 pub fn pair(text: &str, mark: char) -> Result<(f64, f64), Kind> {
     let two = text.split_once(mark).and_then(|(a, b)| Some((number(a).ok()?, number(b).ok()?)));
     two.ok_or(Kind::Pair(mark))
 }
 
-/// A part of a record between two times in s, `FROM:TO`; without one of them to its end or from its
-/// beginning.
+/// A part of a record between two times in s, `FROM:TO`; without FROM from its beginning, without TO to its
+/// end.
 ///
 /// # Errors
-/// If that is not what stands there.
+/// If the text is anything else.
 pub fn part(text: &str) -> Result<(f64, f64), Kind> {
     let end = |text: &str, open: f64| if text.trim().is_empty() { Ok(open) } else { number(text) };
     let (from, to) = text.split_once(':').ok_or(Kind::Part)?;
@@ -125,15 +127,15 @@ pub fn part(text: &str) -> Result<(f64, f64), Kind> {
     if (from.to_owned() + to).trim().is_empty() { Err(Kind::Part) } else { Ok((from_time, to_time)) }
 }
 
-/// The text with another mark between its two parts, where that makes it one that is read.
+/// The text with `mark` between its two parts in place of another character, if `read` then accepts it.
 fn respelt<T>(text: &str, mark: char, read: impl Fn(&str, char) -> Result<T, Kind>) -> Option<String> {
-    // Not the sign in front of the first number.
+    // The first character may be the sign of the first number.
     let marks = text.char_indices().filter(|(at, c)| *at > 0 && [',', ';', ':', '-'].contains(c));
     let mut meant = marks.map(|(at, c)| format!("{}{mark}{}", &text[..at], &text[at + c.len_utf8()..]));
     meant.find(|meant| read(meant, mark).is_ok())
 }
 
-/// Units that numbers are typed with, and parts of them as powers of ten.
+/// Units with which numbers are typed, and the power of ten that converts each to the unit of its key.
 const UNITS: [(&str, i32); 17] = [
     ("k", 3),
     ("Hz", 0),
@@ -154,22 +156,22 @@ const UNITS: [(&str, i32); 17] = [
     ("m/s", 0),
 ];
 
-/// The number that is meant by one with its unit, as the value of a key.
+/// A number typed with its unit, in the unit of `key`.
 pub fn without_unit(key: &str, text: &str) -> Option<f64> {
     let meant = |(unit, decimals): &(&str, i32)| {
-        // By its text, so that no digit is lost.
+        // Converted by its text, so that no digit is lost.
         format!("{}e{decimals}", text.trim().strip_suffix(unit)?.trim_end()).parse().ok()
     };
-    // Of other keys a g may be that of an acceleration.
+    // For other keys g may be the acceleration of gravity.
     let grams = key.trim_start_matches('-').contains("mass") || ["m1", "m2"].contains(&key);
     UNITS.iter().find_map(meant).or_else(|| meant(&("g", -3)).filter(|_| grams))
 }
 
-/// Keys in Hz of numbers that are thousands: a comma before three digits groups them.
+/// Keys in Hz whose numbers are usually thousands: a comma before three digits then groups digits.
 const THOUSANDS: [&str; 2] = ["rate", "base_band"];
 
-/// A text without the commas that group digits in threes, `1,000,000` or `1,000.5`, and whether they can be
-/// nothing else: one comma may also be a decimal one. `None` where none does.
+/// A text without the commas that group digits in threes, `1,000,000` or `1,000.5`, and whether they are
+/// surely group marks: a single comma may also be a decimal comma. `None` where no commas group digits.
 fn ungrouped(text: &str) -> Option<(String, bool)> {
     let text = text.trim();
     let is_digit = |c: char| c.is_ascii_digit() || c == ',';
@@ -181,8 +183,8 @@ fn ungrouped(text: &str) -> Option<(String, bool)> {
     threes.then(|| (whole.replace(',', "") + behind, groups.len() > 1 || behind.starts_with('.')))
 }
 
-/// The number that is meant by one with a decimal comma, with digits in groups, with a unit, or with no digit
-/// on one side of its point.
+/// The number meant by a text with a decimal comma, with grouped digits, with a unit, or without a digit on
+/// one side of its point.
 pub(crate) fn meant_number(key: &str, text: &str) -> Option<String> {
     let in_thousands = THOUSANDS.contains(&key.replace('-', "_").as_str());
     let grouped = ungrouped(text).filter(|(_, sure)| *sure || in_thousands);
@@ -230,7 +232,7 @@ mod tests {
         ] {
             assert_eq!(kind.meant("rate", text).as_deref(), expected, "{kind:?} {text}");
         }
-        // A height of some metres is no thousand of them.
+        // A height in metres is rarely in thousands: the comma is decimal.
         assert_eq!(Kind::Number.meant("height", "1,234").as_deref(), Some("1.234"));
         assert_eq!(Kind::Number.meant("base-band", "1,600").as_deref(), Some("1600"));
         assert_eq!(part("600:"), Ok((600.0, f64::INFINITY)));

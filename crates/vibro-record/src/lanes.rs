@@ -1,5 +1,5 @@
-//! Sums and ranges of long records in several lanes, which a processor works on at once; the order of the
-//! operations is fixed, so that the result does not depend on it.
+//! Sums and ranges of long records in eight lanes, which a processor works on in parallel. The order of the
+//! operations is fixed, so that the result does not depend on the processor.
 
 const LANES: usize = 8;
 
@@ -15,10 +15,10 @@ pub fn sum(values: &[f64]) -> f64 {
     lanes.iter().sum::<f64>() + rest.iter().sum::<f64>()
 }
 
-/// What one pass over values shows.
+/// Result of one pass over values.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Survey {
-    /// Smallest value, missing ones (NaN) left out; ∞ where there is none.
+    /// Smallest value, ignoring missing ones (NaN); ∞ where there is none.
     pub low: f64,
     /// Largest value; −∞ where there is none.
     pub high: f64,
@@ -26,7 +26,7 @@ pub struct Survey {
     pub finite: bool,
 }
 
-/// Looks at all values once.
+/// Computes the survey in one pass.
 pub fn survey(values: &[f64]) -> Survey {
     let (chunks, rest) = values.as_chunks::<LANES>();
     let (mut low, mut high) = ([f64::INFINITY; LANES], [f64::NEG_INFINITY; LANES]);
@@ -35,7 +35,7 @@ pub fn survey(values: &[f64]) -> Survey {
         for (i, v) in chunk.iter().enumerate() {
             low[i] = if *v < low[i] { *v } else { low[i] };
             high[i] = if *v > high[i] { *v } else { high[i] };
-            // 0 for a number, NaN for anything else.
+            // Adds 0 for a number, NaN for anything else.
             lanes[i] += v * 0.0;
         }
     }
@@ -46,18 +46,19 @@ pub fn survey(values: &[f64]) -> Survey {
     }
 }
 
-/// Values of which the first largest is looked for while they are near.
+/// Values in which the first largest is searched right after their pass, while they are in the cache.
 const NEAR: usize = 4096;
 
-/// First values that are kept: what channels have to do with each other shows in so many rows.
+/// First values that are kept: relations between channels show in this many rows.
 pub const OPENING: usize = 1 << 14;
 
-/// Both ends of values that may come block by block, missing ones (NaN) left out, and the first values.
+/// Smallest and largest of values that may come block by block, ignoring missing ones (NaN), and the first
+/// values.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Extremes {
     low: f64,
     high: f64,
-    /// Values so far.
+    /// Number of values so far.
     n: usize,
     at: usize,
     finite: bool,
@@ -66,7 +67,7 @@ pub struct Extremes {
 }
 
 impl Extremes {
-    /// Of no values.
+    /// The extremes of no values.
     pub const NONE: Extremes = Extremes {
         low: f64::INFINITY,
         high: f64::NEG_INFINITY,
@@ -76,7 +77,7 @@ impl Extremes {
         opening: Vec::new(),
     };
 
-    /// Of these values.
+    /// The extremes of these values.
     pub fn of(values: &[f64]) -> Extremes {
         let mut all = Extremes::NONE;
         all.take(values);
@@ -95,7 +96,7 @@ impl Extremes {
         }
     }
 
-    /// Adds the ends of the next values.
+    /// Adds the extremes of the values that follow.
     pub fn join(&mut self, next: &Extremes) {
         self.open(&next.opening);
         if next.size() > self.size() {
@@ -107,7 +108,7 @@ impl Extremes {
         self.finite &= next.finite;
     }
 
-    /// Keeps the first of the next values, where there is room.
+    /// Keeps the first of the values that follow, up to [`OPENING`] in all.
     fn open(&mut self, next: &[f64]) {
         self.opening.extend(next.iter().take(OPENING - self.opening.len()));
     }
@@ -122,7 +123,7 @@ impl Extremes {
         self.high.max(-self.low)
     }
 
-    /// Number of values, missing ones too.
+    /// Number of values, including missing ones.
     #[allow(clippy::len_without_is_empty)] // nobody asks
     pub fn len(&self) -> usize {
         self.n
@@ -133,17 +134,17 @@ impl Extremes {
         self.finite
     }
 
-    /// Ends and first values, to be multiplied by a factor above 0.
+    /// Both extremes and the first values, to be multiplied by a factor above 0.
     pub fn values_mut(&mut self) -> [&mut [f64]; 3] {
         [std::slice::from_mut(&mut self.low), std::slice::from_mut(&mut self.high), &mut self.opening]
     }
 
-    /// Least and largest value; `None` where there is none.
+    /// Smallest and largest value; `None` where there is none.
     pub fn range(&self) -> Option<(f64, f64)> {
         (self.low <= self.high).then_some((self.low, self.high))
     }
 
-    /// The first index of the largest magnitude, and this; `None` where there is none.
+    /// The first index of the largest magnitude, and this magnitude; `None` where there is none.
     pub fn largest(&self) -> Option<(usize, f64)> {
         self.range().map(|_| (self.at, self.size()))
     }

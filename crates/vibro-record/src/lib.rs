@@ -1,8 +1,8 @@
 //! Records: samples with their axis, quantity, unit and history.
 //!
 //! A record is a [`Trace`] (samples over time), a [`Spectrum`] (lines over frequency, with its scaling) or an
-//! [`Frf`] (receptance, mobility or accelerance). Values are SI. Each record carries its [`Meta`]: the
-//! channel, every step that made it, and the doubts that a person must hear before trusting it.
+//! [`Frf`] (receptance, mobility or accelerance). Values are in SI units. Each record carries its [`Meta`]:
+//! the channel, every step that made it, and findings about its values.
 //!
 //! ```
 //! use vibro_record::units::Unit;
@@ -54,7 +54,7 @@ pub use traces::{Stream, Traces, find_channel};
 pub use window::Window;
 pub use written::{Written, named};
 
-/// Anything a file can hold.
+/// A record of any type.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Record {
     /// Samples over time.
@@ -121,7 +121,7 @@ impl Record {
         }
     }
 
-    /// Both ends of the values, or of the magnitudes of complex ones.
+    /// Smallest and largest value; for complex values of their magnitudes.
     pub fn extremes(&self) -> Extremes {
         match self.numbers() {
             (real, []) => Extremes::of(real),
@@ -129,7 +129,7 @@ impl Record {
         }
     }
 
-    /// Real values, or complex ones: one of both is empty.
+    /// Real and complex values: one of both is empty.
     pub fn numbers(&self) -> (&[f64], &[Complex64]) {
         match self {
             Record::Trace(Trace { values, .. })

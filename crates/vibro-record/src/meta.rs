@@ -1,4 +1,4 @@
-//! What is known of a record beside its values.
+//! Meta data of a record: what is known beside its values.
 
 use crate::code;
 use crate::units::{Quantity, Unit};
@@ -26,15 +26,14 @@ impl Step {
     }
 }
 
-/// How an identification line of UFF-58 begins that states the decay of an exponential window in 1/s.
+/// Begins the identification line of UFF-58 that states the decay in 1/s of an exponential window.
 pub const ADDED_DECAY: &str = "exponential window; decay in 1/s ";
 
-/// Identification line of UFF-58, and key of a remark in CSV, that a function was averaged over the blows of
-/// a hammer.
+/// Identification line of UFF-58, and key of a remark in CSV, for a function averaged over hammer blows.
 pub const FROM_BLOWS: &str = "averaged over hammer blows";
 
-/// How an identification line of UFF-58 begins that states the window of the segments that a function was
-/// averaged over.
+/// Begins the identification line of UFF-58 that states the window of the segments over which a function was
+/// averaged.
 pub const AVERAGED_WITH: &str = "averaged over segments; window ";
 
 /// Channel, quantity, unit, history and findings.
@@ -42,31 +41,31 @@ pub const AVERAGED_WITH: &str = "averaged over segments; window ";
 pub struct Meta {
     /// Channel or record name; may be empty.
     pub name: String,
-    /// What the values measure.
+    /// Quantity that the values measure.
     pub quantity: Quantity,
     /// SI unit of the values, or an opaque unit as the file had it.
     pub unit: Unit,
-    /// Number of values that the file declares, where it does.
+    /// Number of values that the file declares, if it does.
     pub declared_n: Option<usize>,
     /// Header lines that are kept but not interpreted, as key and value (the key may be empty).
     pub notes: Vec<(String, String)>,
     /// Relative standard uncertainty of the sampling rate, where instants were printed or jitter; else 0.
     pub clock: f64,
-    /// Distance in s of the samples between which values were interpolated; 0 where none were.
+    /// Distance in s of the samples between which values were interpolated by cubics; 0 where none were.
     pub interpolated: f64,
-    /// Half a unit in the last digit that instants were printed with, in s; 0 where they were not printed.
+    /// Half a unit in the last digit with which instants were printed, in s; 0 where they were not printed.
     pub resolution: f64,
     /// Instant 0 of the record in s since 1970, where the file counts from there; else 0.
     pub origin: f64,
-    /// What a person must know before trusting the values.
+    /// Findings about the values.
     pub findings: Vec<Finding>,
     /// Every step that made the record, oldest first.
     pub history: Vec<Step>,
 }
 
 impl Meta {
-    /// Largest part of its amplitude that a sine of a frequency in Hz has lost to interpolation by cubics:
-    /// half way between samples, where a cubic takes 9/16 of the two beside and −1/16 of the two beyond.
+    /// Largest part of its amplitude that a sine of `frequency` in Hz has lost to interpolation by cubics:
+    /// half way between samples, where a cubic weights the two nearest by 9/16 and the next two by −1/16.
     pub fn lost(&self, frequency: f64) -> f64 {
         let half = std::f64::consts::PI * (frequency * self.interpolated).min(0.5);
         1.0 - (9.0 * half.cos() - (3.0 * half).cos()) / 8.0
@@ -91,12 +90,12 @@ impl Meta {
         }
     }
 
-    /// Name and quantity, by which a channel is looked for.
+    /// Name and quantity, by which a channel is searched.
     pub fn called(&self) -> (&str, &str) {
         (&self.name, self.quantity.name())
     }
 
-    /// Adds a finding, once.
+    /// Adds a finding unless it is there already.
     pub fn found(&mut self, finding: Finding) {
         if !self.findings.contains(&finding) {
             self.findings.push(finding);
@@ -152,9 +151,9 @@ impl Meta {
         self.history.iter().any(|step| step.name == "blows") || self.notes.iter().any(said)
     }
 
-    /// Takes the unit an instrument wrote: stores its SI unit and quantity, notes the conversion, and returns
-    /// the factor by which the values must be multiplied. An unknown unit is kept, with a finding and
-    /// factor 1.
+    /// Takes over the unit that an instrument wrote: stores its SI unit and quantity, notes the conversion in
+    /// the history, and returns the factor by which the values must be multiplied. An unknown unit is kept,
+    /// with a finding and factor 1.
     pub fn adopt_unit(&mut self, text: &str) -> f64 {
         let unit = Unit::parse_or_opaque(text);
         if !unit.is_known() {

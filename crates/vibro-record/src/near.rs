@@ -1,9 +1,9 @@
-//! The known name that was meant by one that is not known.
+//! Finds the known name that was probably meant by an unknown one.
 
 use std::cmp::Reverse;
 
-/// The known name at the smallest edit distance (Damerau 1964, each letter changed once), where that is small
-/// beside its length; else the longest with which the wrong one begins.
+/// The known name at the smallest edit distance (Damerau 1964, each letter changed once), if that is small
+/// relative to its length; else the longest known name with which the unknown one begins.
 pub fn nearest<'a>(wrong: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let wrong = wrong.to_lowercase();
     let known: Vec<(&str, String)> = known.into_iter().map(|name| (name, name.to_lowercase())).collect();
@@ -14,7 +14,7 @@ pub fn nearest<'a>(wrong: &str, known: impl IntoIterator<Item = &'a str>) -> Opt
     near.or_else(|| longer.max_by_key(|(_, name)| name.len())).map(|(name, _)| *name)
 }
 
-/// The pattern of all names that differ from this one by their numbers: `step*.csv` of `step01.csv`.
+/// The pattern of all names that differ from this one only in their numbers: `step*.csv` for `step01.csv`.
 pub fn pattern(name: &str) -> String {
     let dot = name.rfind('.').unwrap_or(name.len());
     let mut pattern = String::new();

@@ -2,8 +2,8 @@
 
 use std::borrow::Borrow;
 
-/// Quantile `q`, 0 to 1, of the finite values among these, straight between neighbours (R. Hyndman and
-/// Y. Fan, The American Statistician 50 (1996) 361, definition 7); NaN of none.
+/// Quantile `q`, 0 to 1, of the finite values, linearly interpolated (R. Hyndman and Y. Fan, The American
+/// Statistician 50 (1996) 361, definition 7); NaN without finite values.
 ///
 /// ```
 /// use vibro_record::quantile;
@@ -21,7 +21,7 @@ pub fn quantile(values: impl IntoIterator<Item = impl Borrow<f64>>, q: f64) -> f
     next.map_or(low, |next| low + place.fract() * (next - low))
 }
 
-/// The median of the finite values among these, of an even number the mean of the middle two; NaN of none.
+/// Median of the finite values; for an even number the mean of the middle two; NaN without finite values.
 ///
 /// ```
 /// assert_eq!(vibro_record::median([4.0, 1.0, 3.0, 2.0]), 2.5);
@@ -31,8 +31,8 @@ pub fn median(values: impl IntoIterator<Item = impl Borrow<f64>>) -> f64 {
     quantile(values, 0.5)
 }
 
-/// The middle one of these values in their order, of an even number the higher of the middle two; NaN of
-/// none. One of the values always, found without a copy: they are left in another order.
+/// Upper median: always one of the values, for an even number the higher of the middle two; NaN for no
+/// values. It is found without a copy, and leaves the values in another order.
 ///
 /// ```
 /// assert_eq!(vibro_record::upper_median(&mut [4.0, 1.0, 3.0, 2.0]), 3.0);

@@ -1,26 +1,26 @@
-//! Samples at uneven instants, interpolated on an even grid.
+//! Interpolates samples at uneven instants on an even grid.
 
 use crate::clock::{Stretch, stretches};
 use crate::{Axis, AxisKind, Error, Finding, Grid, Result, Trace, median};
 
-/// Least rate, as a part of the mean rate of the samples: below it parts of the signal would fold back.
+/// Lowest rate of interpolation over the mean sampling rate: below it parts of the signal would alias.
 const SLOWEST: f64 = 0.95;
-/// Largest multiple of the mean rate: beyond, values are added that nothing is known of.
+/// Highest rate over the mean sampling rate: more values than this would only suggest resolution.
 const FASTEST: f64 = 10.0;
-/// Longest step, in median steps, that is bridged: the error is that of leaving out one sample, which leaves
-/// two steps.
+/// Longest step that is interpolated, in median steps. The stated error is that of leaving out one sample,
+/// which leaves a step of two.
 const LONGEST: f64 = 2.5;
-/// Largest error of a sample that is predicted from its neighbours, as a part of the standard deviation:
-/// noise has 1.4, a sine four samples a period long 0.4.
+/// Largest rms error of samples predicted from their neighbours, over the standard deviation: white noise has
+/// 1.4, a sine with four samples a period 0.4.
 const LARGEST_ERROR: f64 = 0.5;
 
 impl Trace {
-    /// Interpolates at `rate` in Hz from the first instant on, by cubics through four samples. What that is
-    /// wrong by at most is a finding: each sample predicted from its four neighbours, RMS.
+    /// Interpolates at `rate` in Hz from the first instant on, by cubics through four samples. A finding
+    /// states the error: the rms difference of each sample from its prediction by four neighbours.
     ///
     /// # Errors
-    /// If instants do not rise, or a gap is too long to bridge; if values are missing; if the rate is below
-    /// that of the samples or far beyond; if the samples are too far apart for their signal.
+    /// If instants do not rise, a gap is too long to interpolate, values are missing, the rate is below that
+    /// of the samples or more than ten times as high, or the samples are too far apart for their signal.
     pub fn resample(&mut self, rate: f64) -> Result<()> {
         let (t, v) = (self.axis.values(), &self.values);
         let n = t.len();
@@ -73,7 +73,7 @@ impl Trace {
             .number("share", if error == 0.0 { 0.0 } else { error / spread });
         self.axis = Axis::time(t[0], 1.0 / rate, many);
         self.meta.clock = 0.0;
-        // What a cubic is wrong by goes as the fourth power of the step that it bridges.
+        // The error of a cubic grows with the fourth power of the step.
         let fourth = steps.iter().map(|step| step.powi(5)).sum::<f64>() / steps.iter().sum::<f64>();
         self.meta.interpolated = fourth.powf(0.25);
         self.values = values;
@@ -82,14 +82,15 @@ impl Trace {
         Ok(())
     }
 
-    /// Keeps the samples of one stretch between lost samples, by its number from 1, on their even grid.
+    /// Keeps the samples of one stretch between lost samples, by its number from 1, and puts them on its even
+    /// grid.
     ///
     /// # Errors
     /// If there is no such stretch.
     pub fn keep_stretch(&mut self, number: usize) -> Result<()> {
         let all = match &self.axis.grid {
             Grid::Uneven(t) if self.axis.kind == AxisKind::Time => stretches(t, self.meta.resolution),
-            // An even record is one stretch.
+            // An even record is a single stretch.
             _ if number == 1 => return Ok(()),
             _ => Vec::new(),
         };
@@ -117,8 +118,8 @@ impl Trace {
     }
 }
 
-/// A refusal of uneven instants, printed to within `resolution` in s, with what makes them even: one of their
-/// stretches, or interpolation.
+/// Adds to a refusal of uneven instants, printed to within `resolution` in s, what makes them even: one of
+/// their stretches, or interpolation.
 pub fn evened(error: Error, instants: &[f64], resolution: f64) -> Error {
     let all = stretches(instants, resolution);
     if let Some((number, longest)) = Stretch::longest(&all) {
@@ -145,14 +146,14 @@ pub fn evened(error: Error, instants: &[f64], resolution: f64) -> Error {
     error.hint("interpolate on an even grid").set("resample", proposed(mean))
 }
 
-/// A mean rate in Hz, rounded up to three digits.
+/// A mean rate in Hz, rounded up to three digits, as text.
 fn proposed(mean: f64) -> String {
     let unit = 10f64.powf(mean.log10().floor() - 2.0);
     let text = format!("{:.3e}", (mean / unit * (1.0 - 1e-9)).ceil() * unit);
     text.parse::<f64>().map_or(text, |rate| rate.to_string())
 }
 
-/// The cubic through four points, at `x`.
+/// Value at `x` of the cubic through four points.
 fn cubic(points: [(f64, f64); 4], x: f64) -> f64 {
     let weight = |i: usize| {
         let others = (0..4).filter(|j| *j != i).map(|j| (x - points[j].0) / (points[i].0 - points[j].0));

@@ -1,25 +1,25 @@
-//! Names as a terminal and a page may show them.
+//! Writes names such that a terminal or a page shows them safely.
 
 use std::path::Path;
 
-/// Whether a character steers a terminal or a page instead of being shown: a control character, one that
-/// turns the direction of writing (Unicode Standard Annex 9, section 2), or one that parts lines.
+/// Whether a character controls a terminal or a page instead of being shown: a control character, one that
+/// changes the direction of writing (Unicode Standard Annex 9, section 2), or one that separates lines.
 pub fn is_unprintable(c: char) -> bool {
     let turns = matches!(c, '\u{200e}' | '\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
     c.is_control() || turns
 }
 
-/// A path for people, on one line: a character that steers is shown as �.
+/// A path for people, on one line: control characters are shown as �.
 pub fn shown(path: impl AsRef<Path>) -> String {
     let text = path.as_ref().to_string_lossy();
     text.chars().map(|c| if is_unprintable(c) { '\u{fffd}' } else { c }).collect()
 }
 
-/// A path as a shell takes it.
+/// A path as it is typed in a shell.
 pub fn typed(path: impl AsRef<Path>) -> String {
     let text = shown(path);
     let splits = |c: char| c.is_whitespace() || "()[]{}<>;&|'`$!".contains(c);
-    // Between double quotes a shell still reads some of them.
+    // Between double quotes a shell still interprets these.
     let read = ['$', '`', '!', '"', '\\'];
     if !text.contains(splits) && !text.contains('"') {
         text
@@ -39,7 +39,7 @@ mod tests {
         assert_eq!(shown("µ a\nb\u{202e}c.csv"), "µ a\u{fffd}b\u{fffd}c.csv");
     }
 
-    /// As sh reads it: between single quotes nothing but these counts, between double ones `$` still does.
+    /// For sh: single quotes protect everything between them, double quotes still leave `$` active.
     #[test]
     fn a_name_is_typed_so_that_a_shell_leaves_it_alone() {
         for (name, expected) in [

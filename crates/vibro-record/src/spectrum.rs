@@ -1,16 +1,16 @@
-//! Lines over frequency: spectra, and frequency response functions.
+//! Spectral lines over frequency: spectra, and frequency response functions.
 
 use super::{Axis, Meta, Window};
 use Scaling::{Coherence, Energy, Peak, Power, Psd, Rms, Unknown};
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
 
-/// Real or complex line values.
+/// Real or complex values of spectral lines.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Values {
-    /// Magnitudes, powers, densities or coherence.
+    /// Values without phase: magnitudes, powers, densities or coherence.
     Real(Vec<f64>),
-    /// Lines with phase.
+    /// Values with phase.
     Complex(Vec<Complex64>),
 }
 
@@ -22,14 +22,14 @@ impl Default for Values {
 }
 
 impl Values {
-    /// Values of their real and, where they are complex, imaginary parts.
+    /// Values from their real parts and, for complex ones, imaginary parts.
     pub fn of(real: Vec<f64>, imaginary: Option<Vec<f64>>) -> Values {
         let Some(imaginary) = imaginary else { return Values::Real(real) };
         let pairs = real.into_iter().zip(imaginary);
         Values::Complex(pairs.map(|(re, im)| Complex64::new(re, im)).collect())
     }
 
-    /// Real values; `None` of complex ones.
+    /// Real values; `None` for complex ones.
     pub fn reals(&self) -> Option<&[f64]> {
         if let Values::Real(values) = self { Some(values) } else { None }
     }
@@ -64,7 +64,7 @@ impl Values {
     }
 }
 
-/// What a line's value means, for a one-sided spectrum.
+/// Meaning of a line's value in a one-sided spectrum.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Scaling {
@@ -82,12 +82,12 @@ pub enum Scaling {
     /// Coherence and other ratios between 0 and 1.
     #[serde(skip_deserializing)]
     Coherence,
-    /// The file does not say.
+    /// Unknown: the file does not state it.
     #[serde(skip_deserializing)]
     Unknown,
 }
 
-/// In the order of the variants.
+/// Names of the scalings, in the order of the variants.
 const NAMES: [&str; 7] = ["peak", "rms", "power", "psd", "energy", "coherence", "unknown"];
 
 impl Scaling {
@@ -110,13 +110,13 @@ pub struct Spectrum {
     pub meta: Meta,
     /// Frequency in Hz, or an index.
     pub axis: Axis,
-    /// Line values in SI.
+    /// Values of the lines in SI units.
     pub values: Values,
-    /// What they mean.
+    /// Meaning of the values.
     pub scaling: Scaling,
     /// Window, where known.
     pub window: Option<Window>,
-    /// Equivalent noise bandwidth in lines, where known.
+    /// Equivalent noise bandwidth in spectral lines, where known.
     pub enbw: Option<f64>,
 }
 
@@ -127,6 +127,6 @@ pub struct Frf {
     pub meta: Meta,
     /// Frequency in Hz.
     pub axis: Axis,
-    /// Complex values in SI.
+    /// Complex values in SI units.
     pub values: Vec<Complex64>,
 }

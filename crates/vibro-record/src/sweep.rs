@@ -1,4 +1,4 @@
-//! A stepped-sine sweep: one force and one response spectrum a step.
+//! A stepped-sine sweep: one force spectrum and one response spectrum a step.
 
 use super::{Axis, Finding, Spectrum, Step, Trace, Values};
 use crate::units::Unit;
@@ -29,11 +29,11 @@ pub struct SweepPoint {
     pub force_path: Option<PathBuf>,
     /// Response file.
     pub response_path: PathBuf,
-    /// Peak values of the force spectrum in order of the lines; empty where there is none.
+    /// Peak values of the force spectrum by line; empty where there is none.
     pub force: Values,
-    /// Excitation frequency in Hz where a hand-over file gives it.
+    /// Excitation frequency in Hz, where a hand-over file states it.
     pub given: Option<f64>,
-    /// Response: peak values; complex where the phase against the force is known.
+    /// Response as peak values; complex where its phase relative to the force is known.
     pub response: Spectrum,
 }
 
@@ -63,11 +63,12 @@ pub struct Sweep {
     pub name: String,
     /// Direction, where it was stated.
     pub direction: Option<Direction>,
-    /// 1 excited mass, 2 passive mass, where it was stated.
+    /// Mass whose response it is, where stated: 1 excited mass, 2 passive mass.
     pub mass: Option<u8>,
-    /// Frequencies of the lines, the same for all spectra.
+    /// Frequencies of the spectral lines in Hz, the same for all spectra.
     pub axis: Axis,
-    /// How often the analyser integrated a measured signal in frequency before it stored the response.
+    /// Number of times that the analyser integrated the measured signal in frequency before it stored the
+    /// response.
     pub analyser_integrated: u8,
     /// The steps.
     pub points: Vec<SweepPoint>,
@@ -76,7 +77,7 @@ pub struct Sweep {
 }
 
 impl Sweep {
-    /// Steps that made the responses: those of the first point.
+    /// Steps that made the responses, from the first point.
     pub fn history(&self) -> &[Step] {
         self.points.first().map_or(&[], |p| &p.response.meta.history)
     }
@@ -86,7 +87,7 @@ impl Sweep {
         self.points.first().map_or_else(Unit::none, |p| p.response.meta.unit.clone())
     }
 
-    /// Distance of the lines in Hz; `None` if uneven.
+    /// Distance of the spectral lines in Hz; `None` if uneven.
     pub fn line_width(&self) -> Option<f64> {
         self.axis.step()
     }

@@ -5,14 +5,14 @@ use crate::resample::evened;
 use crate::units::{self, Unit};
 use crate::{Error, Result};
 
-/// Samples over time (or over index, where the file says nothing of its sampling).
+/// Samples over time, or over their index where the file does not state its sampling.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Trace {
     /// Channel, unit, history.
     pub meta: Meta,
     /// Time in s, or an index.
     pub axis: Axis,
-    /// SI values; a missing sample is NaN, and present only where missing values were allowed.
+    /// Values in SI units; a missing sample is NaN, which occurs only where missing samples were allowed.
     pub values: Vec<f64>,
 }
 
@@ -22,7 +22,7 @@ impl Trace {
         matches!(self.axis.kind, super::AxisKind::Time).then(|| self.axis.step().map(|dt| 1.0 / dt)).flatten()
     }
 
-    /// The sampling rate in Hz that a measurement needs.
+    /// The sampling rate in Hz, for measurements that need one.
     ///
     /// # Errors
     /// If samples are uneven in time, or no rate is known.
@@ -46,8 +46,8 @@ impl Trace {
 
     /// Applies a calibration: a value v becomes `factor`·v in `unit`, stored in SI.
     ///
-    /// The finding that no calibration is known goes; all others, notes and steps stay, and a step
-    /// `calibrate` is added. A negative factor turns the sensor around.
+    /// The finding that no calibration is known is removed; all others, notes and steps stay, and a step
+    /// `calibrate` is added. A negative factor inverts the signal.
     ///
     /// ```
     /// use vibro_record::{Axis, Meta, Trace};
@@ -61,8 +61,8 @@ impl Trace {
     /// ```
     ///
     /// # Errors
-    /// If the factor is 0 or not finite, or takes a value beyond what a number can hold; values before it are
-    /// multiplied then.
+    /// If the factor is 0 or not finite, or makes a value too large for a double; earlier values have been
+    /// multiplied by then.
     pub fn calibrate(&mut self, factor: f64, unit: &Unit) -> Result<()> {
         let to_si = factor * unit.factor();
         if to_si == 0.0 || !to_si.is_finite() {
@@ -98,7 +98,7 @@ mod tests {
     fn a_calibration_leaves_its_step_and_takes_only_its_doubt() {
         let mut t = trace();
         t.calibrate(-40.0, &Unit::parse("mm/s").unwrap()).unwrap();
-        // 0.5 · 40 mm/s = 20 mm/s; one product of two roundings.
+        // 0.5 · 40 mm/s = 20 mm/s; a product with two roundings.
         assert!((t.values[0] + 0.02).abs() < 1e-17);
         assert!(t.values[1].is_nan());
         assert_eq!((t.meta.quantity, t.meta.unit.symbol()), (Quantity::Velocity, "m/s"));
@@ -114,7 +114,7 @@ mod tests {
             assert!(t.calibrate(factor, &Unit::opaque("FS")).is_err());
             assert_eq!(t.values[0], 0.5);
         }
-        // The factor alone, and then only the product, is beyond all numbers.
+        // First the factor alone is too large for a double, then only the product.
         assert!(trace().calibrate(1e306, &Unit::parse("km").unwrap()).is_err());
         let mut t = trace();
         t.values[0] = 1e10;

@@ -1,28 +1,30 @@
-//! Time traces block by block.
+//! Time traces, read block by block.
 
 use crate::units::notation;
 use crate::{Error, Finding, Meta, Place, Result, Trace, nearest, units};
 use std::path::{Path, PathBuf};
 
-/// Frames of a block from memory.
+/// Samples of each channel in a block of traces that are in memory: larger blocks take more memory, smaller
+/// ones more calls.
 const BLOCK: usize = 16 * 1024;
 
-/// How far two channels of one record may be apart in time, in sampling intervals.
+/// Largest offset in time between two channels of one record, in sampling intervals, at its start and at its
+/// end.
 const APART: f64 = 0.01;
 
 /// Samples that come block by block, in SI units.
 pub trait Stream: Send {
-    /// Adds the next samples behind what `block` holds, one `Vec` a channel, and returns how many there are
-    /// of each; 0 at the end.
+    /// Appends the next samples to `block`, one `Vec` a channel, and returns their number in each channel; 0
+    /// at the end.
     ///
     /// # Errors
     /// If the source cannot be read, or a sample is missing and that is not allowed.
     fn append(&mut self, block: &mut Vec<Vec<f64>>) -> Result<usize>;
 
-    /// Hands out these of the channels handed out so far, in this order.
+    /// From here on hands out only these of the present channels, in this order.
     fn keep(&mut self, channels: &[usize]);
 
-    /// Adds to the channels what only their values show, once all have been read.
+    /// Adds to the channels the findings that only their values show, once all have been read.
     fn finish(&self, channels: &mut [Meta]);
 }
 
@@ -48,7 +50,7 @@ pub struct Traces {
     rate: f64,
     start: f64,
     frames: usize,
-    /// Factor of each channel on top of what its reader applied.
+    /// Factor of each channel, beside those that its reader applied.
     factors: Vec<f64>,
     stream: Box<dyn Stream>,
 }
@@ -92,7 +94,7 @@ impl Traces {
         Traces::of_file(PathBuf::new(), Vec::new(), traces)
     }
 
-    /// Traces in memory that were read from a file, with what there is to say of it.
+    /// Traces in memory that were read from a file, with the findings about the file.
     ///
     /// # Errors
     /// As [`Traces::from_memory`].
@@ -107,7 +109,7 @@ impl Traces {
         Traces::of_stream(path, findings, &traces, frames, Box::new(Memory { values, at: 0 }))
     }
 
-    /// Traces that come from a stream; the values of `traces` do not count.
+    /// Traces that come from a stream; the values in `traces` are ignored.
     ///
     /// # Errors
     /// As [`Traces::from_memory`].
@@ -157,8 +159,8 @@ impl Traces {
         self.frames
     }
 
-    /// Findings about the file and its channels, these with their names where there are several. What only
-    /// the values show is among them once all have been read.
+    /// Findings about the file and its channels; the latter name their channel where there are several.
+    /// Findings that need all values are added once all have been read.
     pub fn findings(&self) -> Vec<Finding> {
         let channels: Vec<_> =
             self.channels.iter().map(|m| (m.name.as_str(), m.findings.as_slice())).collect();
@@ -167,8 +169,8 @@ impl Traces {
         all
     }
 
-    /// Replaces the content of `block` by the next samples, one `Vec` a channel in SI units, and returns how
-    /// many there are of each; 0 at the end. Missing samples are NaN, where they are allowed.
+    /// Replaces the content of `block` by the next samples, one `Vec` a channel in SI units, and returns
+    /// their number in each channel; 0 at the end. Missing samples are NaN, where they are allowed.
     ///
     /// # Errors
     /// If the file cannot be read, or a sample is missing (or beyond all numbers in its unit) and that is not
@@ -178,8 +180,8 @@ impl Traces {
         self.append(block)
     }
 
-    /// As [`Traces::next_block`], but adds the samples behind what `block` holds, which saves a copy where
-    /// they are collected.
+    /// As [`Traces::next_block`], but appends the samples to `block`, which saves a copy where they are
+    /// collected.
     ///
     /// # Errors
     /// As [`Traces::next_block`].
@@ -195,8 +197,7 @@ impl Traces {
         Ok(frames)
     }
 
-    /// Hands out these channels only from here on, in this order; an index that does not exist is passed
-    /// over.
+    /// From here on hands out only these channels, in this order; indices that do not exist are ignored.
     pub fn keep(&mut self, channels: &[usize]) {
         self.stream.keep(channels);
         self.factors = picked(&self.factors, channels);
@@ -226,8 +227,8 @@ impl Traces {
     }
 }
 
-/// Index of a channel among `all`, names with their quantities, by its name, in any case where none has that
-/// of `wanted`, or by its number from 1; `path` is for the complaint.
+/// Index of a channel among `all`, pairs of name and quantity: by its name, in any case of letters where no
+/// name fits exactly, or by its number from 1. `path` is the file that an error names.
 ///
 /// # Errors
 /// If there is none, or two have this name.
@@ -269,7 +270,7 @@ pub fn find_channel<'a>(
     })
 }
 
-/// The file, where there is one.
+/// The file as the place of an error; no place where there is no file.
 fn place(path: &Path) -> Place {
     if path.as_os_str().is_empty() { Place::default() } else { Place::file(path) }
 }
@@ -280,7 +281,7 @@ fn apart(path: &Path, [a, b]: [&Trace; 2], of_a: &str, of_b: &str) -> Error {
         .hint("name the channels that belong together")
 }
 
-/// The sampling rate and the start that all traces have.
+/// The sampling rate in Hz and the start in s that all traces share.
 fn clock(path: &Path, traces: &[Trace], frames: usize) -> Result<(f64, f64)> {
     let rate_of = |trace: &Trace| {
         let of = |e: Error| e.in_file(path).of_record(&path.display().to_string());
@@ -295,7 +296,7 @@ fn clock(path: &Path, traces: &[Trace], frames: usize) -> Result<(f64, f64)> {
         if (own / rate - 1.0).abs() * frames as f64 > APART {
             return Err(apart(path, of, &format!("a rate of {rate} Hz"), &format!("{own} Hz")));
         }
-        // Those of two files may count from instants of their own.
+        // Traces of two files may count time from different origins.
         let origin = trace.meta.origin - first.meta.origin;
         if (origin + (begin - start)).abs() * rate > APART {
             let later = format!("{} s", notation::significant(origin + begin, 6));

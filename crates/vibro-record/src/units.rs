@@ -1,4 +1,4 @@
-//! Physical units: what an instrument wrote, and the factor that takes it to SI.
+//! Physical units: the spelling that an instrument wrote, and the factor that converts it to SI.
 //!
 //! Records hold SI values only. A reader parses the instrument's unit text with [`Unit::parse`], multiplies
 //! by [`Unit::factor`] and stores [`Unit::si`]. A text that is not understood is kept as an opaque unit with
@@ -53,7 +53,7 @@ pub struct Unit {
     factor: f64,
 }
 
-/// Whether a word is decibels.
+/// Whether a word is a unit of levels in decibels, such as `dBV` or `decibel`.
 pub fn is_level(word: &str) -> bool {
     let word = word.trim().to_lowercase();
     word.starts_with("db") || word.starts_with("decibel")
@@ -70,7 +70,7 @@ impl Unit {
         quantity.dimension().map_or_else(|| Unit::opaque(""), Unit::from_dimension)
     }
 
-    /// A unit that is not understood: kept as it is, factor 1, quantity [`Quantity::Other`].
+    /// A unit that is not understood: kept as written, factor 1, quantity [`Quantity::Other`].
     pub fn opaque(symbol: &str) -> Unit {
         Unit { symbol: symbol.trim().into(), dimension: None, factor: 1.0 }
     }
@@ -92,17 +92,18 @@ impl Unit {
         Some(Unit { symbol: text.trim().trim_matches(['[', ']']).into(), dimension: Some(dimension), factor })
     }
 
-    /// Reads a unit, keeping it as opaque where it is not understood.
+    /// Reads a unit; one that is not understood is kept as opaque.
     pub fn parse_or_opaque(text: &str) -> Unit {
         Unit::parse(text).unwrap_or_else(|| Unit::opaque(text))
     }
 
-    /// Reads a unit, or one of levels over a reference that is a unit, such as `dB re 1 g`.
+    /// Reads a unit, or a unit of levels whose reference is a unit, such as `dB re 1 g`.
     pub fn parse_or_level(text: &str) -> Option<Unit> {
         Unit::parse(text).or_else(|| Some(Unit::opaque(text)).filter(|unit| unit.reference().is_some()))
     }
 
-    /// What 0 dB stand for, where it is a unit of levels that says so: an amplitude, or a density of power.
+    /// The reference, at 0 dB, of a unit of levels that states it: an amplitude or a power density; else
+    /// `None`.
     ///
     /// ```
     /// use vibro_record::units::Unit;
@@ -115,7 +116,7 @@ impl Unit {
     pub fn reference(&self) -> Option<Unit> {
         let (_, reference) = self.symbol.split_once(" re ").filter(|_| self.is_level())?;
         let unit = Unit::parse(reference).or_else(|| Unit::parse(&format!("1 {reference}")))?;
-        // Of a watt, a square or another product it is open whether 10 dB or 20 dB are a factor of ten.
+        // For a watt, a square or another product it is unknown whether 10 dB or 20 dB are a factor of ten.
         (unit.quantity() != Quantity::Other || unit.symbol().ends_with("/Hz")).then_some(unit)
     }
 
@@ -124,7 +125,7 @@ impl Unit {
         &self.symbol
     }
 
-    /// One of this unit in SI units.
+    /// Factor that converts a value in this unit to SI.
     pub fn factor(&self) -> f64 {
         self.factor
     }
@@ -134,7 +135,7 @@ impl Unit {
         self.dimension.is_some()
     }
 
-    /// Whether it is one of levels, such as `dB re 1 m/s²`: values in it are no amplitudes.
+    /// Whether it is a unit of levels, such as `dB re 1 m/s²`: values in it are no amplitudes.
     pub fn is_level(&self) -> bool {
         !self.is_known() && is_level(self.symbol())
     }
@@ -144,8 +145,8 @@ impl Unit {
         self.dimension
     }
 
-    /// One of this unit in Hz: a frequency as it is, an angular velocity divided by 2π; `None` for anything
-    /// else.
+    /// Factor that converts a value in this unit to Hz: a frequency as it is, an angular velocity divided by
+    /// 2π; `None` for any other quantity.
     ///
     /// ```
     /// use vibro_record::units::Unit;
@@ -161,7 +162,7 @@ impl Unit {
         }
     }
 
-    /// What this unit measures.
+    /// Quantity that this unit measures.
     pub fn quantity(&self) -> Quantity {
         self.dimension.map_or(Quantity::Other, Quantity::of)
     }
@@ -199,7 +200,7 @@ impl std::fmt::Display for Unit {
 /// Multiplies values by a factor to SI; missing values (NaN) stay missing.
 ///
 /// # Errors
-/// If a value becomes infinite, for a double cannot hold it; the values before it are multiplied then.
+/// If a product is too large for a double; the values before it have been multiplied by then.
 pub fn scale<'a>(values: impl IntoIterator<Item = &'a mut f64>, factor: f64) -> Result<()> {
     for value in values {
         let product = *value * factor;

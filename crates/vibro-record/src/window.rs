@@ -1,4 +1,4 @@
-//! Windows of spectra.
+//! Spectral windows by name.
 //!
 //! Coefficients: F. J. Harris, "On the use of windows for harmonic analysis with the discrete Fourier
 //! transform", Proc. IEEE 66 (1978), table I; flat top: the five-term window of ISO 18431-2, as in scipy's
@@ -47,7 +47,7 @@ impl Window {
         TABLE[self as usize].0
     }
 
-    /// The window with this name, in the spellings analysers use; case, blanks, `-` and `_` do not count.
+    /// The window with this name, in the spellings of analysers; case, blanks, `-` and `_` are ignored.
     pub fn from_name(name: &str) -> Option<Window> {
         let key: String = name.to_lowercase().chars().filter(|c| c.is_alphanumeric()).collect();
         let key = match key.as_str() {
@@ -63,12 +63,13 @@ impl Window {
         TABLE[self as usize].1
     }
 
-    /// Mean of the samples: the factor by which a sine's line is too small before correction.
+    /// Mean of the samples: the factor by which the window lowers the line of a sine before correction.
     pub fn coherent_gain(self) -> f64 {
         self.coefficients()[0]
     }
 
-    /// Equivalent noise bandwidth in lines, Σw²·N/(Σw)² = 1 + Σₖ aₖ²/(2a₀²): 1 for none, 1.5 for Hann.
+    /// Equivalent noise bandwidth in spectral lines, Σw²·N/(Σw)² = 1 + Σₖ aₖ²/(2a₀²): 1 for no window, 1.5
+    /// for Hann.
     pub fn enbw(self) -> f64 {
         let a = self.coefficients();
         1.0 + a[1..].iter().map(|ak| ak * ak / (2.0 * a[0] * a[0])).sum::<f64>()

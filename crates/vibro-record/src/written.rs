@@ -1,5 +1,5 @@
-//! Values that a person writes as TOML. What is wrong with one is told by its place and by the kind that its
-//! type asks for; of the words of a parser none is read.
+//! Values that a person writes as TOML. Errors name the place and the kind of value that is expected; the
+//! parser's own messages are replaced wherever the cause is known.
 
 mod node;
 
@@ -12,29 +12,29 @@ use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-/// A text of TOML, and what is known of it.
+/// A TOML text, with the names that are known in it.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Written<'a> {
     /// The whole text.
     pub text: &'a str,
-    /// Keys that are known beside those of the type.
+    /// Keys that are allowed beside those of the type.
     pub beside: &'a [&'a str],
-    /// Words of the field, and the tables that are meant by them.
+    /// Words that a user may write, with the tables that they mean.
     pub meant: &'a [(&'a str, &'a str)],
 }
 
 impl<'a> Written<'a> {
-    /// Its keys and values.
+    /// Parses the text into keys and values.
     ///
     /// # Errors
-    /// If it is no TOML, with its line and what can be written in place of it.
+    /// If the text is no TOML: with its line, and what to write instead.
     pub fn parse(&self) -> Result<DeTable<'a>, Error> {
         DeTable::parse(self.text)
             .map(Spanned::into_inner)
             .map_err(|error| self.no_toml(error.message(), error.span().unwrap_or(0..0)))
     }
 
-    /// What keeps a text from being TOML, and what can be written in place of it.
+    /// The error of a text that is no TOML, with what to write instead.
     fn no_toml(&self, why: &str, span: Range<usize>) -> Error {
         if let Some(open) = self.unclosed(span.start) {
             return open;
@@ -60,8 +60,8 @@ impl<'a> Written<'a> {
         }
     }
 
-    /// Of a list without its closing bracket, which the parser misses in the line `at` further down: the line
-    /// that opens it.
+    /// For a list without its closing bracket, which the parser misses only further down, at `at`: the error
+    /// at the line that opens the list.
     fn unclosed(&self, at: usize) -> Option<Error> {
         let begin = start_of_line(self.text, at.min(self.text.len()));
         let (above, line) = (self.text[..begin].trim_end(), line_at(self.text, begin));
@@ -83,11 +83,11 @@ impl<'a> Written<'a> {
         Some(Error::usage(head, expected).excerpt(self.text, open..open + head.len()).hint(hint))
     }
 
-    /// A table of it, at `span`, as a type.
+    /// Reads a table, at the bytes `span`, as a type.
     ///
     /// # Errors
-    /// With the line of an unknown or missing key or a value of the wrong kind, and what can be written in
-    /// place of it: tried, so that the type takes it.
+    /// With the line of an unknown or missing key or of a value of the wrong kind, and what to write instead;
+    /// that has been tried, so the type accepts it.
     pub fn read<T: DeserializeOwned>(&self, table: &DeTable<'a>, span: Range<usize>) -> Result<T, Error> {
         T::deserialize(Node::table(table.clone(), &span)).map_err(|fault| {
             let at = fault.span.clone().unwrap_or_default();
@@ -103,14 +103,14 @@ impl<'a> Written<'a> {
         })
     }
 
-    /// What is wrong there, in words.
+    /// The error for a fault at these bytes.
     fn told(&self, what: What, at: Range<usize>, takes: impl Fn(&str) -> bool) -> Error {
         let line = line_at(self.text, at.start);
         let (stated, head) = (&self.text[at.clone()], uncommented(line));
         let told = |found: &str, expected: &str, hint: String| {
             Error::usage(found, expected).excerpt(self.text, at.clone()).hint(hint)
         };
-        // The line with another text at the place.
+        // The line with another text at this place.
         let with = |meant: &str| {
             let before = self.text[start_of_line(self.text, at.start)..at.start].trim_start();
             let behind = self.text[at.end..].lines().next().map_or("", uncommented);
@@ -168,7 +168,7 @@ impl<'a> Written<'a> {
     }
 }
 
-/// Puts another value to a place; nothing where there is none.
+/// Puts another value at a place; `None` where no value is there.
 fn put<'i>(table: &mut DeTable<'i>, at: &Range<usize>, value: DeValue<'i>) -> Option<()> {
     let mut left: Vec<&mut Spanned<DeValue<'i>>> = table.iter_mut().map(|(_, value)| value).collect();
     while let Some(one) = left.pop() {
@@ -185,8 +185,8 @@ fn put<'i>(table: &mut DeTable<'i>, at: &Range<usize>, value: DeValue<'i>) -> Op
     None
 }
 
-/// What may be meant by a value, in the order in which it is tried, each with what was expected; of a value
-/// that is no TOML no kind is known.
+/// Values that may be meant by a text, in the order in which they are tried, each with the kind that was
+/// expected. For text that is no TOML the kind is not known.
 fn values(key: &str, stated: &str, kind: Option<&Kind>) -> Vec<(String, String)> {
     let bare = stated.trim_matches(['"', '\'', '“', '”']).trim();
     let word = bare.to_lowercase();
@@ -234,10 +234,10 @@ fn values(key: &str, stated: &str, kind: Option<&Kind>) -> Vec<(String, String)>
     all.into_iter().filter_map(|(expected, meant)| Some((expected.to_owned(), meant?))).collect()
 }
 
-/// What a key of a low-pass takes.
+/// Value of a key for a low-pass.
 const CORNER: &str = "a corner in Hz, or \"none\"";
 
-/// What is meant by a line that is no TOML, with what was expected.
+/// The line that may be meant by one that is no TOML, with what was expected.
 fn respelt(line: &str) -> Option<(String, String)> {
     let at = line.find(['=', ':'])?;
     let (key, stated) = (line[..at].trim(), line[at + 1..].trim());
@@ -258,7 +258,7 @@ fn is_toml(text: &str) -> bool {
     DeTable::parse(text).is_ok()
 }
 
-/// A line or a part of one without the comment at its end.
+/// A line, or part of one, without the comment at its end.
 fn uncommented(line: &str) -> &str {
     let (mut open, mut escaped) = (None, false);
     let is_comment = |c: char| {
@@ -273,7 +273,7 @@ fn uncommented(line: &str) -> &str {
     line.split(is_comment).next().unwrap_or_default().trim_end()
 }
 
-/// A line whose value is a word with a number behind it, `name = Run #1`: that is no comment.
+/// A line whose value is a word with a number after it, `name = Run #1`: the number is no comment.
 fn with_number(line: &str) -> Option<&str> {
     let (before, number) = line.rsplit_once(" #")?;
     let (_, word) = before.split_once('=')?;
@@ -281,7 +281,7 @@ fn with_number(line: &str) -> Option<&str> {
     (is_number && word.trim_start().starts_with(char::is_alphabetic)).then_some(line)
 }
 
-/// The head of one of several tables that is meant by a line whose brackets are no pairs.
+/// The correct head, in double brackets, for a line whose brackets do not match.
 fn head_of_tables(head: &str) -> Option<String> {
     let name = head.trim_start_matches('[').trim_end_matches(']');
     let outside = head.len() - name.len();
@@ -289,12 +289,12 @@ fn head_of_tables(head: &str) -> Option<String> {
     (odd && outside == 3).then(|| format!("[[{}]]", name.trim()))
 }
 
-/// Where the line begins that holds byte `at`.
+/// Start of the line that contains byte `at`.
 fn start_of_line(text: &str, at: usize) -> usize {
     text.get(..at).and_then(|before| before.rfind('\n')).map_or(0, |end| end + 1)
 }
 
-/// The line that holds byte `at`, without the blanks around it.
+/// The line that contains byte `at`, without blanks at its ends.
 fn line_at(text: &str, at: usize) -> &str {
     text.get(start_of_line(text, at)..).and_then(|rest| rest.lines().next()).unwrap_or_default().trim()
 }

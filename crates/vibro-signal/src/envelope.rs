@@ -1,10 +1,10 @@
-//! The envelope of a signal: how high its swings are, whatever their phase.
+//! The envelope of a signal: its amplitude at each instant, whatever the phase.
 
 use crate::fft::Transform;
 use num_complex::Complex64;
 
-/// √(x² + x̂²) with the Hilbert transform x̂, the same with all lines a quarter of a turn behind (Gabor, J.
-/// IEE 93 III (1946) 429).
+/// √(x² + x̂²) with the Hilbert transform x̂, which delays each line by a quarter of a turn (Gabor, J. IEE 93
+/// III (1946) 429).
 ///
 /// ```
 /// let swing = |i: i32| f64::from(i) * std::f64::consts::TAU / 16.0;

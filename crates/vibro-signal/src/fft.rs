@@ -1,13 +1,13 @@
 //! Fourier transforms of real records.
 //!
-//! Xₖ = Σ xₙ e^(−2πikn/N), without a factor, for k = 0 … N/2; the inverse divides by N, so that both together
-//! change nothing.
+//! Xₖ = Σ xₙ e^(−2πikn/N), without a factor, for k = 0 … N/2. The inverse divides by N, so that it restores
+//! the record.
 
 use num_complex::Complex64;
 use realfft::{ComplexToReal, RealFftPlanner, RealToComplex};
 use std::sync::{Arc, LazyLock, Mutex, PoisonError};
 
-/// Tables are made once for each length, for all threads.
+/// Tables of each length are computed once, for all threads.
 static PLANNER: LazyLock<Mutex<RealFftPlanner<f64>>> = LazyLock::new(|| Mutex::new(RealFftPlanner::new()));
 
 /// The transform of one length.
@@ -26,17 +26,17 @@ pub struct Transform {
     inverse: Arc<dyn ComplexToReal<f64>>,
 }
 
-/// What a transform works in: one a thread.
+/// Memory of a transform; each thread needs its own.
 pub struct Workspace {
     /// The record; destroyed by the transform.
     pub input: Vec<f64>,
-    /// The lines.
+    /// The spectral lines.
     pub output: Vec<Complex64>,
     scratch: Vec<Complex64>,
 }
 
 impl Workspace {
-    /// Takes a record, weighted, without a level.
+    /// Takes a record, subtracts `level` and applies the weights.
     pub(crate) fn load(&mut self, values: &[f64], level: f64, weights: &[f64]) {
         for ((to, v), w) in self.input.iter_mut().zip(values).zip(weights) {
             *to = (v - level) * w;
@@ -45,14 +45,14 @@ impl Workspace {
 }
 
 impl Transform {
-    /// The transform of records of `n` samples; a quick one where `n` has small factors only.
+    /// The transform of records of `n` samples; fast where `n` has small factors only.
     pub fn new(n: usize) -> Transform {
-        // A planner whose user panicked holds only finished tables.
+        // Even after a panic in another thread the planner holds only finished tables.
         let mut planner = PLANNER.lock().unwrap_or_else(PoisonError::into_inner);
         Transform { n, forward: planner.plan_fft_forward(n), inverse: planner.plan_fft_inverse(n) }
     }
 
-    /// Number of lines, N/2 + 1.
+    /// Number of spectral lines, N/2 + 1.
     pub fn lines(&self) -> usize {
         self.n / 2 + 1
     }
@@ -66,7 +66,7 @@ impl Transform {
         }
     }
 
-    /// Transforms what stands in the workspace, without allocating.
+    /// Transforms the record in the workspace, without allocating memory.
     ///
     /// # Panics
     /// If the workspace is of another length.
@@ -75,7 +75,7 @@ impl Transform {
         assert!(done.is_ok(), "a workspace of another length");
     }
 
-    /// Lines of a record. Short records end in zeros, of long ones the rest is left out.
+    /// Spectral lines of a record. Short records are filled with zeros, long ones are truncated.
     pub fn forward(&self, values: &[f64]) -> Vec<Complex64> {
         let mut work = self.workspace();
         work.input.iter_mut().zip(values).for_each(|(to, from)| *to = *from);
@@ -83,8 +83,8 @@ impl Transform {
         work.output
     }
 
-    /// Record of these lines. Missing lines are zero; what a real record cannot have (an imaginary part at
-    /// zero and at half the sampling rate) is left out.
+    /// Record with these spectral lines. Missing lines are zero. Imaginary parts at zero and at half the
+    /// sampling rate, which no real record has, are ignored.
     pub fn inverse(&self, lines: &[Complex64]) -> Vec<f64> {
         let mut input = self.inverse.make_input_vec();
         input.iter_mut().zip(lines).for_each(|(to, from)| *to = *from);

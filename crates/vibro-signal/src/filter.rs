@@ -82,8 +82,8 @@ impl Filter {
         Ok(Filter { name: format!("exponential smoothing, corner {} Hz", shortest(corner)), rate, sections })
     }
 
-    /// Sections of second order one behind the other, each transformed bilinearly such that it is exact at
-    /// one frequency: s = c(1 − z⁻¹)/(1 + z⁻¹) with c = 2πf/tan(πf/rate).
+    /// A cascade of second-order sections, each transformed bilinearly such that it is exact at one
+    /// frequency: s = c(1 − z⁻¹)/(1 + z⁻¹) with c = 2πf/tan(πf/rate).
     ///
     /// # Errors
     /// If one of these frequencies does not lie between 0 and half the sampling rate.
@@ -105,7 +105,7 @@ impl Filter {
         self.sections.iter().map(one).product()
     }
 
-    /// Filters forwards, as if the input had had the value `before` for ever; 0 is a filter at rest.
+    /// Filters forwards, in place, as if the input had always been `before`; 0 for a filter at rest.
     pub fn causal(&self, values: &mut [f64], before: f64) {
         let mut level = before;
         for Section { b, a } in &self.sections {
@@ -169,8 +169,8 @@ impl std::fmt::Display for Filter {
     }
 }
 
-/// A Butterworth filter from the numerators of a pair of poles and of the real pole of an odd order, at a
-/// warped corner.
+/// A Butterworth filter from the numerators of its pairs of poles and of the real pole of an odd order, which
+/// depend on the pre-warped corner.
 fn butterworth(
     kind: &str,
     numerators: fn(f64) -> ([f64; 3], [f64; 2]),
@@ -188,7 +188,7 @@ fn butterworth(
     Ok(Filter { name, rate, sections: real.into_iter().chain(pairs).collect() })
 }
 
-/// Corner in the analogue plane, s = (1 − z⁻¹)/(1 + z⁻¹).
+/// Pre-warped corner, tan(π·corner/rate), in the analogue plane of s = (1 − z⁻¹)/(1 + z⁻¹).
 fn warped(corner: f64, rate: f64) -> Result<f64> {
     if !(corner > 0.0 && corner < rate / 2.0 && rate.is_finite()) {
         return Err(Error::usage(

@@ -1,9 +1,9 @@
-//! Frequency response functions from hammer blows: one record a blow, of the force and of the response that
-//! rings down.
+//! Frequency response functions from hammer blows: each record holds the force of one blow and the response
+//! that rings down.
 //!
-//! The force counts only while the hammer touches (force window); a response that has not died away when the
-//! record ends is made to (exponential window, on the force, too). That adds damping, by an amount that is
-//! known and reported.
+//! The force counts only while the hammer touches (force window). A response that still rings when the record
+//! ends is weighted down to its end (exponential window, on the force, too). That adds damping by a known
+//! amount, which is reported.
 
 mod left;
 
@@ -19,37 +19,39 @@ use vibro_record::lanes;
 use vibro_record::units::notation::shortest;
 use vibro_record::{Error, Finding, Meta, Result, Trace, median};
 
-/// Part of the largest force, above the level before it, at which a blow is noticed.
+/// Trigger level above the quiet level, over the largest force: lower finds weaker blows, but also noise.
 const TRIGGER: f64 = 0.2;
-/// A second blow from this part of the smoothed peak on: from a tenth, where noise and filters take less than
-/// a third of it.
+/// Smallest second blow that is looked for, over the smoothed peak. It finds true second blows from a tenth
+/// of the peak on, where noise and filters take less than a third of them.
 const SECOND: f64 = 0.07;
-/// A second blow rises from a valley by this factor; the flank of a blow, however bent, does not.
+/// A second blow rises from the valley before it by this factor; the flank of one blow, however bent, does
+/// not.
 const RISE: f64 = 2.0;
-/// Standard deviations of the noise that no sample of a record reaches by chance: 1 in 10⁹.
+/// Threshold for noise in its standard deviations: a sample exceeds 6σ by chance once in 10⁹.
 const SIGMAS: f64 = 6.0;
-/// A hammer that bounces does so within this time in s; nobody strikes again so soon.
+/// Time in s within which the hammer bounces: nobody strikes again so soon.
 const BOUNCE: f64 = 0.1;
-/// A force that stands less than this factor (10 dB) above its noise tells nothing of the response to it.
+/// Smallest power of the force over that of its noise (10 dB): below it a spectral line shows no response to
+/// the force.
 const AUDIBLE: f64 = 10.0;
-/// An extreme nearer the quiet level than this part of the other one is no rail: a force does not go below
-/// zero.
+/// An extreme nearer the quiet level than this part of the larger extreme is no clipping level: a force does
+/// not go below zero.
 const RAIL: f64 = 0.1;
 
 const CUT_OFF: &str = "the record cuts it off";
 const DOUBLE: &str = "double hit";
 const OVERLOAD: &str = "overload";
 
-/// How blows are taken out of a long record.
+/// How records of single blows are cut out of a long record, and weighted.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Blows {
-    /// Samples of one record.
+    /// Samples in the record of one blow.
     pub length: usize,
-    /// Samples before the blow.
+    /// Samples of it before the trigger.
     pub before: usize,
-    /// Width in s of the force window from the blow on; the whole record where `None`.
+    /// Width in s of the force window, from the trigger on; the whole record where `None`.
     pub force_window: Option<f64>,
-    /// What the exponential window leaves at the end of the record, e.g. 0.01; none where `None`.
+    /// Weight of the exponential window at the end of the record, e.g. 0.01; no such window where `None`.
     pub left_at_end: Option<f64>,
 }
 
@@ -58,19 +60,19 @@ pub struct Blows {
 pub struct Blow {
     /// Time in s at which the force passes the trigger.
     pub time: f64,
-    /// Largest force.
+    /// Largest force, less the quiet level before the blow, in the unit of the force.
     pub peak: f64,
-    /// Why it was left out; `None` where it counts.
+    /// Why the blow was left out; `None` where it counts.
     pub rejected: Option<&'static str>,
     /// First sample of its record.
     #[serde(skip)]
     pub(crate) start: usize,
 }
 
-/// A function from blows.
+/// A frequency response function from blows.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BlowTransfer {
-    /// The function; an exponential window has not been corrected for.
+    /// The function; the damping that an exponential window adds has not been corrected.
     pub transfer: Transfer,
     /// Every blow.
     pub blows: Vec<Blow>,
@@ -80,14 +82,14 @@ pub struct BlowTransfer {
     /// The windows that were applied: `rectangular` for none, `force`, `exponential`, or `force and
     /// exponential`.
     pub window: &'static str,
-    /// Equivalent noise bandwidth in lines of the response's window, NΣw²/(Σw)².
+    /// Equivalent noise bandwidth of the response's window in spectral lines, NΣw²/(Σw)².
     pub enbw: f64,
 }
 
 /// Sampling rate in Hz of a force and its response.
 ///
 /// # Errors
-/// Those of [`from_blows`] that its traces and its settings have before a blow is found.
+/// Those of [`from_blows`] about the traces and the settings.
 fn rate_of(force: &Trace, response: &Trace, how: &Blows) -> Result<f64> {
     let (rate, other, n) = (force.sampling_rate()?, response.sampling_rate()?, force.values.len());
     if rate != other || n != response.values.len() {
@@ -111,7 +113,7 @@ fn rate_of(force: &Trace, response: &Trace, how: &Blows) -> Result<f64> {
     Ok(rate)
 }
 
-/// What to say where no blow is clean.
+/// The error where no blow is clean: why each was rejected, and what to change.
 ///
 /// # Errors
 /// If the force has no sampling rate.
@@ -153,8 +155,8 @@ pub fn from_blows(
     let mut sums = Sums::new(2, true, transform.lines());
     let mut noise = 0.0;
     for start in &kept {
-        // Steps from sample to sample: hum and drift before the blow are no noise of all lines. A blow begins
-        // below the trigger.
+        // Noise from differences of neighbouring samples, which leave out hum and drift. Only the first half
+        // of the time before the trigger counts, since a blow begins below the trigger.
         let before = force.values.get(*start..start + how.before / 2).unwrap_or_default();
         let squares: f64 = before.windows(2).map(|w| (w[1] - w[0]).powi(2)).sum();
         noise += 0.5 * squares / before.len().saturating_sub(1).max(1) as f64 / kept.len() as f64;
@@ -194,10 +196,10 @@ pub fn from_blows(
     })
 }
 
-/// Samples from a blow to the next, or from the last one to the end of the record: what a record that holds
-/// one blow alone may have.
+/// Fewest samples from one blow to the next, or to the end of the record: the longest record that holds a
+/// single blow.
 ///
-/// What is behind the last blow counts where it is not much shorter than what is behind the others.
+/// The samples after the last blow count unless they are fewer than half of those between blows.
 ///
 /// # Errors
 /// If the force has no sampling rate.
@@ -218,7 +220,7 @@ pub fn spacing(force: &Trace) -> Result<usize> {
     })
 }
 
-/// How many blows are left out, and why.
+/// The finding that blows are left out, counted by reason; `None` where all count.
 fn left_out(blows: &[Blow]) -> Option<Finding> {
     let count = |why| blows.iter().filter(|b| b.rejected == Some(why)).count();
     let reasons = [("double", DOUBLE), ("overload", OVERLOAD), ("cut_off", CUT_OFF)];
@@ -231,7 +233,7 @@ fn left_out(blows: &[Blow]) -> Option<Finding> {
 /// All blows of a force.
 fn find(force: &Trace, response: &Trace, how: &Blows, rate: f64) -> Vec<Blow> {
     let values = &force.values;
-    // Blows are short: what the force is most of the time is its zero, whatever the amplifier adds.
+    // Blows are short: the median of the force is its zero, whatever offset the amplifier adds.
     let rest = Quiet::of(values);
     let zero = rest.level;
     let extreme = values.iter().map(|v| v - zero).fold(0.0f64, |m, v| if v.abs() > m.abs() { v } else { m });
@@ -249,7 +251,7 @@ fn find(force: &Trace, response: &Trace, how: &Blows, rate: f64) -> Vec<Blow> {
         }
         let (trigger, end) = (i, i.saturating_add(how.length - how.before).min(values.len()));
         let start = trigger.saturating_sub(how.before);
-        // The zero may wander from blow to blow.
+        // The zero may drift from blow to blow.
         let quiet = if trigger > start { Quiet::of(&values[start..trigger]) } else { rest };
         let peak = values[trigger..end].iter().map(|v| sign * (v - quiet.level)).fold(0.0, f64::max);
         let second = second(&smooth[start..end], trigger - start, sign, smooth_rest.sigma);
@@ -262,7 +264,7 @@ fn find(force: &Trace, response: &Trace, how: &Blows, rate: f64) -> Vec<Blow> {
         found.push(Blow { time, peak: sign * peak, rejected, start });
         i = end.max(trigger + 1);
     }
-    // One sample at the value where any blow was clipped is clipped as well.
+    // A sample at a value where any blow was clipped is clipped, even where it is alone.
     for blow in &mut found {
         let reaches = |(channel, rails): (&&Vec<f64>, &Vec<f64>)| {
             let part = lanes::survey(&channel[blow.start..blow.start + how.length]);
@@ -275,8 +277,8 @@ fn find(force: &Trace, response: &Trace, how: &Blows, rate: f64) -> Vec<Blow> {
     found
 }
 
-/// Samples of the force, averaged with the Hann window of eight: what a filter near the end of the band rings
-/// with, above a fifth of the rate, is 18 dB down there and above a quarter 31 dB, and a blow is not, whose
+/// The force averaged with a Hann window of eight samples. It reduces the ringing of filters near the end of
+/// the band by 18 dB above a fifth of the sampling rate and by 31 dB above a quarter, but not a blow, whose
 /// force has one sign.
 fn smoothed(values: &[f64]) -> Vec<f64> {
     let weights: [f64; 7] = std::array::from_fn(|k| 0.25 * (PI * (k + 1) as f64 / 8.0).sin().powi(2));
@@ -287,8 +289,8 @@ fn smoothed(values: &[f64]) -> Vec<f64> {
     (0..values.len()).map(at).collect()
 }
 
-/// Whether a smoothed force, quiet in its first `before` samples, rises again behind its largest blow or
-/// before it.
+/// Whether a smoothed force rises again before or after its largest blow; its first `before` samples are
+/// quiet.
 fn second(values: &[f64], before: usize, sign: f64, noise: f64) -> bool {
     let quiet = Quiet::of(if before > 0 { &values[..before] } else { values });
     let push = |j: usize| sign * (values[j] - quiet.level);
@@ -305,7 +307,7 @@ fn second(values: &[f64], before: usize, sign: f64, noise: f64) -> bool {
     rises(Box::new(top..values.len())) || rises(Box::new((before..top).rev()))
 }
 
-/// Level and noise of samples of which most are quiet.
+/// Level and noise of values of which most are quiet.
 #[derive(Clone, Copy)]
 struct Quiet {
     level: f64,
@@ -313,15 +315,15 @@ struct Quiet {
 }
 
 impl Quiet {
-    /// Median, and the standard deviation of the normal distribution that has the same median deviation.
+    /// Median, and the standard deviation of a normal distribution with the same median absolute deviation.
     fn of(values: &[f64]) -> Quiet {
         let level = median(values);
         Quiet { level, sigma: 1.4826 * median(values.iter().map(|v| (v - level).abs())) }
     }
 }
 
-/// The highest or lowest value of a record, quiet in its first `before` samples, where it stays there: each
-/// rail on its own, since an offset takes a signal to one of them first.
+/// The value at which a record is clipped, its highest or its lowest; its first `before` samples are quiet.
+/// Each end is judged on its own, since an offset drives a signal into one of them first.
 fn overloaded(values: &[f64], before: usize) -> Option<f64> {
     let level = Quiet::of(if before > 0 { &values[..before] } else { values }).level;
     let mut rails = Rails::default();
@@ -330,7 +332,7 @@ fn overloaded(values: &[f64], before: usize) -> Option<f64> {
     rails.clipped(reach).map(|(rail, _)| rail).find(|rail| (rail - level).abs() > RAIL * reach)
 }
 
-/// Decay in 1/s, and the weights of force and response.
+/// Decay of the exponential window in 1/s, and the weights of force and response.
 fn windows(how: &Blows, rate: f64) -> Result<(f64, [Vec<f64>; 2])> {
     let after = (how.length - how.before) as f64 / rate;
     let outside = |value: Option<f64>, most: f64| value.filter(|v| !(*v > 0.0 && *v <= most));
@@ -346,7 +348,7 @@ fn windows(how: &Blows, rate: f64) -> Result<(f64, [Vec<f64>; 2])> {
         (0..how.length).map(|i| (-decay * (i as f64 - how.before as f64).max(0.0) / rate).exp()).collect();
     let force = exponential.iter().enumerate().map(|(i, weight)| {
         let t = (i as f64 - how.before as f64) / rate;
-        // A quarter of its width to come down, so that the window itself rings little.
+        // It falls over a quarter of its width, so that the window itself rings little.
         let down = if width.is_finite() { ((t - width) / (0.25 * width)).clamp(0.0, 1.0) } else { 0.0 };
         weight * 0.5 * (1.0 + (PI * down).cos())
     });

@@ -1,39 +1,40 @@
-//! The ends of a channel's range, and whether it rests at one of them as at a rail.
+//! The ends of a channel's range, and whether the signal is clipped at them.
 
-/// So many samples in a row at the very extreme are a clipped signal.
+/// Fewest equal samples in a row at an extreme that count as clipped.
 const CLIPPED: usize = 3;
-/// Steps of the converter by which a round top of three equal samples or more may fall to the next: (5/3)²
-/// for three, and noise.
+/// Steps of the converter by which the round top of a sine, three or more equal samples, may fall to its
+/// neighbours: (5/3)² for three, and noise.
 const ROUNDED: f64 = 8.0;
-/// Steps in a record of which only few different values are known: at least so many up to its extreme.
+/// Fewest steps of the converter from the signal's level to its extreme, assumed where a record shows only
+/// few different values.
 const COARSEST: f64 = 250.0;
 
-/// Smallest and largest value of samples that come one by one, and how they are left.
+/// Smallest and largest value of samples that come one by one, and how steeply the signal leaves them.
 ///
-/// A slow vibration in coarse steps stays at its extreme, too, but leaves it by a few steps; a clipped one
+/// A slow vibration in coarse steps rests at its extreme, too, but leaves it by a few steps. A clipped signal
 /// leaves it as steeply as it came.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Rails {
     /// Largest and smallest value.
     ends: [Rail; 2],
-    /// The value before the run of equal ones that is under way, that value, and how often it came.
+    /// The value before the present run of equal values, the value of the run, and its length in samples.
     before: f64,
     last: f64,
     run: usize,
-    /// Smallest step between neighbours that differ.
+    /// Smallest step between neighbours that differ, an estimate of the converter's step.
     step: f64,
-    /// Runs of equal values that are no crest, wherever they lie.
+    /// Runs of at least three equal values, at any level.
     flats: usize,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Rail {
     value: f64,
-    /// Samples there.
+    /// Samples at this value.
     count: usize,
-    /// Largest step beside a run of them that is no crest.
+    /// Largest step before or after a run of at least three of them.
     fall: f64,
-    /// Such runs.
+    /// Number of these runs.
     flats: usize,
 }
 
@@ -46,7 +47,7 @@ impl Default for Rails {
 }
 
 impl Rails {
-    /// Takes samples that follow those before.
+    /// Takes samples that follow the earlier ones.
     pub fn extend(&mut self, values: &[f64]) {
         for v in values {
             if *v != self.last {
@@ -70,9 +71,9 @@ impl Rails {
         self.ends.map(|end| end.value)
     }
 
-    /// Ends at which samples rest, with their number: rails, where the signal is clipped. One that rests
-    /// elsewhere, too, is held between its samples. `reach` is how far it goes from its own level, where
-    /// few of its values are known; else infinite.
+    /// Ends of the range at which the signal is clipped, with their number of samples. A signal that rests as
+    /// often elsewhere is held between its samples, not clipped. `reach` is its largest distance from its own
+    /// level, to be given where few of its values are known; else infinite.
     pub fn clipped(&self, reach: f64) -> impl Iterator<Item = (f64, usize)> {
         let mut all = *self;
         all.leave(f64::NAN);
@@ -82,12 +83,12 @@ impl Rails {
         all.ends.into_iter().filter(rests).map(|end| (end.value, end.count))
     }
 
-    /// The run under way ends before `next`.
+    /// Ends the present run, which `next` follows.
     fn leave(&mut self, next: f64) {
         if self.run < CLIPPED {
             return;
         }
-        // What is not a number, before the first and behind the last run, counts as no step.
+        // NaN, before the first and after the last run, counts as no step.
         let fall = (self.before - self.last).abs().max((next - self.last).abs());
         self.flats += 1;
         for end in self.ends.iter_mut().filter(|end| end.value == self.last) {
@@ -112,14 +113,14 @@ mod tests {
 
     fn of(values: &[f64]) -> Vec<(f64, usize)> {
         let mut rails = Rails::default();
-        // In blocks of any length.
+        // The result does not depend on the length of the blocks.
         for block in values.chunks(7) {
             rails.extend(block);
         }
         let [high, low] = rails.range();
         let mut at_once = Rails::default();
         at_once.extend(values);
-        // As text, in which what is not a number equals itself.
+        // Compared as text, in which NaN equals itself.
         assert_eq!(format!("{rails:?}"), format!("{at_once:?}"));
         let known = rails.clipped(f64::INFINITY).collect();
         assert!(values.len() < 100 || rails.clipped(high.max(-low)).count() >= Vec::len(&known));
@@ -137,12 +138,12 @@ mod tests {
         // Eight bits at 400 samples a period: a crest rests for 25 samples on its last step.
         let coarse: Vec<f64> = sine(400.0).map(|v| (127.0 * v).round()).collect();
         assert!(of(&coarse).is_empty(), "{:?}", of(&coarse));
-        // The same through a quarter of the range, and through a converter that holds its values.
+        // The same in a sixth of the steps, and through a converter that holds its values for ten samples.
         let small: Vec<f64> = sine(400.0).map(|v| (20.0 * v).round()).collect();
         assert!(of(&small).is_empty(), "{:?}", of(&small));
         let held: Vec<f64> = (0..4000).map(|i| (TAU * f64::from(i / 10 * 10) / 403.0).sin()).collect();
         assert!(of(&held).is_empty(), "{:?}", of(&held));
-        // A rail that is reached once more than three times in a row, at the end.
+        // A clipping level that is reached once, in three samples at the end.
         assert_eq!(of(&[0.0, 0.01, 0.02, 1.0, 1.0, 1.0]), [(1.0, 3)]);
         assert!(of(&[]).is_empty() && of(&[1.0; 9]).is_empty());
     }

@@ -1,19 +1,19 @@
-//! Records cut into overlapping segments, a batch of them at a time.
+//! Cuts records into overlapping segments, one batch of segments at a time.
 
 use super::rails::Rails;
 use super::sound::no_gaps;
 use vibro_record::{Error, Result, Traces};
 
-/// Samples of each channel in one batch: several segments for several cores, and yet no more than a cache
-/// holds.
+/// Samples of each channel in one batch: enough segments for several cores, and few enough for a processor's
+/// cache.
 const BATCH: usize = 128 * 1024;
 
 /// Length and distance of segments in samples.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Segments {
-    /// Samples of one.
+    /// Samples of a segment.
     pub length: usize,
-    /// Samples from the start of one to the start of the next.
+    /// Samples from the start of a segment to the start of the next.
     pub hop: usize,
 }
 
@@ -37,13 +37,13 @@ impl Segments {
         Ok(Segments { length, hop: (length - shared.min(length)).max(1) })
     }
 
-    /// Whole segments in `n` samples.
+    /// Number of whole segments in `n` samples.
     pub fn count(self, n: usize) -> usize {
         if n < self.length { 0 } else { (n - self.length) / self.hop + 1 }
     }
 }
 
-/// Reads a file's channels and hands out as many whole segments at a time as fill a batch.
+/// Reads the channels of a file in batches of whole segments.
 pub(crate) struct Batches<'a> {
     traces: &'a mut Traces,
     segments: Segments,
@@ -54,15 +54,14 @@ pub(crate) struct Batches<'a> {
 }
 
 impl<'a> Batches<'a> {
-    /// All channels from the place at which `traces` stands.
+    /// All channels from the present place of `traces` on.
     pub fn new(traces: &'a mut Traces, segments: Segments) -> Batches<'a> {
         let ranges = vec![Rails::default(); traces.channels().len()];
         Batches { traces, segments, frames: 0, ranges }
     }
 
-    /// Adds samples to `batch` (one `Vec` a channel, which hold what [`Batches::carry`] left there) up to a
-    /// full batch (more by less than a block of the file) or the end; returns the number of whole
-    /// segments in it.
+    /// Fills `batch`, one `Vec` a channel that starts with the samples from [`Batches::carry`], up to a full
+    /// batch (and less than a block of the file more) or the end. Returns the number of whole segments in it.
     ///
     /// # Errors
     /// If the file cannot be read, or a sample is missing.
@@ -74,7 +73,7 @@ impl<'a> Batches<'a> {
             if new == 0 {
                 break;
             }
-            // Missing samples are refused, for a transform would spread them over all lines.
+            // Missing samples are refused: a transform would spread them over all lines.
             for ((column, range), meta) in batch.iter().zip(&mut self.ranges).zip(self.traces.channels()) {
                 let values = &column[column.len() - new..];
                 no_gaps(values, &meta.name, self.frames)?;
@@ -85,7 +84,7 @@ impl<'a> Batches<'a> {
         Ok(self.segments.count(batch.first().map_or(0, Vec::len)))
     }
 
-    /// Takes over into `next` what the `count` segments of `batch` leave for the segments behind them.
+    /// Copies the samples of `batch` that segments after the `count` first still need into `next`.
     pub fn carry(&self, batch: &[Vec<f64>], count: usize, next: &mut Vec<Vec<f64>>) {
         next.resize_with(batch.len(), Vec::new);
         for (column, values) in next.iter_mut().zip(batch) {

@@ -1,9 +1,9 @@
-//! What a transform or a filter asks of samples.
+//! Checks of samples before a transform or a filter.
 
 use vibro_record::{Error, Result};
 
-/// Refuses missing samples of a channel, the first of them `before` samples behind its start: they would
-/// spread over all of the result.
+/// Refuses missing samples of a channel, which would spread over all of the result; `values` begins `before`
+/// samples after the start of the channel.
 pub(crate) fn no_gaps(values: &[f64], channel: &str, before: usize) -> Result<()> {
     let Some(place) = values.iter().position(|v| !v.is_finite()) else { return Ok(()) };
     let at = before + place;
@@ -14,7 +14,7 @@ pub(crate) fn no_gaps(values: &[f64], channel: &str, before: usize) -> Result<()
         .setting("span"))
 }
 
-/// A channel of one value has no spectrum.
+/// The error of a constant channel, which has no spectrum.
 pub(crate) fn constant(channel: &str, value: f64) -> Error {
     Error::refused(format!("channel {channel:?} is constant at {value}: it has no spectrum"))
         .hint("check the sensor, its cable and the range of the input")

@@ -1,10 +1,9 @@
-//! Lines of a record with a named scaling.
+//! Spectral lines of a record in a named scaling.
 //!
-//! One-sided: a line stands for its frequency and the negative one, so that powers are doubled, but for zero
-//! and, at an even number of samples, half the sampling rate f, which stand for themselves. With Σw the sum
-//! of the window's samples and c = 2 (or 1 for those two): power c|X|²/(Σw)², RMS its root, peak amplitude
-//! c|X|/Σw, density c|X|²/(f Σw²) (Heinzel, Rüdiger & Schilling, Spectrum and spectral density estimation by
-//! the DFT, 2002, section 9).
+//! One-sided: a line holds its frequency and the negative one, so that powers are doubled; not so at zero
+//! and, at an even number of samples, at half the sampling rate f. With Σw the sum of the window's samples
+//! and c = 2 (or 1 for those two): power c|X|²/(Σw)², RMS its root, peak amplitude c|X|/Σw, density c|X|²/(f
+//! Σw²) (Heinzel, Rüdiger & Schilling, Spectrum and spectral density estimation by the DFT, 2002, section 9).
 
 use super::fft::Transform;
 use super::segment::Segments;
@@ -15,10 +14,10 @@ use num_complex::Complex64;
 use vibro_record::units::Unit;
 use vibro_record::{Axis, Error, Meta, Result, Scaling, Spectrum, Trace, Values, Window};
 
-/// The spectrum of a whole trace, lines complex where the scaling keeps their phase (peak and RMS).
+/// The spectrum of a whole trace; its lines are complex where the scaling keeps their phase (peak and RMS).
 ///
-/// The phase is that of A cos(ωt + φ) at the first sample. With `detrend` the mean is taken out first, and
-/// the line at 0 Hz, which would be what a window leaves of nothing, is NaN.
+/// The phase is that of A cos(ωt + φ) at the first sample. With `detrend` the mean is subtracted first. The
+/// line at 0 Hz is then NaN: it would hold only what the window adds to a mean of zero.
 ///
 /// ```
 /// use vibro_record::{Axis, Meta, Scaling, Trace, Window};
@@ -70,7 +69,8 @@ pub fn plain(trace: &Trace, window: Window, scaling: Scaling, detrend: bool) -> 
     Ok(found)
 }
 
-/// The spectrum of one channel from averaged squares. The line at 0 Hz is NaN where segments lost their mean.
+/// The spectrum of one channel from averaged squares. The line at 0 Hz is NaN where the mean of segments was
+/// subtracted.
 ///
 /// # Errors
 /// If there is no such channel, or the scaling is not one that a transform gives.
@@ -99,14 +99,14 @@ pub fn averaged(
     finished(averages, squared, meta, window, scaling)
 }
 
-/// So many independent segments are needed before the scatter of a line is stated.
+/// Fewest independent segments for which the scatter of a line is stated, see [`scatter`].
 const FEWEST: f64 = 17.0;
 
-/// Standard deviation of each averaged line over its value, for noise: 1/√n for powers of n independent
-/// segments, half of that for amplitudes, and √2 times as much for the two lines that are real (Bendat &
-/// Piersol, Random Data, 4th ed. 2010, eq. 8.158). A sine that stands out of the noise scatters less. NaN for
-/// fewer than 17 independent segments: by the gamma distribution of their mean, ± 1.96 of what is stated
-/// around a power that was found would hold the truth in less than 92 %.
+/// Relative standard deviation of each averaged line, for noise: 1/√n for powers of n independent segments,
+/// half of that for amplitudes, and √2 times as much for the two real lines (Bendat & Piersol, Random Data,
+/// 4th ed. 2010, eq. 8.158). A sine well above the noise scatters less. NaN for fewer than 17 independent
+/// segments: by the gamma distribution of their mean, ±1.96 standard deviations around the power found would
+/// hold the truth in less than 92 %.
 pub fn scatter(averages: &Averages, scaling: Scaling) -> Vec<f64> {
     let n = if averages.effective < FEWEST { f64::NAN } else { averages.effective };
     let order = if matches!(scaling, Scaling::Peak | Scaling::Rms) { 0.5 } else { 1.0 };
@@ -114,8 +114,7 @@ pub fn scatter(averages: &Averages, scaling: Scaling) -> Vec<f64> {
     (0..lines).map(|k| order * (2.0 / sides(k, averages.length) / n).sqrt()).collect()
 }
 
-/// Lines in a scaling from the |X|² of a channel. The line at 0 Hz of a record whose mean was taken out says
-/// nothing.
+/// Scales the |X|² of a channel. The line at 0 Hz is NaN where the mean was subtracted.
 fn finished(
     averages: &Averages,
     squared: &[f64],
@@ -141,12 +140,12 @@ fn finished(
     Ok(Spectrum { meta, axis, values: Values::Real(values), scaling, window: Some(window), enbw })
 }
 
-/// How many lines of a two-sided spectrum of `n` samples line `k` stands for.
+/// Number of lines of a two-sided spectrum of `n` samples that the one-sided line `k` combines.
 fn sides(k: usize, n: usize) -> f64 {
     if k == 0 || 2 * k == n { 1.0 } else { 2.0 }
 }
 
-/// Unit of a line value of a record in `unit`.
+/// Unit of a spectral line in a scaling, for a record in `unit`.
 ///
 /// # Errors
 /// If the scaling is not one that a transform gives.

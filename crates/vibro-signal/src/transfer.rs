@@ -1,9 +1,9 @@
 //! Frequency response functions from averaged spectra, with coherence and random error.
 //!
-//! With the averages A = ⟨|X|²⟩, B = ⟨|Y|²⟩ and C = ⟨conj(X) Y⟩ of excitation x and response y: H1 = C/A (not
-//! biased by noise in the response), H2 = B/conj(C) (not by noise in the excitation), Hv = √(B/A) with the
-//! phase of C, the geometric mean of both (Rocklin, Crowley & Vold 1985); γ² = |C|²/(AB). A response that
-//! lags has a negative phase.
+//! With the averages A = ⟨|X|²⟩, B = ⟨|Y|²⟩ and C = ⟨conj(X) Y⟩ of excitation x and response y: H1 = C/A
+//! (noise in the response does not bias it), H2 = B/conj(C) (noise in the excitation does not bias it), Hv =
+//! √(B/A) with the phase of C, the geometric mean of both (Rocklin, Crowley & Vold 1985); γ² = |C|²/(AB). A
+//! response that lags has a negative phase.
 
 use super::integrate;
 use super::welch::Averages;
@@ -13,17 +13,17 @@ use std::f64::consts::TAU;
 use vibro_record::units::Unit;
 use vibro_record::{Axis, Error, Finding, Frf, Meta, Result, Scaling, Spectrum, Values};
 
-/// Below this share of the largest line there is no excitation, only rounding.
+/// Below this part of the largest power a line holds no excitation or response, only rounding.
 const NOTHING: f64 = 1e-28;
 
-/// From so many independent averages on, 1.96 standard deviations of the band hold the truth in 92 to 98 % of
-/// all cases. The deviation is an estimate of 2(n − 1) degrees of freedom: Student's t gives 81 % for two
-/// averages, 88 % for three.
+/// From this many independent averages on, ±1.96 standard deviations hold the truth in 92 to 98 % of all
+/// cases. The deviation is itself an estimate with 2(n − 1) degrees of freedom: Student's t gives 81 % for
+/// two averages, 88 % for three.
 const ENOUGH: f64 = 7.0;
 /// With fewer independent averages the coherence is near 1 whatever was measured.
 const LEAST: f64 = 2.0;
 
-/// No function.
+/// Value of a line that has no function.
 const NOWHERE: Complex64 = Complex64::new(f64::NAN, f64::NAN);
 
 /// Estimator of a frequency response function: H1 for noise in the response, H2 for noise in the excitation.
@@ -45,7 +45,7 @@ impl Estimator {
     }
 }
 
-/// A frequency response function and how far it can be trusted, line by line from the first above 0 Hz.
+/// A frequency response function with its uncertainty, line by line from the first above 0 Hz.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Transfer {
     /// The function; NaN where excitation or response is empty.
@@ -58,12 +58,13 @@ pub struct Transfer {
     pub phase_std: Vec<f64>,
     /// Segments averaged.
     pub averages: usize,
-    /// What limits the function.
+    /// Findings that limit the use of the function.
     pub findings: Vec<Finding>,
 }
 
 impl Transfer {
-    /// Leaves no function where the power of the excitation, from 0 Hz on, is not above a floor.
+    /// Removes the function at lines where the power of the excitation, given from 0 Hz on, is not above
+    /// `floor`.
     pub(super) fn silence(&mut self, excitation: &[f64], floor: f64) {
         let (mut silent, mut lowest) = (0, f64::INFINITY);
         for (k, _) in excitation.iter().skip(1).enumerate().filter(|(_, power)| **power <= floor) {
@@ -87,7 +88,7 @@ impl Transfer {
     }
 
     /// The function of the response integrated `times` times (mobility becomes receptance with 1, accelerance
-    /// with 2), from `fmin` Hz on; uncertainties and coherence go along.
+    /// with 2), from `fmin` Hz on, with its uncertainties and its coherence.
     ///
     /// # Errors
     /// If `times` is not −2 to 2, or no line is left.
@@ -117,10 +118,11 @@ impl Transfer {
     }
 }
 
-/// Code of a low coherence.
+/// Code of the finding of a low coherence.
 const LOW: &str = "frf-low-coherence";
 
-/// That more than half of so many lines with a function have a coherence below 0.5.
+/// The finding that more than half of `lines`, the number of lines with a function, have a coherence below
+/// 0.5.
 fn low(coherence: &[f64], lines: usize) -> Option<Finding> {
     let poor = coherence.iter().filter(|c| **c < 0.5).count();
     (2 * poor > lines).then(|| Finding::caution(LOW).count("n", poor).count("lines", lines))
@@ -132,8 +134,8 @@ fn low(coherence: &[f64], lines: usize) -> Option<Finding> {
 /// and the phase's arcsin ε. The magnitude of Hv is a root of B/A without C, and with the variances of A and
 /// B (1/n) and their covariance (γ²/n) from the same table ε(|Hv|) = √(1−γ²)/√(2n). One of the n averages is
 /// spent on H itself; n counts independent segments. Few averages (below 7) keep their standard deviations,
-/// with a finding: they are right, but are themselves known poorly. One alone has neither a coherence, which
-/// would always be 1, nor a standard deviation.
+/// with a finding: they are right, but are themselves known poorly. One average alone has neither a
+/// coherence, which would always be 1, nor a standard deviation.
 ///
 /// # Errors
 /// For fewer than two independent averages of segments that overlap, and if there are no products with that

@@ -14,7 +14,8 @@ use rayon::prelude::*;
 use vibro_record::lanes;
 use vibro_record::{Error, Result, Traces, Window};
 
-/// Segments that one core sums up at a time.
+/// Segments that one core sums up at a time: more save memory and additions, fewer share the work more
+/// evenly.
 const GROUP: usize = 8;
 
 /// How a record is cut and weighted.
@@ -24,43 +25,44 @@ pub struct Welch {
     pub segments: Segments,
     /// Window of each segment.
     pub window: Window,
-    /// Whether each segment loses its mean before it is windowed, as scipy's `detrend="constant"` has it.
+    /// Whether the mean of each segment is subtracted before the window, as with scipy's
+    /// `detrend="constant"`.
     pub detrend: bool,
 }
 
-/// Mean squares and products of the lines of all segments, windowed, without any further scaling.
+/// Mean squares and products of the spectral lines of all windowed segments, without any further scaling.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Averages {
     /// Number of segments.
     pub count: usize,
-    /// Number of independent segments that would scatter as little; fewer than `count` where segments
-    /// overlap.
+    /// Number of independent segments with the same scatter; fewer than `count` where segments overlap.
     pub effective: f64,
     /// Samples of a segment.
     pub length: usize,
     /// Sampling rate in Hz.
     pub rate: f64,
-    /// Whether each segment lost its mean: then the line at 0 Hz holds none of it.
+    /// Whether the mean of each segment was subtracted: the line at 0 Hz then does not show it.
     pub detrended: bool,
     /// Sum of the window's samples.
     pub sum: f64,
-    /// Sum of their squares.
+    /// Sum of the squares of the window's samples.
     pub squares: f64,
     /// Mean of |X|² for each channel.
     pub auto: Vec<Vec<f64>>,
-    /// Mean of conj(X₀) X for each channel behind the first, where products were asked for.
+    /// Mean of conj(X₀) X for each channel after the first, where products were asked for.
     pub cross: Vec<Vec<Complex64>>,
-    /// The range of each channel; empty where it was not looked at.
+    /// The range of each channel; empty where it was not determined.
     pub ranges: Vec<Rails>,
 }
 
 impl Averages {
-    /// Distance of lines in Hz.
+    /// Distance of spectral lines in Hz.
     pub fn step(&self) -> f64 {
         self.rate / self.length as f64
     }
 
-    /// Half of what a channel spans, over its root mean square without the mean, by Parseval's theorem.
+    /// Crest factor of a channel: half its range from peak to peak, over its root mean square without the
+    /// mean, by Parseval's theorem.
     pub fn crest(&self, channel: usize) -> Option<f64> {
         let (range, lines) = self.ranges.get(channel).zip(self.auto.get(channel))?;
         let [high, low] = range.range();
@@ -70,8 +72,8 @@ impl Averages {
 }
 
 impl Welch {
-    /// Averages over all segments of all channels of `traces`; with `products` against the first of them,
-    /// too. `progress` gets the number of samples of each channel that have been read.
+    /// Averages over all segments of all channels of `traces`; with `products`, also the products with the
+    /// first channel. `progress` gets the number of samples of each channel read so far.
     ///
     /// # Errors
     /// If the record is shorter than a segment, a sample is missing or a channel is constant, or the file
@@ -94,7 +96,7 @@ impl Welch {
         let transform = Transform::new(length);
         let weights = window::samples(self.window, length);
         let mut total = Sums::new(names.len(), products, transform.lines());
-        // Sums of the segments of a batch, a few a core, in their order.
+        // Sums of the segments of a batch in their order, `GROUP` segments to a task.
         let summed = |batch: &[Vec<f64>], count: usize| -> Vec<Sums> {
             let group = |work: &mut Vec<Workspace>, group: usize| {
                 let mut sums = Sums::new(batch.len(), products, transform.lines());
@@ -178,7 +180,7 @@ impl Sums {
         }
     }
 
-    /// The means, of segments with these weights.
+    /// The means over the segments, to which `weights` were applied.
     pub(super) fn mean(
         mut self,
         weights: &[f64],
@@ -204,9 +206,9 @@ impl Sums {
     }
 }
 
-/// Independent segments that scatter as little as `count` overlapping ones: count/(1 + 2 Σⱼ (1 − j/K) ρⱼ), ρⱼ
-/// the squared correlation of the windows of segments that are j apart (Welch 1967, section "Application to
-/// Gaussian noise").
+/// Number of independent segments that scatter as little as `count` overlapping ones: count/(1 + 2 Σⱼ (1 −
+/// j/K) ρⱼ), with K = count and ρⱼ the squared correlation of the windows of segments that are j apart (Welch
+/// 1967, section "Application to Gaussian noise").
 fn effective(weights: &[f64], hop: usize, count: usize) -> f64 {
     let squares: f64 = weights.iter().map(|w| w * w).sum();
     let mut inflation = 1.0;

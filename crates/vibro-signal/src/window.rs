@@ -17,10 +17,10 @@ pub fn samples(window: Window, n: usize) -> Vec<f64> {
         .collect()
 }
 
-/// Signed height of a unit sine's line at a distance of `offset` lines, long records:
+/// Signed height of the spectral line of a unit sine at a distance of `offset` lines, for long records:
 /// W(δ) = Σ aₖ (sinc(δ−k) + sinc(δ+k))/2 / a₀.
 ///
-/// The sign alternates from line to line of the main lobe as the phases of a DFT do; W(0) = 1.
+/// In the main lobe the sign alternates from line to line, as the phases of a DFT do; W(0) = 1.
 pub fn line_shape(window: Window, offset: f64) -> f64 {
     let a = window.coefficients();
     // Each cosine term is half a Dirichlet kernel at δ − k and half at δ + k; (−1)ᵏ of the window cancels
@@ -38,11 +38,11 @@ fn sign(k: usize) -> f64 {
     if k.is_multiple_of(2) { 1.0 } else { -1.0 }
 }
 
-/// Correlation of white noise in two lines that are `distance` apart, with the sign that the main lobe's
-/// alternating phases give it: 1, 2/3, 1/6, 0 … for Hann.
+/// Correlation of white noise in two lines that are `distance` apart, with the alternating sign of the main
+/// lobe: 1, 2/3, 1/6, 0 … for Hann.
 pub fn noise_correlation(window: Window, distance: usize) -> f64 {
     let a = window.coefficients();
-    // Line weights of the window over unwindowed lines: a₀ in the middle, (−1)ᵏ aₖ/2 at ±k.
+    // Weights of the window over lines without a window: a₀ in the middle, (−1)ᵏ aₖ/2 at ±k.
     let weight = |k: i64| {
         let m = k.unsigned_abs() as usize;
         a.get(m).map_or(0.0, |ak| sign(m) * if m == 0 { *ak } else { ak / 2.0 })
@@ -75,7 +75,8 @@ mod tests {
                 let offset = f64::from(step) * 0.137;
                 let shape = line_shape(window, offset).abs();
                 let dft = line_by_dft(window, n, offset);
-                // Continuous against discrete kernel: relative difference (πδ/N)²/6 of terms of order one.
+                // Continuous against discrete kernel: a relative difference of (πδ/N)²/6 in terms of order
+                // one.
                 let tolerance = 10.0 * (PI * 3.0 / n as f64).powi(2) + 1e-13 * n as f64;
                 assert!((shape - dft).abs() < tolerance, "{window:?} {offset}: {shape} against {dft}");
             }

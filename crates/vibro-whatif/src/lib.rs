@@ -1,4 +1,4 @@
-//! What a rig would do with other parameters: the model crate behind numbers in and numbers out, for the
+//! Predictions for a rig with other parameters: the model crate with numbers as input and output, for the
 //! report page.
 //!
 //! ```
@@ -33,23 +33,23 @@ impl Default for Scene {
     }
 }
 
-/// Cycles after which a motion from rest is shown, those shown, and points of each.
+/// Cycles before a motion from rest is shown, cycles shown, and points in each of them.
 const SETTLE: u32 = 300;
 const SHOWN: u32 = 4;
 const POINTS: u32 = 200;
 
 impl Scene {
-    /// Motions with one impact a cycle, and the one without impacts, at so many frequencies in Hz: 8 numbers
-    /// each, NaN where there is none. Frequency in Hz; amplitude in m of mass 1 without impacts; of two
-    /// motions the larger first, amplitudes in m of both masses at the excitation frequency and 2
-    /// where it is stable, 1 where it is not, 0 where it is not real.
+    /// Motions with one impact a cycle, and the one without impacts, at `points` frequencies in Hz. There are
+    /// 8 numbers for each, NaN where there is no motion. First the frequency in Hz and the amplitude in m of
+    /// mass 1 without impacts. Then, for two motions, the larger first: amplitudes in m of both masses at the
+    /// excitation frequency, and 2 for stable, 1 for unstable, 0 for no real motion.
     pub fn response(&self, from: f64, to: f64, points: usize) -> Vec<f64> {
         let step = (to - from) / points.saturating_sub(1).max(1) as f64;
         (0..points).flat_map(|k| self.at(from + step * k as f64)).collect()
     }
 
-    /// The motion that is reached from rest at a frequency in Hz: 5 numbers a point, time in s, x₁, x₂ in m,
-    /// v₁, v₂ in m/s; none where it cannot be.
+    /// The motion from rest at a frequency in Hz, after the transient: 5 numbers a point, time in s, x₁, x₂
+    /// in m, v₁, v₂ in m/s; empty where it cannot be computed.
     pub fn motion(&self, frequency: f64) -> Vec<f64> {
         self.followed(frequency).unwrap_or_default()
     }
@@ -83,7 +83,7 @@ impl Scene {
         row
     }
 
-    /// Amplitudes of both masses of each orbit; with a contact that gives way `None` where its correction
+    /// Amplitudes in m of both masses for each orbit; with a soft contact `None` where the correction for it
     /// does not hold.
     fn amplitudes(&self, excitation: &Excitation, found: &Orbits) -> Vec<Option<[f64; 2]>> {
         let Some(stiffness) = self.contact() else {
@@ -140,8 +140,8 @@ mod tests {
         assert_eq!(row[2..5], [x1, x2, 2.0]);
     }
 
-    /// A stable motion is reached from rest: half of its peak-to-peak within what 800 points resolve of a
-    /// sine, (π/200)²/2.
+    /// The stable motion is reached from rest: half its peak-to-peak value agrees within the resolution of
+    /// 200 points a cycle for a sine, (π/200)²/2.
     #[test]
     fn a_motion_from_rest_comes_to_the_stable_orbit() {
         let scene = Scene::default();

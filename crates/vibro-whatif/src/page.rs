@@ -1,5 +1,5 @@
-//! The functions by which a page calls the model: it writes numbers at [`input`], calls one, and reads so
-//! many at [`output`].
+//! The functions by which a page calls the model. It writes numbers at [`input`], calls a function, which
+//! returns a count, and reads that many numbers at [`output`].
 #![allow(
     unsafe_code,
     reason = "a name by which a page calls a function is an unsafe attribute; nothing else is unsafe here"
@@ -9,7 +9,8 @@ use super::Scene;
 use std::sync::Mutex;
 use vibro_model::Rig;
 
-/// m1, m2, k1, k2, c1, c2, gap, restitution, force, stiffness, then what is asked.
+/// m1, m2, k1, k2, c1, c2, gap, restitution, force, stiffness in SI units, then the arguments of the
+/// function.
 static INPUT: Mutex<[f64; 16]> = Mutex::new([0.0; 16]);
 static OUTPUT: Mutex<Vec<f64>> = Mutex::new(Vec::new());
 
@@ -21,27 +22,27 @@ fn answered(answer: impl Fn(&Scene, &[f64; 16]) -> Vec<f64>) -> usize {
     output.len()
 }
 
-/// Place of 16 numbers: m1, m2, k1, k2, c1, c2, gap, restitution, force, stiffness, and what is asked from
-/// the eleventh on.
+/// Address of 16 numbers: m1, m2, k1, k2, c1, c2, gap, restitution, force, stiffness in SI units, and from
+/// the eleventh on the arguments of the function.
 #[unsafe(no_mangle)]
 pub extern "C" fn input() -> *mut f64 {
     INPUT.lock().map_or(std::ptr::null_mut(), |mut input| input.as_mut_ptr())
 }
 
-/// Place of the answer.
+/// Address of the answer.
 #[unsafe(no_mangle)]
 pub extern "C" fn output() -> *const f64 {
     OUTPUT.lock().map_or(std::ptr::null(), |output| output.as_ptr())
 }
 
-/// The response from the eleventh number to the twelfth in Hz, at so many frequencies as the thirteenth says;
-/// gives the count of numbers.
+/// The response from the eleventh number to the twelfth in Hz, at the thirteenth number of frequencies.
+/// Returns the count of numbers.
 #[unsafe(no_mangle)]
 pub extern "C" fn response() -> usize {
     answered(|scene, input| scene.response(input[10], input[11], input[12] as usize))
 }
 
-/// The motion from rest at the eleventh number in Hz; gives the count of numbers.
+/// The motion from rest at the eleventh number in Hz. Returns the count of numbers.
 #[unsafe(no_mangle)]
 pub extern "C" fn motion() -> usize {
     answered(|scene, input| scene.motion(input[10]))

@@ -1,22 +1,22 @@
-//! A record as a vibrometer and a pulse pick-up on the crank give it.
+//! Synthesises a record of a vibrometer and of a pulse pick-up on the crank.
 
 use super::noise::ShiftedNoise;
 use super::stroke::{Machine, Struck};
 
-/// Samples a second.
+/// Sampling rate in Hz.
 pub const RATE: f64 = 102_400.0;
 /// Mass of the striker in kg.
 pub const STRIKER: f64 = 0.14;
 /// Mass of the bit in kg.
 pub const BIT: f64 = 0.43;
-/// Restitution between them.
+/// Restitution between striker and bit.
 pub const RESTITUTION: f64 = 0.45;
 
-/// Channels in volts, and what is true of them.
+/// Channels in volts, with the true impacts.
 pub struct Record {
-    /// Striker.
+    /// Velocity of the striker, as voltage.
     pub striker: Vec<f64>,
-    /// Bit.
+    /// Velocity of the bit, as voltage.
     pub bit: Vec<f64>,
     /// Pulse at top dead centre.
     pub pulse: Vec<f64>,
@@ -27,10 +27,10 @@ pub struct Record {
     pub dropouts: usize,
 }
 
-/// Noise of the vibrometer in V: 6 mm/s along the beam.
+/// Noise of the vibrometer in V: 6 mm/s along the beam, at 2 m/s a volt.
 const NOISE: f64 = 0.003;
 
-/// A record of some seconds, always the same.
+/// A record of `seconds`, the same every time.
 pub fn record(seconds: f64) -> Record {
     // Balance of momentum with a bit at rest: the striker keeps (m − R M)/(m + M) of its velocity.
     let rebound = (STRIKER - RESTITUTION * BIT) / (STRIKER + BIT);
@@ -49,7 +49,7 @@ pub fn record(seconds: f64) -> Record {
     let run = machine.run(seconds, &mut ShiftedNoise::new(1));
     let (mut laser, mut second, mut pick_up) =
         (ShiftedNoise::new(2), ShiftedNoise::new(3), ShiftedNoise::new(4));
-    // Half of the motion along the beam, 2 m/s a volt.
+    // The beam sees half of the motion; 2 m/s a volt.
     let mut striker: Vec<f64> =
         run.velocity(RATE, count).iter().map(|v| 0.25 * v + NOISE * laser.normal()).collect();
     let bit = bit(&run.impacts, count, machine.contact)
@@ -74,7 +74,8 @@ pub fn still(seconds: f64) -> Vec<f64> {
     (0..(seconds * RATE) as usize).map(|_| NOISE * laser.normal()).collect()
 }
 
-/// The bit takes what momentum the striker loses, and comes back to its place with a time constant of 2 ms.
+/// Velocity of the bit in m/s. It takes the momentum that the striker loses, and returns to its place with a
+/// time constant of 2 ms.
 fn bit(impacts: &[Struck], count: usize, contact: f64) -> Vec<f64> {
     let mut velocity = vec![0.0; count];
     for impact in impacts {
@@ -90,7 +91,8 @@ fn bit(impacts: &[Struck], count: usize, contact: f64) -> Vec<f64> {
     velocity
 }
 
-/// Loses the laser for 0.1 to 1 ms about three times a second; the decoder gives 0 then.
+/// Loses the laser signal for 0.1 to 1 ms about three times a second: the decoder then gives 0. Returns the
+/// number of drop-outs.
 fn drop_out(volts: &mut [f64], noise: &mut ShiftedNoise) -> usize {
     let (mut at, mut count) = (3000, 0);
     while at + 500 < volts.len() {

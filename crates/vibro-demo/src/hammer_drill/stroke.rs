@@ -1,8 +1,8 @@
-//! A striker that goes to and fro once a turn, with everything known of it.
+//! A striker that goes back and forth once a turn; its motion is known exactly.
 //!
-//! Between two impacts its velocity is a straight line from the speed after the one to the speed before the
-//! other and half a sine that brings it back to where it struck. An impact takes a contact time, in which the
-//! velocity goes from the one course to the other as half a sine. Duration of a turn, phase of the impact and
+//! Between two impacts its velocity is a straight line from the speed after the first to the speed before the
+//! second, less half a sine that brings it back to where it struck. During the contact time of an impact the
+//! velocity blends from one course to the next as half a sine. Duration of a turn, phase of the impact and
 //! speeds vary from turn to turn.
 
 use super::noise::ShiftedNoise;
@@ -11,7 +11,7 @@ use std::f64::consts::PI;
 /// Nominal values and their scatter from turn to turn.
 #[derive(Debug, Clone)]
 pub struct Machine {
-    /// Turns a second.
+    /// Turns per second.
     pub speed: f64,
     /// Relative scatter of the duration of a turn.
     pub speed_scatter: f64,
@@ -23,7 +23,7 @@ pub struct Machine {
     pub before: f64,
     /// Its relative scatter.
     pub before_scatter: f64,
-    /// Velocity after over velocity before, negative for a rebound.
+    /// Velocity after the impact over velocity before; negative for a rebound.
     pub rebound: f64,
     /// Its scatter.
     pub rebound_scatter: f64,
@@ -31,18 +31,18 @@ pub struct Machine {
     pub contact: f64,
 }
 
-/// One impact.
+/// One impact of the striker.
 #[derive(Debug, Clone, Copy)]
 pub struct Struck {
     /// Time of the middle of the contact in s.
     pub time: f64,
-    /// Turn.
+    /// Number of its turn, from 0.
     pub turn: usize,
-    /// Phase in turns.
+    /// Phase in turns after top dead centre.
     pub phase: f64,
-    /// Velocity before in m/s, continued to the middle of the contact.
+    /// Velocity in m/s before the impact, extrapolated to the middle of the contact.
     pub before: f64,
-    /// Velocity after in m/s.
+    /// Velocity in m/s after the impact.
     pub after: f64,
 }
 
@@ -57,8 +57,8 @@ pub struct Run {
 }
 
 impl Machine {
-    /// A run of `duration` seconds and a little more, the first top dead centre before its end of the first
-    /// turn.
+    /// A run of `duration` seconds and a little more. The recording begins within the first turn, so the
+    /// first top dead centre lies before it.
     pub fn run(&self, duration: f64, noise: &mut ShiftedNoise) -> Run {
         let mut edges = vec![-noise.uniform() / self.speed];
         let mut impacts = Vec::new();
@@ -76,7 +76,7 @@ impl Machine {
 }
 
 impl Run {
-    /// Velocity of the striker at `count` instants, `rate` a second.
+    /// Velocity of the striker in m/s at `count` instants, `rate` in Hz.
     pub fn velocity(&self, rate: f64, count: usize) -> Vec<f64> {
         let mut k = 0;
         (0..count)
@@ -85,7 +85,7 @@ impl Run {
                 while self.impacts.get(k + 1).is_some_and(|next| t > next.time - 0.5 * self.contact) {
                     k += 1;
                 }
-                // Contact k began last; before the first one the striker rests.
+                // Contact k is the last that has begun; before the first one the striker rests.
                 let s = (t - self.impacts[k].time) / self.contact;
                 if s < -0.5 {
                     return 0.0;
@@ -97,7 +97,7 @@ impl Run {
             .collect()
     }
 
-    /// Velocity of the course that follows impact `k`.
+    /// Velocity in m/s of the course after impact `k`.
     fn course(&self, k: usize, t: f64) -> f64 {
         let (Some(from), Some(to)) = (self.impacts.get(k), self.impacts.get(k.wrapping_add(1))) else {
             return 0.0;
@@ -107,7 +107,7 @@ impl Run {
         from.after * (1.0 - s) + to.before * s - back * (PI * s).sin()
     }
 
-    /// A pulse from 0 to 1 once a turn: it rises at the top dead centre within a few samples and lasts a
+    /// A pulse from 0 to 1 once a turn: it rises within a few samples at the top dead centre and lasts a
     /// tenth of a turn.
     pub fn pulse(&self, rate: f64, count: usize) -> Vec<f64> {
         let rise = |samples: f64| 0.5 + 0.5 * (samples / 3.0).tanh();

@@ -2,41 +2,42 @@
 //! analyser.
 //!
 //! The converter runs at 32 times the rate of the finished record and averages over each of its intervals, as
-//! integrating converters do; the digital filter behind it keeps the base band. Here that is one windowed
-//! transform of the fast record, of which lines 0 to 400 are kept, so that the jumps of velocity do not fold.
+//! integrating converters do. The digital filter after it keeps the base band. Here that filter is one
+//! windowed transform of the fast record, of which lines 0 to 400 are kept, so that jumps of velocity do not
+//! alias.
 
 use super::noise::PairedNoise;
 use std::f64::consts::{PI, TAU};
 use std::fmt::Write as _;
 
-/// Lines above the DC line.
+/// Spectral lines above the line at 0 Hz.
 pub const LINES: usize = 400;
 /// Base band in Hz.
 pub const BASE_BAND: f64 = 20.0;
-/// Duration of a block in s: the reciprocal of the distance of lines.
+/// Duration of a block in s: the reciprocal of the line spacing.
 pub const BLOCK: f64 = LINES as f64 / BASE_BAND;
 /// Converter's samples in a block: 1024 of the finished record, 32 for each.
 pub const SAMPLES: usize = 1024 * 32;
-/// Converter's interval in s.
+/// Interval of the converter's samples in s.
 pub const INTERVAL: f64 = BLOCK / SAMPLES as f64;
 
-/// Mains hum of 50 Hz leaks through the analogue filter in front of the finished record's 51.2 Hz and folds
-/// to 1.2 Hz.
+/// Mains hum at 50 Hz leaks through the analogue filter and aliases to 1.2 Hz at the finished record's 51.2
+/// Hz.
 const HUM: f64 = 51.2 - 50.0;
 
-/// What an input adds to its signal, and how finely it is converted.
+/// Noise and hum that an input adds to its signal, and its converter.
 struct Input {
-    /// White noise per √Hz.
+    /// Density of its white noise, in the unit of the signal per √Hz.
     noise: f64,
-    /// Amplitude of the folded hum.
+    /// Amplitude of the aliased hum, in the unit of the signal.
     hum: f64,
-    /// Full scale of the 12-bit converter.
+    /// Full scale of the 12-bit converter, in the unit of the signal.
     full_scale: f64,
 }
 
 /// Force gauge, in N.
 const FORCE: Input = Input { noise: 5e-5, hum: 3e-4, full_scale: 0.5 };
-/// Offset of the force gauge in N, below the sine's 0.1 N.
+/// Offset of the force gauge in N, below the sine's amplitude of 0.1 N.
 const FORCE_OFFSET: f64 = 0.012;
 /// Integrated accelerometer, in m/s.
 const VELOCITY: Input = Input { noise: 4e-5, hum: 2e-4, full_scale: 1.0 };
@@ -45,8 +46,8 @@ const ACCELERATION_NOISE: f64 = 8e-4;
 /// Offset of an accelerometer in m/s².
 const ACCELERATION_OFFSET: f64 = 4e-3;
 /// Lower limiting frequency in Hz of the integrating charge amplifier. Above it the accelerometer's noise
-/// appears divided by 2πf, at it the offset stops growing: together the rise towards DC that integration
-/// leaves in a spectrum.
+/// appears divided by 2πf; at it the offset stops growing. Both make the spectrum rise towards 0 Hz, as
+/// integration does.
 const LOWER_LIMIT: f64 = 0.01;
 
 /// Force spectrum, in N.
@@ -58,7 +59,7 @@ pub fn force(signal: &[f64], noise: &mut PairedNoise) -> Vec<f64> {
 /// Velocity spectrum, in m/s, from the true velocity averaged over each interval.
 pub fn velocity(signal: &[f64], noise: &mut PairedNoise) -> Vec<f64> {
     let corner = TAU * LOWER_LIMIT;
-    // The integral has been running for long: offset/corner, and a variance of density/(4·corner).
+    // The integrator has settled: a mean of offset/corner, and a variance of density²/(4·corner).
     let mut drift =
         ACCELERATION_OFFSET / corner + noise.normal() * ACCELERATION_NOISE / (2.0 * corner.sqrt());
     let spread = ACCELERATION_NOISE * (0.5 / INTERVAL).sqrt();
@@ -93,10 +94,10 @@ pub fn hann(i: usize) -> f64 {
     (PI * i as f64 / SAMPLES as f64).sin().powi(2)
 }
 
-/// Lines 0 to 400 of a Hann-windowed block as peak amplitudes.
+/// Spectral lines 0 to 400 of a Hann-windowed block as peak amplitudes.
 ///
-/// A plain sum for each line: its bits do not depend on which vector instructions a fast transform finds on a
-/// processor.
+/// A plain sum for each line: the result is the same to the last bit on any processor, while a fast transform
+/// depends on the vector instructions that it finds.
 fn spectrum(signal: &[f64]) -> Vec<f64> {
     let table: Vec<(f64, f64)> = (0..SAMPLES).map(|i| (TAU * i as f64 / SAMPLES as f64).sin_cos()).collect();
     let windowed: Vec<f64> = signal.iter().enumerate().map(|(i, v)| v * hann(i)).collect();
@@ -108,13 +109,13 @@ fn spectrum(signal: &[f64]) -> Vec<f64> {
             re += v * cos;
             im -= v * sin;
         }
-        // Amplitude of a cosine; the DC line is the mean itself.
+        // Amplitude of a cosine; the line at 0 Hz is the mean itself.
         f64::hypot(re, im) / sum * if k == 0 { 1.0 } else { 2.0 }
     };
     (0..=LINES).map(line).collect()
 }
 
-/// One value a line, as `  4.001992e-02`.
+/// The values as text, one a line: `  4.001992e-02`.
 pub fn print(spectrum: &[f64]) -> String {
     let mut text = String::with_capacity(15 * spectrum.len());
     for value in spectrum {

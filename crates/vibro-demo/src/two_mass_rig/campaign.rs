@@ -1,4 +1,4 @@
-//! The rig, the sweeps, and what comes out of them.
+//! The rig, the sweeps, and the files that they produce.
 
 use super::analyser::{self, BASE_BAND, BLOCK, INTERVAL, LINES, SAMPLES};
 use super::noise::PairedNoise;
@@ -9,22 +9,22 @@ use vibro_model::portrait::Samples;
 use vibro_model::{Motion, Rig, Simulation, Sine, State};
 use vibro_record::Result;
 
-/// Force amplitude in N. With it and the thesis' masses, springs and dampers the in-phase (grazing) resonance
-/// is met in both directions and the out-of-phase (clapping) one only going up.
+/// Force amplitude in N. With it and the masses, springs and dampers of the thesis, sweeps in both directions
+/// show the in-phase (grazing) resonance, but only the sweep up shows the out-of-phase (clapping) one.
 const FORCE: f64 = 0.1;
 
-/// The clapping branch ends where damping and restitution can no longer be paid for by the force: at 10.79 Hz
-/// for restitution 0.998, that of the thesis' contact (1e5 N/m, 0.1 N s/m), at 10.67 Hz for this one.
+/// The clapping branch ends where the force no longer supplies the losses in dampers and impacts: at 10.79 Hz
+/// for restitution 0.998, as of the thesis' contact (1e5 N/m, 0.1 N s/m), and at 10.67 Hz for this one.
 const RESTITUTION: f64 = 0.98;
 
-/// Settings of the generator in Hz, upwards; none lies on a line of the analyser (multiples of 0.05 Hz).
+/// Frequencies of the generator in Hz, ascending; none lies on a line of the analyser (multiples of 0.05 Hz).
 const FREQUENCIES: [f64; 40] = [
     4.013, 4.267, 4.518, 4.772, 4.981, 5.137, 5.262, 5.343, 5.417, 5.471, 5.508, 5.546, 5.592, 5.664, 5.758,
     5.883, 6.038, 6.287, 6.609, 6.941, 7.268, 7.572, 7.884, 8.189, 8.513, 8.827, 9.132, 9.436, 9.718, 9.967,
     10.183, 10.364, 10.478, 10.567, 10.622, 10.689, 10.861, 11.262, 11.918, 12.842,
 ];
 
-/// Waiting time in s after each step: the slowest transient without impacts falls by e^{−16}.
+/// Waiting time in s after each step: the slowest transient without impacts decays to e^{−16}.
 const SETTLE: f64 = 40.0;
 
 /// Direction of a sweep.
@@ -39,7 +39,8 @@ impl Direction {
         if self == Direction::Up { "up" } else { "down" }
     }
 
-    /// Names of force and velocity spectra of point `number`, of eleven characters each.
+    /// Names of the files of the force and the two velocity spectra of point `number`, eleven characters
+    /// each.
     fn names(self, number: usize) -> [String; 3] {
         let (long, short) = if self == Direction::Up { ("UP", 'U') } else { ("DN", 'D') };
         [
@@ -56,14 +57,14 @@ pub struct Point {
     /// Counted from 1 in the order of measurement.
     number: usize,
     frequency: f64,
-    /// Force phase at the block's start.
+    /// Phase of the force in rad at the start of the block.
     phase: f64,
-    /// States at the converter's times, and one at the block's end.
+    /// States at the converter's times, and one at the end of the block.
     states: Vec<State>,
     pattern: String,
 }
 
-/// Sweeps as far as point `last` and shows each point.
+/// Measures a sweep up to point `last` and shows each point.
 pub fn measure(direction: Direction, last: usize, mut show: impl FnMut(&Point) -> Result<()>) -> Result<()> {
     let rig = Rig { restitution: RESTITUTION, ..Rig::thesis() };
     let mut frequencies = FREQUENCIES;
@@ -85,11 +86,10 @@ pub fn measure(direction: Direction, last: usize, mut show: impl FnMut(&Point) -
     Ok(())
 }
 
-/// Impacts per cycle of the pattern that repeats, or `irregular`; `2/2` is a pattern of two that repeats
-/// every two cycles.
+/// Impacts per cycle of the periodic motion, or `irregular`; `2/2` has two impacts in a period of two cycles.
 ///
-/// The states at one phase of the force are compared, cycle by cycle, over the last part of a block. A
-/// pattern repeats if after some cycles every state is the same to a thousandth of the largest.
+/// The states at one phase of the force are compared, cycle by cycle, over the last part of a block. A motion
+/// counts as periodic if after some cycles every state is the same to within a thousandth of the largest.
 fn pattern(mut motion: Simulation) -> Result<String> {
     const LONGEST: usize = 12;
     let period = 1.0 / motion.frequency();
@@ -111,7 +111,7 @@ fn pattern(mut motion: Simulation) -> Result<String> {
     let repeats = |q: &usize| tail.iter().zip(&tail[*q..]).all(|((a, _), (b, _))| close(a, b));
     Ok(match (1..=LONGEST).find(repeats) {
         Some(q) => {
-            // An impact at the strobe itself may be counted on either side: the mean over many patterns is
+            // An impact at the comparison phase may be counted in either cycle: the mean over many periods is
             // whole.
             let whole = tail.len() / q * q;
             let total: usize = tail[tail.len() - whole..].iter().map(|(_, n)| n).sum();
@@ -123,13 +123,14 @@ fn pattern(mut motion: Simulation) -> Result<String> {
 }
 
 impl Point {
-    /// Names and contents of the force spectrum and both velocity spectra, with the noise of this draw.
+    /// Names and contents of the force spectrum and both velocity spectra, with the noise that `draw`
+    /// selects.
     pub fn files(&self, draw: u64) -> [(String, String); 3] {
         let omega = TAU * self.frequency;
         let force: Vec<f64> =
             (0..SAMPLES).map(|i| FORCE * (omega * i as f64 * INTERVAL + self.phase).cos()).collect();
-        // The converter averages: over an interval the mean velocity is the change of displacement, exactly.
-        // At 13 Hz the mean is 0.01 % low.
+        // The converter averages: over an interval the mean velocity is exactly the change of displacement
+        // over its duration. At 13 Hz averaging lowers the amplitude by 0.01 %.
         let mean = |x: fn(&State) -> f64| -> Vec<f64> {
             self.states.windows(2).map(|pair| (x(&pair[1]) - x(&pair[0])) / INTERVAL).collect()
         };
@@ -143,8 +144,8 @@ impl Point {
         spectra.map(|spectrum| (names.next().unwrap_or_default(), analyser::print(&spectrum)))
     }
 
-    /// Row of `TRUTH.csv`: amplitudes of displacement at the excitation frequency over this very block,
-    /// through the Hann window, without noise.
+    /// Row of `TRUTH.csv`: amplitudes of displacement in m at the excitation frequency over this block, with
+    /// the Hann window, without noise.
     pub fn truth(&self) -> String {
         let omega = TAU * self.frequency;
         let (mut sums, mut weight) = ([Complex64::ZERO; 2], 0.0);

@@ -2,7 +2,7 @@
 
 use super::{Scheme, TERMS, combine};
 
-/// Twelve stages, the rate at the end, and three more for the dense output.
+/// Twelve stages, the derivative at the end, and three more stages for the dense output.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Dop853;
 
@@ -14,11 +14,11 @@ pub(super) const ERROR5: [f64; 12] = [
     -0.022_355_307_863_886_294,
 ];
 
-/// Weights of order 3, by stage.
+/// Nonzero weights of order 3, with their stages.
 pub(super) const THIRD: [(usize, f64); 3] =
     [(0, 0.244_094_488_188_976_4), (8, 0.733_846_688_281_611_9), (11, 0.022_058_823_529_411_766)];
 
-/// Weights of all stages in the last four terms of the dense output.
+/// Weights of all stages in the last four coefficients of the dense output.
 #[rustfmt::skip]
 pub(super) const DENSE: [[f64; 16]; 4] = [
     [

@@ -2,7 +2,7 @@
 
 use super::{Scheme, TERMS, combine};
 
-/// Six stages and the rate at the end, which is the first of the next step.
+/// Six stages and the derivative at the end, which is the first of the next step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct DormandPrince;
 
@@ -10,7 +10,8 @@ pub struct DormandPrince;
 pub(super) const ERROR: [f64; 7] =
     [71.0 / 57600.0, 0.0, -71.0 / 16695.0, 71.0 / 1920.0, -17253.0 / 339_200.0, 22.0 / 525.0, -1.0 / 40.0];
 
-/// Weight of each stage in the dense output, in powers 1 to 4 of the part of the step (Shampine 1986).
+/// Weight of each stage in the dense output, for powers 1 to 4 of the time over the duration of the step
+/// (Shampine 1986).
 pub(super) const DENSE: [[f64; 4]; 7] = [
     [
         1.0,

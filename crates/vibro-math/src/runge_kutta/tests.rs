@@ -1,6 +1,6 @@
 use super::*;
 
-/// A rooted tree by its subtrees.
+/// A rooted tree, by its subtrees.
 #[derive(Debug, Clone, PartialEq)]
 struct Tree(Vec<Tree>);
 
@@ -9,7 +9,7 @@ impl Tree {
         1 + self.0.iter().map(Tree::order).sum::<usize>()
     }
 
-    /// γ(t): the order times those of all subtrees (Butcher 1963).
+    /// Density γ(t): the order times the densities of all subtrees (Butcher 1963).
     fn density(&self) -> f64 {
         self.order() as f64 * self.0.iter().map(Tree::density).product::<f64>()
     }
@@ -23,11 +23,11 @@ impl Tree {
     }
 }
 
-/// All rooted trees up to an order: 1, 1, 2, 4, 9, 20, 48, 115.
+/// All rooted trees up to an order; there are 1, 1, 2, 4, 9, 20, 48, 115 of each order.
 fn trees(highest: usize) -> Vec<Tree> {
     let mut all = vec![Tree(Vec::new())];
     for order in 2..=highest {
-        // Every multiset of known trees that sums to one less.
+        // Every multiset of smaller trees whose orders sum to one less.
         let mut found = Vec::new();
         extend(&all, 0, order - 1, &mut Vec::new(), &mut found);
         all.extend(found);
@@ -60,7 +60,8 @@ fn defects<S: Scheme>(weights: &[f64], highest: usize, wanted: impl Fn(usize) ->
     worst
 }
 
-/// Weights of the stages in the dense output at `part`, by probing it with one rate after the other.
+/// Weights of the stages in the dense output at `part` of the step, found by setting one derivative after
+/// another to 1.
 fn dense_weights<S: Scheme>(part: f64) -> Vec<f64> {
     (0..S::NODES.len())
         .map(|stage| {
@@ -74,7 +75,7 @@ fn dense_weights<S: Scheme>(part: f64) -> Vec<f64> {
 }
 
 fn check<S: Scheme>(order: usize, dense: usize) {
-    // Products of weights up to 43 and their cancelling sums: some 1e3 roundings.
+    // Products of weights up to 43 and cancelling sums of them: some 1e3 roundings.
     let tolerance = 1e3 * f64::EPSILON;
     for (i, row) in S::ROWS.iter().enumerate() {
         let sum: f64 = row.iter().sum();
@@ -115,7 +116,8 @@ fn estimates_of_error_have_their_orders() {
     zero(&third, 3, defects::<Dop853>(&third, 4, |_| 0.0));
 }
 
-/// y″ = −y as far as 20, and the largest error at the ends of steps and inside them.
+/// Integrates y″ = −y up to t = 20; returns the largest errors at the ends of steps and inside them, and the
+/// number of steps.
 fn oscillator<S: Scheme>(relative: f64) -> (f64, f64, usize) {
     let f = |_: f64, y: &[f64; 2]| [y[1], -y[0]];
     let tolerance = Tolerance { relative, floor: [1.0; 2] };
@@ -138,12 +140,12 @@ fn oscillator<S: Scheme>(relative: f64) -> (f64, f64, usize) {
 fn errors_follow_the_tolerance() {
     for relative in [1e-6, 1e-9, 1e-12] {
         let (at_end, inside, steps) = oscillator::<DormandPrince>(relative);
-        // Each step errs by less than the tolerance; an oscillator keeps errors as they are.
+        // Each step errs by less than the tolerance; an oscillator neither enlarges nor reduces errors.
         assert!(at_end < relative * steps as f64, "{relative}: {at_end}");
         assert!(inside < 20.0 * relative * steps as f64, "{relative}: {inside}");
         let (at_end, inside, steps) = oscillator::<Dop853>(relative);
         assert!(at_end < relative * steps as f64, "{relative}: {at_end}");
-        // A dense output of order 7 beside steps of order 8.
+        // The dense output has order 7, the steps have order 8.
         assert!(inside < 20.0 * relative * steps as f64, "{relative}: {inside}");
     }
 }

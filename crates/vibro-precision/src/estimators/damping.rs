@@ -21,7 +21,7 @@ const METHODS: [EstimationMethod<Measured>; 4] = [
     EstimationMethod::Own("rational fit", rational),
 ];
 
-/// The strongest mode's ζ, as `vibro modal` gives it.
+/// ζ of the strongest mode, as from `vibro modal`.
 fn rational(measured: &Measured) -> Result<EstimatorAnswer> {
     let found = modal(measured, &ModalOptions::default())?;
     let height = |m: &&Mode| m.modal_constant.value.abs() / m.zeta.value;
@@ -30,8 +30,8 @@ fn rational(measured: &Measured) -> Result<EstimatorAnswer> {
     Ok(EstimatorAnswer::found(&mode.zeta, &found.findings))
 }
 
-/// The ζ of the first mode of a receptance on lines `step` Hz apart from `from` Hz to `to` Hz, in noise of
-/// this part of the highest line.
+/// A receptance on lines `step` Hz apart from `from` to `to` in Hz, in noise of `part` of its highest line;
+/// the truth is ζ of the first mode.
 fn case(modes: &[Pole], (from, to, step): (f64, f64, f64), part: f64, noise: &mut Noise) -> Case<Measured> {
     let count = ((to - from) / step) as usize;
     let frequency: Vec<f64> = (0..count).map(|i| from + i as f64 * step).collect();
@@ -50,8 +50,9 @@ fn mode(frequency: f64, zeta: f64) -> Pole {
     Pole { frequency, zeta, constant: Complex64::new(1.0, 0.0) }
 }
 
-/// So many lines in the bandwidth, the mode anywhere between two, in a band of 24 Hz or 24 lines about it as
-/// far as there are any above 0 Hz; noise of this part of the highest line.
+/// The mode with this number of lines in its bandwidth, at any place between two lines. The band is the
+/// larger of ±12 Hz and ±12 lines about it, as far as it lies above 0 Hz; noise of `part` of the highest
+/// line.
 fn lines(in_bandwidth: f64, part: f64) -> impl Fn(&mut Noise) -> Case<Measured> {
     move |noise| {
         let step = 2.0 * ZETA * OWN / in_bandwidth;
@@ -61,8 +62,8 @@ fn lines(in_bandwidth: f64, part: f64) -> impl Fn(&mut Noise) -> Case<Measured> 
     }
 }
 
-/// Bound of the relative error of ζ from the lines within six bandwidths, beyond which other modes would be:
-/// a complex modal constant and two complex residual terms are not known either.
+/// Cramér–Rao bound of the relative error of ζ, from the lines within six bandwidths, since further away
+/// other modes would matter. A complex modal constant and two complex residual terms are unknown, too.
 fn bound(in_bandwidth: f64, part: f64) -> f64 {
     let width = 2.0 * ZETA * OWN;
     let stiffness = (TAU * OWN).powi(2);
@@ -95,9 +96,10 @@ pub fn scenes(quick: bool) -> Vec<BenchmarkScene> {
     vec![scene(texts, bound(16.0, 0.01), measured(&METHODS, &settings, quick))]
 }
 
-/// What methods for damping do at their borders.
+/// Questions to methods for damping at their borders.
 pub(crate) fn borders(quick: bool) -> Vec<BorderQuestion> {
-    // Modes on lines of 0.5 Hz up to 300 Hz, of which the first is asked for, changed after they were made.
+    // Modes on lines 0.5 Hz apart up to 300 Hz, changed after they were made; ζ of the first is to be
+    // estimated.
     let changed = |name: &str, modes: Vec<Pole>, change: fn(&mut Measured)| {
         Ensemble::new(name, 21_000, move |noise: &mut Noise| case(&modes, (1.0, 300.0, 0.5), 0.01, noise))
             .changed(change)

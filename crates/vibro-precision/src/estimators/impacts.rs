@@ -1,4 +1,4 @@
-//! Impacts of a contact trace: how often, and when.
+//! Impacts of a contact trace: their frequency, and their times.
 
 use super::trial::{
     Case, Change, Ensemble, EstimationMethod, EstimatorAnswer, each, measured, questions, trace,
@@ -11,40 +11,41 @@ use vibro_measure::impacts::{ImpactsOptions, impacts};
 use vibro_measure::legacy::contact_times;
 use vibro_record::Trace;
 
-/// Samples a second of the contact trace.
+/// Sampling rate of the contact trace in Hz.
 const RATE: f64 = 2000.0;
 
-/// A contact that closes within a few samples and opens within twenty; time in samples from the onset.
+/// A contact that closes within a few samples and opens within twenty; `x` is the time from the onset in
+/// samples.
 fn pulse(x: f64) -> f64 {
     let rise = 0.5 * (1.0 + (x / 2.0).tanh());
     rise * (-(x.max(0.0) / 20.0).powi(2)).exp()
 }
 
-/// Samples after which nothing is left of a pulse or its ringing.
+/// Samples after the onset beyond which a pulse and its ringing are negligible.
 const LONG: f64 = 120.0;
 
-/// How a train of impacts is made.
+/// Parameters of a train of impacts.
 #[derive(Clone, Default)]
 struct SyntheticTrain {
-    /// Number of impacts, and those that are missing.
+    /// Number of impacts, and the numbers of missing ones.
     count: usize,
     missing: Vec<usize>,
-    /// Standard deviation of the noise, of the heights (as a logarithm), and of the onsets in intervals.
+    /// Standard deviations of the noise, of the logarithm of the heights, and of the onsets in intervals.
     noise: f64,
     heights: f64,
     jitter: f64,
-    /// Height of the first impact, and of a ringing of 12 samples a cycle.
+    /// Height of the first impact, and of a ringing with 12 samples a cycle.
     first: f64,
     ringing: f64,
 }
 
-/// An even train of 60 impacts in noise of 1 %.
+/// A regular train of 60 impacts in noise of 1 %.
 fn plain() -> SyntheticTrain {
     SyntheticTrain { count: 60, noise: 0.01, first: 1.0, ..SyntheticTrain::default() }
 }
 
 impl SyntheticTrain {
-    /// The trace, the samples at which impacts stand, and the interval in samples.
+    /// The trace, the onsets of its impacts in samples, and the interval in samples.
     fn synthesised(&self, noise: &mut Noise) -> (Trace, Vec<f64>, f64) {
         let interval = noise.between(240.0, 290.0);
         let start = noise.between(200.0, 300.0);
@@ -74,7 +75,7 @@ impl SyntheticTrain {
     }
 }
 
-/// Bound of the time of one pulse of unknown height, in samples.
+/// Cramér–Rao bound of the onset of one pulse of unknown height, in samples.
 fn onset_bound(noise: f64) -> f64 {
     let model = |p: &[f64]| (-40..160).map(|i| p[1] * pulse(f64::from(i) - p[0])).collect();
     bounds(&[0.37, 1.0], &[1e-4, 1e-4], noise, model)[0]
@@ -89,10 +90,10 @@ const RATES: [EstimationMethod<Trace>; 3] = [
     }),
 ];
 
-/// Impacts of a record of which one interval is asked for.
+/// Impacts of a record in which one interval is to be estimated.
 const COUNT: usize = 20;
 
-/// The interval between the two impacts in the middle; not a number where there are fewer or more.
+/// The interval between the two middle impacts; NaN where the number of impacts is wrong.
 fn middle(times: &[f64]) -> f64 {
     if times.len() == COUNT { times[COUNT / 2] - times[COUNT / 2 - 1] } else { f64::NAN }
 }
@@ -148,14 +149,14 @@ pub fn scenes(quick: bool) -> Vec<BenchmarkScene> {
     ]
 }
 
-/// So many of 60 impacts, without a pattern; the first and the last stay.
+/// `count` of 60 impacts at random; the first and the last are kept.
 fn scattered(count: usize) -> Vec<usize> {
     let mut noise = Noise::new(7);
     let mut all: Vec<usize> = (1..59).collect();
     (0..count).map(|_| all.swap_remove(noise.between(0.0, all.len() as f64) as usize)).collect()
 }
 
-/// What methods for impacts do at their borders.
+/// Questions to methods for impacts at their borders.
 pub(crate) fn borders(quick: bool) -> Vec<BorderQuestion> {
     let kind = |name: &str, train: SyntheticTrain| Ensemble::new(name, 32_000, train.rate());
     let ringing = [0.3, 0.6, 0.9]
@@ -207,8 +208,8 @@ pub(crate) fn borders(quick: bool) -> Vec<BorderQuestion> {
 mod tests {
     use super::*;
 
-    /// In noise of a tenth no impact is lost; where noise hides them no uncertainty is stated, whatever the
-    /// intervals seem to say.
+    /// In noise of 10 % no impact is missed. Where noise hides impacts no uncertainty may be stated, whatever
+    /// the intervals suggest.
     #[test]
     fn impacts_in_noise_are_all_found_or_no_uncertainty_is_stated() {
         in_noise(4);
@@ -235,7 +236,8 @@ mod tests {
                     continue;
                 };
                 let off = (found.frequency.value - case.truth).abs() / std;
-                // Of normal errors 6e-5 lie beyond four standard uncertainties; the fixed seeds meet none.
+                // Of normal errors 6e-5 lie beyond four standard uncertainties; with the fixed seeds none
+                // does.
                 assert!(
                     off < 4.0,
                     "noise of {sigma}, seed {seed}: {off:.1} standard uncertainties, {:?}",

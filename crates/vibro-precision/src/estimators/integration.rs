@@ -16,7 +16,7 @@ const N: usize = 4096;
 /// Amplitude of the displacement in m.
 const AMPLITUDE: f64 = 1e-3;
 
-/// A velocity and the frequency in Hz of the vibration whose displacement is asked for.
+/// A velocity, and the frequency in Hz of the vibration whose displacement is to be estimated.
 struct Vibration {
     velocity: Trace,
     frequency: f64,
@@ -38,14 +38,14 @@ const METHODS: [EstimationMethod<Vibration>; 6] = [
     EstimationMethod::Own("in time, high-pass", filtered),
 ];
 
-/// The lines, each divided by its angular frequency as an analyser does.
+/// Spectral lines, each divided by its angular frequency, as an analyser integrates.
 fn divided(v: &Vibration) -> Vec<f64> {
     let step = rivals::spacing(&v.velocity);
     let lines = rivals::lines(&v.velocity, Window::Hann);
     lines.iter().enumerate().map(|(k, a)| a / (TAU * k as f64 * step)).collect()
 }
 
-/// `vibro response` of one point whose excitation frequency is known.
+/// As `vibro response` for one point with a known excitation frequency.
 fn with_cut_off(v: &Vibration) -> Result<EstimatorAnswer> {
     let lines = spectrum::plain(&v.velocity, Window::Hann, Scaling::Peak, false)?;
     let sweep = one_point(lines, None, Some(v.frequency));
@@ -57,8 +57,8 @@ fn with_cut_off(v: &Vibration) -> Result<EstimatorAnswer> {
     Ok(EstimatorAnswer::found(&point.amplitude, &found.findings))
 }
 
-/// `vibro convert --integrate 1 --fmin f/2 --excitation f`, then the sine of what lies between the edges,
-/// over the gain of filter and trapezoid.
+/// As `vibro convert --integrate 1 --fmin f/2 --excitation f`, then the sine fitted between the edges,
+/// divided by the gain of filter and trapezoidal rule.
 fn filtered(v: &Vibration) -> Result<EstimatorAnswer> {
     let f = v.frequency;
     let how = InTime { times: 1, corner: 0.5 * f, order: 4, period: Some(1.0 / f) };
@@ -80,8 +80,8 @@ fn filtered(v: &Vibration) -> Result<EstimatorAnswer> {
     Ok(EstimatorAnswer { value: value / gain, std: std.map(|s| s / gain), doubt })
 }
 
-/// A vibration between two frequencies in Hz, in noise so many decibels below it; on the velocity, in its
-/// amplitudes, a level and a slope over the whole record.
+/// A vibration between two frequencies in Hz, in noise `decibel` below it. A constant level and a drift over
+/// the whole record are added to the velocity, in units of its amplitude.
 #[derive(Clone, Copy)]
 struct SyntheticVibration {
     n: usize,
@@ -128,12 +128,12 @@ pub fn scenes(quick: bool) -> Vec<BenchmarkScene> {
         "displacement: relative error (rms)",
         "the displacement whose velocity was written into the record",
     ];
-    // Kay 1993, eq. 3.41: √(1/(ηN)).
+    // Cramér–Rao bound: Kay 1993, eq. 3.41, √(1/(ηN)).
     let bound = 1.0 / (N as f64 * 10f64.powf(CLEAN.decibel / 10.0)).sqrt();
     vec![scene(texts, bound, measured(&METHODS, &settings, quick))]
 }
 
-/// What methods of integration do at their borders.
+/// Questions to methods of integration at their borders.
 pub(crate) fn borders(quick: bool) -> Vec<BorderQuestion> {
     let kind = |(name, made): (&str, SyntheticVibration)| made.kind(name, 41_000);
     let level = [

@@ -13,8 +13,8 @@ use vibro_record::{Axis, Trace};
 /// Contact frequency in Hz, as in the runs of the thesis.
 const FREQUENCY: f64 = 25e3;
 
-/// A pulse, what is known of the instrument, and its two times as read elsewhere: to the peak, the duration,
-/// and their standard uncertainty, in s.
+/// A pulse, the instrument's properties, and two times of the pulse as read elsewhere, the time to the peak
+/// and the duration, with their standard uncertainty, in s.
 struct Pulse {
     trace: Trace,
     instrument: Instrument,
@@ -29,14 +29,14 @@ const WHOLE: EstimationMethod<Pulse> = EstimationMethod::Own("whole pulse", |p| 
     Ok(EstimatorAnswer::found(&found.xi, &found.findings))
 });
 
-/// ξ from two times that come with an uncertainty, as `vibro pulse --peak --end` gives it.
+/// ξ from two times with an uncertainty, as from `vibro pulse --peak --end`.
 const TWO_TIMES: EstimationMethod<Pulse> = EstimationMethod::Own("two times", |p| {
     let [peak, end, std] = p.times;
     let found = two_times(peak, end, Some(std), None)?;
     Ok(EstimatorAnswer::found(&found.xi, &found.findings))
 });
 
-/// The same from a spreadsheet, which asks for no domain.
+/// The same from a spreadsheet, which does not check the range of ρ.
 const FORMULA: EstimationMethod<Pulse> =
     EstimationMethod::Rival("formula of ρ", |p| closed_form(p.times[0] / p.times[1]));
 
@@ -48,7 +48,7 @@ fn closed_form(rho: f64) -> f64 {
     (PI * (1.0 - 2.0 * rho) / (2.0 * (3.0 - 2.0 * rho))).sin()
 }
 
-/// Deceleration of a contact of spring and damper: −ẍ of x = e^{−ht} sin(Ωt)/Ω, differentiated twice.
+/// Deceleration of a contact of spring and damper, normalised: −ẍ of x = e^{−ht} sin(Ωt)/Ω.
 fn contact(xi: f64, t: f64) -> f64 {
     let omega = TAU * FREQUENCY;
     let (h, turn) = (xi * omega, omega * (1.0 - xi * xi).sqrt());
@@ -56,14 +56,14 @@ fn contact(xi: f64, t: f64) -> f64 {
     (-h * t).exp() * ((turn * turn - h * h) * sin + 2.0 * h * turn * cos) / turn
 }
 
-/// Its end, where the force is zero.
+/// Duration of this contact in s, until the force is zero.
 fn duration(xi: f64) -> f64 {
     let turn = (1.0 - xi * xi).sqrt();
     (2.0 * xi * turn).atan2(xi * xi - turn * turn) / (TAU * FREQUENCY * turn)
 }
 
-/// Samples of a record of `n`, sampled every `dt` seconds, of a pulse that begins at `onset`; `first` is its
-/// first sample.
+/// A record of `n` samples, `dt` in s apart, of a pulse that begins at `onset` in s; `first` is the first
+/// sample within the pulse.
 fn clean(xi: f64, onset: f64, (n, dt, first): (usize, f64, usize)) -> Vec<f64> {
     let at = |i: usize| {
         let t = i as f64 * dt - onset;
@@ -72,7 +72,7 @@ fn clean(xi: f64, onset: f64, (n, dt, first): (usize, f64, usize)) -> Vec<f64> {
     (0..n).map(at).collect()
 }
 
-/// Pulses of this ξ with so many samples, in noise of this part of their height.
+/// Pulses of this ξ with `samples` samples, in noise of `part` of their height.
 fn pulses(xi: f64, samples: f64, part: f64) -> impl Fn(&mut Noise) -> Case<Pulse> {
     move |noise| {
         let length = duration(xi);
@@ -91,7 +91,7 @@ fn pulses(xi: f64, samples: f64, part: f64) -> impl Fn(&mut Noise) -> Case<Pulse
     }
 }
 
-/// Bound of ξ with onset, level, height and frequency unknown, for an onset in the middle between two
+/// Cramér–Rao bound of ξ with unknown onset, level, height and frequency, for an onset half-way between two
 /// samples.
 fn bound(xi: f64, samples: f64, part: f64) -> f64 {
     let length = duration(xi);
@@ -99,7 +99,7 @@ fn bound(xi: f64, samples: f64, part: f64) -> f64 {
     let first = (2.3 * samples).ceil() as usize;
     let onset = (first as f64 - 0.5) * dt;
     let own = KelvinVoigt::new(xi, FREQUENCY).map_or(f64::NAN, |k| k.frequency());
-    // A lower frequency stretches time and lowers the deceleration.
+    // A lower frequency stretches the pulse in time and lowers its deceleration.
     let model = |p: &[f64]| {
         let stretch = p[4] / own;
         let grid = (n, dt * stretch, first);
@@ -126,7 +126,7 @@ fn height(p: &Pulse) -> f64 {
     2.0 * rivals::half(&p.trace.values)
 }
 
-/// What methods for pulses do at their borders.
+/// Questions to methods for pulses at their borders.
 pub(crate) fn borders(quick: bool) -> Vec<BorderQuestion> {
     let damped = |xi: f64| {
         let rho = KelvinVoigt::new(xi, FREQUENCY).and_then(|k| Some(k.time_to_peak()? / k.duration()));
@@ -147,7 +147,7 @@ pub(crate) fn borders(quick: bool) -> Vec<BorderQuestion> {
         }),
         ("ringing of 30 % afterwards", |p| {
             let high = height(p);
-            // The pulse ends 3.3 durations of 40 samples after the beginning.
+            // The pulse ends 3.3 durations of 40 samples after the start of the record.
             for (i, v) in p.trace.values.iter_mut().skip(133).enumerate() {
                 *v += 0.3 * high * (-(i as f64) / 20.0).exp() * (i as f64 / 2.0).sin();
             }

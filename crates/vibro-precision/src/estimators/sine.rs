@@ -12,32 +12,32 @@ use vibro_measure::tones::{sine, tones};
 use vibro_record::{Error, Result, Scaling, Trace, Window};
 use vibro_signal::spectrum;
 
-/// Samples a second.
+/// Sampling rate in Hz.
 const RATE: f64 = 1024.0;
-/// Samples of a record where its length is not what is varied.
+/// Samples of a record, except where the length is varied.
 const N: usize = 1024;
 
-/// A record of sines (frequency in lines, amplitude, phase) on a level, in noise so many decibels below a
-/// sine of amplitude 1.
+/// A record of sines (frequency in lines, amplitude, phase in rad) and a constant level, in noise whose power
+/// is `decibel` below that of a sine of amplitude 1.
 fn record(n: usize, sines: &[(f64, f64, f64)], level: f64, decibel: f64, noise: &mut Noise) -> Trace {
     let (step, sigma) = (TAU / n as f64, sigma(decibel));
     let sum = |i: usize| -> f64 { sines.iter().map(|(k, a, p)| a * (step * k * i as f64 + p).cos()).sum() };
     trace("laser", "m/s", 1.0 / RATE, (0..n).map(|i| level + sum(i) + sigma * noise.normal()).collect())
 }
 
-/// Standard deviation of the noise for this ratio of powers in decibels and an amplitude of 1.
+/// Standard deviation of the noise for this power ratio in decibels and a sine of amplitude 1.
 fn sigma(decibel: f64) -> f64 {
     (0.5 / 10f64.powf(decibel / 10.0)).sqrt()
 }
 
-/// Bound of the frequency in lines: Kay 1993, eq. 3.41, for a real sine of amplitude 1.
+/// Cramér–Rao bound of the frequency in lines: Kay 1993, eq. 3.41, for a real sine of amplitude 1.
 fn bound(n: usize, decibel: f64) -> f64 {
     let (eta, n) = (10f64.powf(decibel / 10.0), n as f64);
     n / TAU * (12.0 / (eta * n * (n * n - 1.0))).sqrt()
 }
 
-/// Three lines under a Hann window, as in `vibro excitation`. They say no word: where they have no
-/// uncertainty, they are held to what is allowed to all.
+/// Interpolation from three lines under a Hann window, as in `vibro excitation`. It states no doubt: an
+/// answer without an uncertainty must meet the limit for all methods.
 fn three_lines(trace: &Trace, read: fn(&Excitation) -> (f64, Option<f64>)) -> Result<EstimatorAnswer> {
     let response = spectrum::plain(trace, Window::Hann, Scaling::Peak, false)?;
     let force = response.values.magnitudes();
@@ -46,7 +46,7 @@ fn three_lines(trace: &Trace, read: fn(&Excitation) -> (f64, Option<f64>)) -> Re
     Ok(EstimatorAnswer { value, std, doubt: None })
 }
 
-/// Frequency of a line that may lie between lines.
+/// Frequency in Hz of a `place` in lines, which may lie between two lines.
 fn hertz(trace: &Trace, window: Window, place: fn(&[f64]) -> f64) -> f64 {
     place(&rivals::lines(trace, window)) * rivals::spacing(trace)
 }
@@ -98,13 +98,13 @@ const WEAKER: [EstimationMethod<Trace>; 3] = [
     }),
 ];
 
-/// A record of which the frequency of a sine is asked, by its place in lines.
+/// A record in which the frequency of a sine is to be estimated, from its place in lines.
 fn at_line(data: Trace, place: f64, unit: f64) -> Case<Trace> {
     let line = rivals::spacing(&data);
     Case { data, truth: place * line, unit: unit * line, tolerance: 0.5 * line }
 }
 
-/// A sine anywhere between lines, not nearer to the ends than ten; errors in parts of `unit` lines.
+/// A sine anywhere between lines, at least ten lines from the ends; errors in units of `unit` lines.
 fn anywhere(n: usize, decibel: f64, unit: f64) -> impl Fn(&mut Noise) -> Case<Trace> {
     move |noise| {
         let (place, phase) = (noise.between(10.0, n as f64 / 2.0 - 10.0), noise.between(0.0, TAU));
@@ -112,8 +112,8 @@ fn anywhere(n: usize, decibel: f64, unit: f64) -> impl Fn(&mut Noise) -> Case<Tr
     }
 }
 
-/// Two sines `apart` lines from each other, the second of half the amplitude, whose frequency is asked for;
-/// 40 dB.
+/// Two sines `apart` lines from each other, 40 dB; the frequency of the second, of half the amplitude, is to
+/// be estimated.
 fn pair(apart: f64) -> impl Fn(&mut Noise) -> Case<Trace> {
     move |noise| {
         let first = noise.between(20.0, 200.0);
@@ -164,7 +164,7 @@ pub fn scenes(quick: bool) -> Vec<BenchmarkScene> {
         "frequency: error (rms) over its Cramér–Rao bound",
     ];
     let (longest, amplitude) = (bound(16_384, 40.0) * RATE / 16_384.0, sigma(60.0) * (2.0 / N as f64).sqrt());
-    // All are known by what was written into the record.
+    // The truth of all scenes is the sine written into the record.
     let scene = |[name, says, error_of]: [&str; 3], bound: f64, methods: Vec<MeasuredMethod>| {
         scene([name, says, error_of, "the sine that was written into the record"], bound, methods)
     };
@@ -176,7 +176,7 @@ pub fn scenes(quick: bool) -> Vec<BenchmarkScene> {
     ]
 }
 
-/// A sine of amplitude 1 at this place in lines, on a level, 40 dB.
+/// A sine of amplitude 1 at this place in lines, with a constant level, 40 dB.
 fn at(name: impl Into<String>, n: usize, place: f64, level: f64) -> Ensemble<Trace> {
     Ensemble::new(name, 10_000, move |noise: &mut Noise| {
         let phase = noise.between(0.0, TAU);
@@ -184,7 +184,7 @@ fn at(name: impl Into<String>, n: usize, place: f64, level: f64) -> Ensemble<Tra
     })
 }
 
-/// What methods for sines do at their borders.
+/// Questions to methods for sines at their borders.
 pub(crate) fn borders(quick: bool) -> Vec<BorderQuestion> {
     let noise =
         [0.0, -10.0, -20.0, -30.0].map(|db| Ensemble::new(format!("{db} dB"), 12_000, anywhere(N, db, 1.0)));
@@ -207,7 +207,7 @@ pub(crate) fn borders(quick: bool) -> Vec<BorderQuestion> {
     let faults = std::iter::once(at("level 1000 times the amplitude", N, 40.3, 1e3)).chain(changed);
     let beside = [0.3, 0.7, 1.0, 2.0, 4.0]
         .map(|apart| Ensemble::new(format!("{apart} lines apart"), 13_000, pair(apart)));
-    // Of two sines the single-sine methods are asked for the stronger.
+    // Methods for a single sine are asked for the stronger of two.
     let stronger = [0.5, 1.0, 2.0, 4.0].map(|apart| {
         Ensemble::new(format!("{apart} lines apart"), 14_000, move |noise: &mut Noise| {
             let case = pair(apart)(noise);

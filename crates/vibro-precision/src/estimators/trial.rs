@@ -1,4 +1,4 @@
-//! Methods tried on random records of which the truth is known.
+//! Trials of methods on random records with known truth.
 
 use crate::{BorderQuestion, Found, MeasuredMethod, Outcome, timed};
 use rayon::prelude::*;
@@ -9,13 +9,13 @@ use vibro_measure::Estimate;
 use vibro_record::units::Unit;
 use vibro_record::{Axis, Finding, Meta, Result, Severity, Trace, median};
 
-/// What a method says.
+/// Answer of a method.
 pub struct EstimatorAnswer {
     /// The value.
     pub value: f64,
     /// Its standard uncertainty, where the method states one.
     pub std: Option<f64>,
-    /// Code of the doubt that takes the uncertainty away.
+    /// Code of a finding that doubts the value.
     pub doubt: Option<Cow<'static, str>>,
 }
 
@@ -27,11 +27,11 @@ impl EstimatorAnswer {
     }
 }
 
-/// A way to get a number from a record, by its name in charts.
+/// A way to estimate a value from a record, with its name in charts.
 pub enum EstimationMethod<D: 'static> {
-    /// One of this library's.
+    /// An estimator of this library.
     Own(&'static str, fn(&D) -> Result<EstimatorAnswer>),
-    /// What is written by hand: a number without a word, not a number where it finds none.
+    /// Hand-written code as is common: a value without uncertainty, NaN where it finds none.
     Rival(&'static str, fn(&D) -> f64),
 }
 
@@ -44,7 +44,7 @@ impl<D> EstimationMethod<D> {
         }
     }
 
-    /// The answer to a record, or why there is none.
+    /// The answer to a record, or the reason why there is none.
     fn answer(&self, record: &D) -> std::result::Result<EstimatorAnswer, String> {
         let answer = match self {
             EstimationMethod::Own(_, way) => way(record).map_err(|error| Found::from(error).why)?,
@@ -54,34 +54,35 @@ impl<D> EstimationMethod<D> {
     }
 }
 
-/// A record and what is true of it.
+/// A record and the true value.
 pub struct Case<D> {
     /// The record.
     pub data: D,
-    /// The value that is asked for.
+    /// The value to be estimated.
     pub truth: f64,
-    /// Errors are told in parts of this: 1 for the unit itself, the truth for relative ones, a bound.
+    /// Unit in which errors are stated: 1 for the unit of the truth, the truth for relative errors, or a
+    /// bound.
     pub unit: f64,
-    /// What is allowed to an answer without an uncertainty, in the unit of the truth.
+    /// Largest allowed error of an answer without an uncertainty, in the unit of the truth.
     pub tolerance: f64,
 }
 
-/// A change of a record after it was made, by its name.
+/// A named change of a record after it was made.
 pub type Change<D> = (&'static str, fn(&mut D));
 
 type Make<D> = dyn Fn(&mut Noise) -> Case<D> + Send + Sync;
 
 /// Random records of one kind.
 pub struct Ensemble<D> {
-    /// Its name: the setting of a scene, or the scene at a border.
+    /// Its name: the setting of a scene, or the scene at a border of what methods can do.
     name: String,
-    /// Seed of its first record; the next have the next.
+    /// Seed of its first record; each further record adds 1.
     seed: u64,
     make: Box<Make<D>>,
 }
 
 impl<D: 'static> Ensemble<D> {
-    /// Records of this name.
+    /// Records of this name, made by `make` from seeded noise.
     pub fn new(
         name: impl Into<String>,
         seed: u64,
@@ -111,21 +112,22 @@ pub fn trace(name: &str, unit: &str, step: f64, values: Vec<f64>) -> Trace {
     Trace { meta, axis: Axis::time(0.0, step, values.len()), values }
 }
 
-/// Changes every value by what `f` makes of its place in the record, from 0 to 1, and of itself.
+/// Replaces every value by `f` of its place in the record, from 0 to 1, and of the value.
 pub fn each(trace: &mut Trace, f: impl Fn(f64, f64) -> f64) {
     let n = trace.values.len() as f64;
     trace.values.iter_mut().enumerate().for_each(|(i, v)| *v = f(i as f64 / n, *v));
 }
 
-/// Records of a setting: in full, and quick.
+/// Records of a setting, in a full and a quick run: more take longer, fewer scatter more.
 const RECORDS: [usize; 2] = [128, 8];
-/// Records of a setting that are also timed: in full, and quick.
+/// Records of a setting that are also timed, in a full and a quick run.
 const TIMED: [usize; 2] = [24, 3];
-/// Seeds from one setting of a scene to the next: each has records of its own, the same for all methods.
+/// Distance of the seeds of two settings of a scene: each setting has its own records, the same for all
+/// methods.
 const APART: usize = 1_000_000;
 
-/// Every method with every setting: the error is the root mean square over the answers, so that it compares
-/// with a standard deviation. A method that answers to fewer than half of the records has failed.
+/// Measures every method on every setting. The error is the root mean square over the answers, to compare
+/// with a standard deviation. A method that answers for fewer than half of the records has failed.
 pub fn measured<D: 'static>(
     methods: &[EstimationMethod<D>],
     settings: &[Ensemble<D>],
@@ -139,7 +141,7 @@ pub fn measured<D: 'static>(
             Ok((method.answer(&data)?.value - truth) / unit)
         };
         let answers: Vec<_> = (0..records).into_par_iter().map(error).collect();
-        // Times are those of an idle machine: one after another.
+        // Timed one after another, as on an idle machine.
         let time = |record: D| timed(1, quick, || method.answer(&record)).1;
         let times: Vec<f64> = (0..clocked).map(|number| time(case(number).data)).collect();
         let squares: Vec<f64> = answers.iter().flatten().map(|e| e * e).collect();
@@ -155,17 +157,17 @@ pub fn measured<D: 'static>(
     methods.iter().flat_map(|m| settings.iter().enumerate().map(move |(place, s)| one(m, place, s))).collect()
 }
 
-/// Records of a cell of the map: in full, and quick.
+/// Records of a cell of the map, in a full and a quick run.
 const TRIALS: [usize; 2] = [40, 6];
-/// An answer within so many of its standard uncertainties is right.
+/// An answer within this many of its standard uncertainties is right.
 const WITHIN: f64 = 3.0;
-/// How many answers of a cell may lie further off, in full and quick; and the standard uncertainties beyond
-/// which a single one is wrong. In a full map of 500 cells each calls a method whose errors are as it states
-/// them wrong somewhere in fewer than one of 200 runs.
+/// Most answers of a cell that may lie further off, in a full and a quick run; and the standard uncertainties
+/// beyond which a single answer is wrong. Either limit calls a method with correct uncertainties wrong
+/// somewhere in a full map of 500 cells in fewer than one of 200 runs.
 const OUTLIERS: [usize; 2] = [3, 2];
 const FAR: f64 = 5.2;
 
-/// What each method does with each kind of record at a border, to be asked.
+/// The questions to each method about each kind of record at a border.
 pub fn questions<D: Send + 'static>(
     border: &'static str,
     methods: &'static [EstimationMethod<D>],
@@ -181,9 +183,9 @@ pub fn questions<D: Send + 'static>(
     kinds.flat_map(|k| methods.iter().map(move |m| question(m, Arc::clone(&k)))).collect()
 }
 
-/// How far off an answer is in parts of what is right, or why it claims to be none. One that states its
-/// uncertainty is held to it, whatever is found beside: what is doubted has none. One without is held to what
-/// is allowed, and so is the uncertainty itself.
+/// Error of an answer over the largest allowed one, or why it counts as no answer. An answer with an
+/// uncertainty may err by three of it, even if a finding doubts it; one without may err by `tolerance`. A
+/// doubted answer without uncertainty is none, and so is one whose uncertainty exceeds `tolerance`.
 fn off(answer: &EstimatorAnswer, truth: f64, tolerance: f64) -> std::result::Result<f64, String> {
     let off = (answer.value - truth).abs();
     match (answer.std, &answer.doubt) {
@@ -198,7 +200,7 @@ fn off(answer: &EstimatorAnswer, truth: f64, tolerance: f64) -> std::result::Res
 
 fn judged<D: 'static>(method: &EstimationMethod<D>, kind: &Ensemble<D>, quick: bool) -> Found {
     let trials = TRIALS[usize::from(quick)];
-    // How far off each answer is, and whether it states an uncertainty.
+    // Error of each answer over the largest allowed one, and whether it states an uncertainty.
     let one = |number: usize| {
         let Case { data, truth, tolerance, .. } = kind.case(number);
         method.answer(&data).and_then(|a| Ok((off(&a, truth, tolerance)?, a.std.is_some())))
@@ -256,7 +258,7 @@ mod tests {
         assert!(near(of(10.6, Some(0.1), Some("noise-not-white")), 2.0));
         assert!(of(10.0, None, Some("pulse-clipped")).unwrap_err().contains("pulse-clipped"));
         assert!(near(of(10.9, None, None), 0.9) && near(of(12.0, None, None), 2.0));
-        // What is known less well than what is allowed is not right, however near it comes.
+        // An answer less certain than `tolerance` is not right, however near the truth it is.
         assert!(of(10.0, Some(1.1), None).is_err());
         assert!(near(of(10.0, Some(0.9), None), 0.0));
     }

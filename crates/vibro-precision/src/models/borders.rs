@@ -1,4 +1,4 @@
-//! The borders of what models can, and each method at each of them.
+//! The borders of what the models can do, and how each method fares there.
 
 use super::check;
 use super::rivals::{self as by, Method};
@@ -21,39 +21,39 @@ struct Border {
     goal: Goal,
 }
 
-/// What is asked of a method.
+/// Question to a method.
 #[derive(Clone, Copy, PartialEq)]
 enum Goal {
-    /// The impacts and rests of the motion.
+    /// What are the impacts and rests of the motion?
     Motion,
-    /// The same, of methods that have a contact.
+    /// The same, for methods with a soft contact.
     Contact,
-    /// Whether there is an impact, and when: in s, or never.
+    /// Is there an impact, and when? Its time in s; `None` for no impact.
     First(Option<f64>),
-    /// The motions that repeat.
+    /// What are the periodic orbits?
     Orbits,
-    /// The approach speed at the end.
+    /// What is the approach speed at the end?
     Speed,
 }
 
-/// What a method can be asked.
+/// Kind of question that a method answers.
 #[derive(Clone, Copy, PartialEq)]
 enum Can {
-    /// Motions that repeat.
+    /// Periodic orbits with rigid impacts.
     Orbits,
-    /// The same with a contact of the task's stiffness.
+    /// Periodic orbits with a contact of the task's stiffness.
     SoftOrbits,
-    /// Any motion, with impacts at once.
+    /// Any motion, with rigid impacts.
     Follow,
-    /// Any motion, with that contact.
+    /// Any motion, with a contact of the task's stiffness.
     FollowSoft,
 }
 
-/// Cycles beyond which other methods are not asked: they would take minutes.
+/// Cycles beyond which other methods than ours are not run: they would take minutes.
 const LONG: f64 = 1e4;
 
-/// Methods in the order of the picture, with their setting, and what they can. The stiff spring stands for an
-/// impact at once: it is in contact for 0.07 % of the period.
+/// Methods in the order of the picture, with their settings, and what they answer. The stiff spring counts as
+/// a rigid impact: it is in contact for 0.07 % of the period.
 const METHODS: &[(Method, f64, Can)] = &[
     (by::CLOSED, 0.0, Can::Orbits),
     (Method { name: "soft-corrected form", ..by::SOFT }, 0.0, Can::SoftOrbits),
@@ -70,27 +70,27 @@ const METHODS: &[(Method, f64, Can)] = &[
     (by::RK45_CONTACT, 1e-6, Can::FollowSoft),
 ];
 
-/// Six cycles at ν 2.1 under 0.5 N from x₁ = −1 mm.
+/// Six cycles at ν = ω/Ω₁ = 2.1 under 0.5 N from x₁ = −1 mm.
 fn six_cycles(rig: Rig) -> Task {
     let frequency = at(&Rig::thesis(), 2.1);
     Task { start: [-1e-3, 0.0, 0.0, 0.0], most: 100_000, ..Task::sine(rig, 0.5, frequency, 6.0 / frequency) }
 }
 
-/// The first chatter of scene C and the second with this restitution.
+/// The first two chatters of scene C, with this restitution.
 fn chatter(restitution: f64) -> Task {
     let task = task_c();
     Task { rig: Rig { restitution, ..task.rig }, until: 1.2, most: 100_000, rests: false, ..task }
 }
 
-/// Restitution up to which the first chatter ends in rest, by halving: with more the masses are let go while
-/// they still bounce.
+/// Largest restitution at which the first chatter ends in rest, by bisection: above it the masses are
+/// released while they still bounce.
 fn onset() -> f64 {
-    // The first release is at a quarter of a second whatever R is, the next chatter begins behind 0.4 s.
+    // The first release is at 0.25 s whatever R is, the next chatter begins after 0.4 s.
     let rests = |r| motion(&Task { until: 0.3, ..chatter(r) }, None).is_ok_and(|log| !log.sticks.is_empty());
     bisected(0.7, 0.9, 20, rests).0
 }
 
-/// All scenes; `quick` follows fewer cycles where many are asked for.
+/// All scenes; with `quick` the long runs have fewer cycles.
 fn borders(quick: bool) -> Result<Vec<Border>> {
     let thesis = Rig::thesis();
     let mut all = Vec::new();
@@ -100,7 +100,7 @@ fn borders(quick: bool) -> Result<Vec<Border>> {
         let words = if depth > 0.0 { "reached" } else { "missed" };
         add("grazing", format!("{words} by {}", quantity(depth.abs(), "m", 1)), task, Goal::First(time));
     }
-    // The forced motion alone reaches the gap up to a factor 1 + ε.
+    // The forced motion alone reaches the gap to within a factor 1 + ε.
     let plain = six_cycles(thesis);
     let unit = Steady::new(&thesis, &Sine { force: 1.0, frequency: plain.frequency })?.amplitude();
     for excess in [1e-3, 1e-9, -1e-9, -1e-3] {
@@ -118,7 +118,7 @@ fn borders(quick: bool) -> Result<Vec<Border>> {
     {
         let critical = |m: f64, k: f64| 2.0 * part * (m * k).sqrt();
         let rig = Rig { c1: critical(thesis.m1, thesis.k1), c2: critical(thesis.m2, thesis.k2), ..thesis };
-        // Enough force to reach across the gap.
+        // Enough force to cross the gap.
         let task = Task { force: 0.5 * (1.0 + 20.0 * part), ..six_cycles(rig) };
         add("damping", name.to_owned(), task, Goal::Motion);
     }
@@ -130,7 +130,7 @@ fn borders(quick: bool) -> Result<Vec<Border>> {
         let rig = Rig { m2: thesis.m2 * scale, k2: thesis.k2 * scale, c2: thesis.c2 * scale, ..thesis };
         add("mass ratio", format!("m₂/m₁ {ratio:.0e}"), six_cycles(rig), Goal::Motion);
     }
-    // 0.07 to 7 % of the period in contact.
+    // The contact lasts 0.07 to 7 % of the period.
     for stiffness in [1e8, 1e5, 1e4] {
         add("soft contact", format!("{stiffness:.0e} N/m"), Task { stiffness, ..plain }, Goal::Contact);
     }
@@ -158,13 +158,12 @@ fn borders(quick: bool) -> Result<Vec<Border>> {
     Ok(all)
 }
 
-/// What would be told rightly at a border, with impacts at once or with a contact; nothing where it is not
-/// known.
+/// The true answer at a border, with rigid impacts or with a contact; `None` where it is not known.
 fn truth(border: &Border, soft: bool) -> Option<Log> {
     let task = &border.task;
     let contact = soft.then(|| task.spring());
     match border.goal {
-        // No damper of a contact stops a rebound altogether.
+        // No damper in a contact prevents the rebound altogether.
         _ if soft && task.rig.restitution == 0.0 => None,
         Goal::Motion | Goal::Contact => motion(task, contact).ok(),
         Goal::Speed => Some(Log::of([(0.0, settled(task, contact, check::SETTLED).ok()??.speed())])),
@@ -173,7 +172,7 @@ fn truth(border: &Border, soft: bool) -> Option<Log> {
     }
 }
 
-/// What the models do at their borders; `quick` follows fewer cycles.
+/// The result of each model at each border; with `quick` the long runs have fewer cycles.
 ///
 /// # Errors
 /// If a scene cannot be built.
@@ -199,7 +198,7 @@ pub fn failures(quick: bool) -> Result<FailureMap> {
     Ok(FailureMap::answered(Family::Models, questions))
 }
 
-/// What a method makes of a border.
+/// Judges the answer of a method at a border.
 fn judged(
     method: &Method,
     setting: f64,
@@ -238,7 +237,7 @@ mod tests {
     use super::*;
     use crate::models::ours;
 
-    /// The map allows every method the same; what the library's own promise is tighter.
+    /// The map allows every method the same error; the library itself promises a smaller one.
     #[test]
     fn exact_motions_are_exact_wherever_they_answer() {
         let (mut compared, mut refused) = ([0; 2], Vec::new());
@@ -253,7 +252,7 @@ mod tests {
                     continue;
                 };
                 let truth = truth(&border, which == 1).unwrap();
-                // Impacts slower than 1e-3 m/s are told apart by what each method calls rest.
+                // Impacts slower than 1e-3 m/s are left out: they depend on what each method treats as rest.
                 let fast = |t: &Log| {
                     t.impacts
                         .iter()
@@ -264,10 +263,9 @@ mod tests {
                 let (fast_log, fast_truth) = (fast(&log), fast(&truth));
                 assert_eq!(fast_log.len(), fast_truth.len(), "{place}");
                 for (a, b) in fast_log.iter().zip(&fast_truth) {
-                    // The truth's own 2e-13 s (its tests), enlarged tenfold by impacts that are nearly
-                    // missed.
+                    // The truth's own 2e-13 s (see its tests), enlarged tenfold by near misses.
                     assert!((a.0 - b.0).abs() < 1e-11, "{place}: {a:?} {b:?}");
-                    // In that time accelerations, up to 1e3 m/s² behind a contact, change a speed by 1e-8
+                    // In that time accelerations of up to 1e3 m/s² after a contact change a speed by 1e-8
                     // m/s.
                     assert!((a.1 - b.1).abs() < 1e-8, "{place}: {a:?} {b:?}");
                     compared[which] += 1;
@@ -280,8 +278,8 @@ mod tests {
                     truth.sticks
                 );
                 for (a, b) in log.sticks.iter().zip(&truth.sticks) {
-                    // The truth's own 1e-10 s at the ends of a chatter (its tests), and what the dampers'
-                    // rates c/m change in what it leaves to a series, up to 1e-6 s.
+                    // The truth's own 1e-10 s at the ends of a chatter (see its tests), and the effect of the
+                    // dampers' rates c/m on the part that it sums as a series, up to 1e-6 s.
                     let rig = border.task.rig;
                     let allowed = 1e-9 + 1e-12 * (rig.c1 / rig.m1).max(rig.c2 / rig.m2);
                     let apart = |i: usize| (a[i].min(border.task.until) - b[i].min(border.task.until)).abs();
@@ -289,8 +287,7 @@ mod tests {
                 }
             }
         }
-        // No damper gives R = 0, and a resonance without dampers has no forced motion that a flight could be
-        // told by.
+        // No damper gives R = 0; a resonance without dampers has no forced motion, which exact flights need.
         assert_eq!(refused, [(1, "restitution R 0".into()), (0, "resonance mass 1, no dampers".into())]);
         assert!(compared.iter().all(|n| *n > 200), "{compared:?}");
     }

@@ -1,4 +1,4 @@
-//! Answers against the truth.
+//! Comparison of answers with the truth.
 
 use super::ours::soft_forms;
 use super::task::{Log, Task};
@@ -8,17 +8,17 @@ use std::f64::consts::TAU;
 use std::fmt::Debug;
 use vibro_model::{Orbit, State, orbits};
 
-/// What every method may be off: this part of a cycle in times, this part of the fastest approach speed in
-/// all of them. It is what a fixed step of a thousandth of a cycle comes to within some impacts, and twenty
-/// times what a millimetre scale would show.
+/// Largest error allowed to every method: this part of a cycle for times, this part of the fastest approach
+/// speed for speeds. A method with a thousand fixed steps a cycle reaches it within some impacts; it is
+/// twenty times what would show on a millimetre scale.
 const ALLOWED: f64 = 0.01;
-/// Approach speed in m/s from which an impact must be told.
+/// Approach speed in m/s from which an impact must be found.
 const SLOW: f64 = 1e-3;
 /// Cycles within which a motion may settle.
 pub const SETTLED: f64 = 400.0;
-/// How well an orbit in closed form must agree with its definition, relative and in rad.
+/// Largest closing error of an orbit in closed form, relative and in rad.
 const CLOSES: f64 = 1e-8;
-/// The same with what a motion has settled on.
+/// The same for the distance of an orbit from the motion on which a task settles.
 const NEAR: f64 = 1e-4;
 /// Impacts and rests of either list one by one in their order: every impact that is not slow, within
 /// [`ALLOWED`] of a cycle and of the fastest approach speed; every rest that lasts longer than twice that
@@ -27,7 +27,7 @@ pub fn motion(log: &Log, truth: &Log, task: &Task) -> Found {
     let off = ALLOWED * task.cycle();
     let seen = task.until - 2.0 * off;
     let speed = ALLOWED * truth.impacts.iter().map(|i| i.1).fold(SLOW, f64::max);
-    // Written so that what is not a number counts, and is like nothing.
+    // Written so that NaN counts, and is close to nothing.
     let counts = |i: &(f64, f64)| !(i.0 >= seen || i.1 <= SLOW);
     let close = |a: &(f64, f64), b: &(f64, f64)| (a.0 - b.0).abs() <= off && (a.1 - b.1).abs() <= speed;
     let lasts = |s: &[f64; 2]| !(s[0] >= seen || s[1] - s[0] <= 2.0 * off);
@@ -46,8 +46,8 @@ pub fn motion(log: &Log, truth: &Log, task: &Task) -> Found {
     }
 }
 
-/// How many of `truth` and `log`, each in its order, are `close`; nothing that `counts` may be left over in
-/// either, what does not count may be in a pair or not.
+/// Number of pairs of `truth` and `log` that are `close`, each in its order. Everything that `counts` must be
+/// in a pair, in both lists; the rest may be.
 fn in_order<T: Debug>(
     truth: &[T],
     log: &[T],
@@ -69,7 +69,7 @@ fn in_order<T: Debug>(
     }
 }
 
-/// The first impact, at the time of the truth or never.
+/// Judges the first impact by its true time, or by its absence.
 pub fn first(log: &Log, truth: &Log, task: &Task) -> Found {
     let [log, truth] = [log, truth].map(|motion| motion.impacts.first().map(|i| i.0));
     let kept = match (log, truth) {
@@ -79,16 +79,16 @@ pub fn first(log: &Log, truth: &Log, task: &Task) -> Found {
     Found::right_if(kept, format!("time of the first impact in s: told {log:?}, true {truth:?}"))
 }
 
-/// The last approach speed of a motion against that of the one that repeats.
+/// Judges the last approach speed by that of the periodic motion.
 pub fn speed(log: &Log, truth: &Log) -> Found {
     let [log, truth] = [log, truth].map(|motion| motion.impacts.last().map_or(f64::NAN, |i| i.1));
     let error = (log / truth - 1.0).abs();
     Found::right_if(error <= ALLOWED, format!("approach speed {error:.0e} off, allowed {ALLOWED:.0e}"))
 }
 
-/// Orbits in closed form by the motion itself: it repeats each that is called admissible, and none that is
-/// not, in which the masses would pass through each other, slow impacts aside; and what it settles on with
-/// one impact a cycle is among the stable ones.
+/// Judges orbits in closed form by the motion itself. Each orbit that is called admissible must repeat. One
+/// that is not, where the masses would pass through each other, must not repeat; slow impacts are left out.
+/// The motion on which the task settles, if with one impact a cycle, must be among the stable orbits.
 pub fn closed_form(task: &Task) -> Result<Found, Found> {
     let found = orbits(&task.rig, task.force, task.frequency)?;
     judged(task, &found.orbits.iter().filter(|o| o.validity.exists).collect::<Vec<_>>())
@@ -120,10 +120,10 @@ fn rigid(orbit: &Orbit) -> Repeats {
     Repeats { before: [x1, v1, x2, v2], phase: orbit.force_phase }
 }
 
-/// Every orbit that does not pass through the other mass, corrected, against the motion with the contact that
-/// repeats. The correction is of first order in the phase `ωt_c` that passes in the contact, and exact in all
-/// that follows from it: restitution, delay and speed at the touch each leave a second order. It may never be
-/// half of the change: no correction at all is wrong.
+/// Compares every admissible orbit, corrected for a soft contact, with the periodic motion with that contact.
+/// The correction is of first order in the phase `ωt_c` of the contact time, so restitution, delay and speed
+/// at the touch each keep an error of second order. The error must be below half the change as well:
+/// otherwise no correction would pass, too.
 pub fn corrected(task: &Task) -> Result<Found, Found> {
     let (found, soft, compliance) = soft_forms(task)?;
     let omega = TAU * task.frequency;
@@ -163,7 +163,7 @@ mod tests {
     #[test]
     fn what_the_motion_settles_on_is_told_and_stable_and_what_is_told_is_as_it_says() {
         let task = task_b(1.0);
-        // Just below the force that reaches the gap by itself there are two, one of them unstable.
+        // Just below the force that reaches the gap by itself there are two orbits, one of them unstable.
         let unit =
             Steady::new(&task.rig, &Sine { force: 1.0, frequency: task.frequency }).unwrap().amplitude();
         let force = task.rig.gap / unit * (1.0 - 1e-3);
@@ -188,7 +188,7 @@ mod tests {
     fn an_orbit_of_another_rig_is_wrong() {
         let task = task_b(1.0);
         assert_eq!(closed_form(&task).unwrap().outcome, Outcome::Right);
-        // A damper that differs by a millionth, and a rebound that does.
+        // A damper and a restitution that differ by a millionth.
         let others =
             [Rig { c2: task.rig.c2 * (1.0 + 1e-6), ..task.rig }, Rig { restitution: 0.7 + 1e-6, ..task.rig }];
         for other in others {
@@ -212,7 +212,7 @@ mod tests {
         assert_eq!(changed(&|t| t.impacts[2].0 += 1.5 * ALLOWED * cycle), Outcome::Wrong);
         assert_eq!(changed(&|t| t.impacts.truncate(2)), Outcome::Wrong);
         assert_eq!(changed(&|t| t.impacts.push((0.06, 0.1))), Outcome::Wrong);
-        // A phantom beside a true one, one for two, another speed, and what is no number.
+        // An additional impact close to a true one, one impact for two, another speed, and NaN.
         let phantom = (truth.impacts[2].0 + 0.1 * ALLOWED * cycle, truth.impacts[2].1);
         assert_eq!(changed(&|t| t.impacts.insert(3, phantom)), Outcome::Wrong);
         let doubled =
@@ -236,10 +236,10 @@ mod tests {
         assert_eq!(judged(&[[0.5, 0.6 + 0.5 * off]], &[[0.5, 0.6]]), Outcome::Right);
         assert_eq!(judged(&[[0.5, 0.6 + 1.5 * off]], &[[0.5, 0.6]]), Outcome::Wrong);
         assert_eq!(judged(&[[0.5, f64::INFINITY]], &[[0.5, 0.6]]), Outcome::Wrong);
-        // Beyond the end both last for ever.
+        // A rest that ends close to the end of the task equals one without end.
         assert_eq!(judged(&[[0.5, f64::INFINITY]], &[[0.5, 0.99]]), Outcome::Wrong);
         assert_eq!(judged(&[[0.5, f64::INFINITY]], &[[0.5, task.until - off]]), Outcome::Right);
-        // Too short to be told, or not.
+        // Rests near the shortest that counts may be missing or not.
         assert_eq!(judged(&[], &[[0.5, 0.5 + 1.9 * off]]), Outcome::Right);
         assert_eq!(judged(&[[0.5, 0.5 + 2.1 * off]], &[[0.5, 0.5 + 1.9 * off]]), Outcome::Right);
     }

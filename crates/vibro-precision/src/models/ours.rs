@@ -1,4 +1,4 @@
-//! The library's own methods on a task.
+//! The library's own methods, run on a task.
 
 use super::task::{Log, Spring, Task};
 use crate::Found;
@@ -17,7 +17,7 @@ fn start(task: &Task) -> State {
     State { x1, v1, x2, v2 }
 }
 
-/// Event by event on exact flights.
+/// From event to event on exact flights.
 pub fn flights(task: &Task) -> Result<Log, Found> {
     let mut log = Log::default();
     Simulation::from_state(&task.rig, &sine(task), start(task), task.phase)?
@@ -25,8 +25,8 @@ pub fn flights(task: &Task) -> Result<Log, Found> {
     Ok(log)
 }
 
-/// As [`flights`], the frequency changing at the task's rate in steps whose phase deviates by up to
-/// `deviation` (rad).
+/// As [`flights`], with the frequency changing at the task's rate in steps whose phase deviates by up to
+/// `deviation` in rad.
 pub fn swept(task: &Task, deviation: f64) -> Result<Log, Found> {
     let mut motion = Simulation::from_state(&task.rig, &sine(task), start(task), task.phase)?;
     let mut log = Log::default();
@@ -34,15 +34,15 @@ pub fn swept(task: &Task, deviation: f64) -> Result<Log, Found> {
     Ok(log)
 }
 
-/// Event by event with a contact of spring and damper.
+/// From event to event with a contact of spring and damper.
 pub fn kelvin_voigt(task: &Task) -> Result<Log, Found> {
     damping_ratio(task.rig.restitution)?;
     let Spring { stiffness, damping, .. } = task.spring();
     let law = Law::KelvinVoigt { stiffness, damping };
     let mut motion = Compliant::new(&task.rig, &Excitation::Sine(sine(task)), law, start(task), task.phase)?;
     let mut log = Log::default();
-    // A contact that gives way is told when it is over: the motion is followed for longer, and what began too
-    // late left out.
+    // A soft contact is reported when it is over: the motion is followed for longer, and contacts that begin
+    // after the end of the task are left out.
     motion.advance(task.until + 3.0 * task.cycle(), &mut |piece| {
         if let Event::Impact(impact) = piece.event
             && impact.time < task.until
@@ -54,19 +54,19 @@ pub fn kelvin_voigt(task: &Task) -> Result<Log, Found> {
     Ok(log)
 }
 
-/// The motion with one impact a cycle in closed form, told by its impact.
+/// The motion with one impact a cycle in closed form, as its impact.
 pub fn closed_form(task: &Task) -> Result<Log, Found> {
     let found = orbits(&task.rig, task.force, task.frequency)?;
     Ok(Log::of(found.orbits.iter().take(1).map(|o| (0.0, o.approach_velocity))))
 }
 
-/// The same with the contact that the task has.
+/// The same, corrected for the contact of the task.
 pub fn soft_form(task: &Task) -> Result<Log, Found> {
     let (_, soft, _) = soft_forms(task)?;
     Ok(Log::of(soft.iter().take(1).flatten().map(|o| (0.0, o.approach_velocity))))
 }
 
-/// All orbits, their corrections, and the contact that these are for.
+/// All orbits, their corrections for a soft contact, and this contact.
 pub fn soft_forms(task: &Task) -> Result<(Orbits, Vec<Option<Softened>>, Compliance), Found> {
     let found = orbits(&task.rig, task.force, task.frequency)?;
     let compliance = Compliance::new(&task.rig, task.stiffness, None)?;
@@ -74,7 +74,7 @@ pub fn soft_forms(task: &Task) -> Result<(Orbits, Vec<Option<Softened>>, Complia
     Ok((found, soft, compliance))
 }
 
-/// Closed forms at `n` frequencies of a sweep, each at the time at which the sweep comes to it.
+/// Closed forms at `n` frequencies of a sweep, each at the time at which the sweep passes it.
 pub fn standing(task: &Task, n: f64) -> Result<Log, Found> {
     let mut log = Log::default();
     for i in 0..n as u32 {

@@ -1,5 +1,5 @@
-//! Ways to follow a motion: the library's own, and what else is done, each written here as it usually is, and
-//! correctly.
+//! Methods that follow a motion: the library's own, and common others, each implemented here in its usual
+//! form, and correctly.
 
 #[cfg(feature = "diffsol")]
 mod diffsol;
@@ -22,18 +22,18 @@ use stepper::IntegratorKind::{Dop853, Rk4, Rk45};
 pub use stepper::Stepper;
 use stepper::{classical, euler, marched, moreau};
 
-/// A way to follow a motion.
+/// A method that follows a motion.
 #[derive(Clone, Copy)]
 pub struct Method {
     /// Name in charts.
     pub name: &'static str,
-    /// Whether it is one of this library's.
+    /// Whether it is a method of this library.
     pub ours: bool,
     /// Whether another library computes it; else it is code of this project.
     pub other_program: bool,
-    /// Words before and after a value of its setting; none where it has no setting.
+    /// Words before and after a value of its setting; `None` where it has no setting.
     pub setting: Setting,
-    /// The motion of a task by a setting.
+    /// Follows a task with a setting and returns its log.
     pub follow: Follow,
 }
 
@@ -58,7 +58,7 @@ impl Method {
         Method { name, ours: false, other_program: true, setting: TOLERANCE, follow }
     }
 
-    /// A value of its setting in words.
+    /// A value of the setting in words.
     pub fn words(&self, value: f64) -> String {
         match self.setting {
             None => String::new(),
@@ -87,7 +87,7 @@ pub const DOP853_DENSE: Method = Method::rival("DOP853, dense events", TOLERANCE
 pub const DOP853_RESTS: Method =
     Method::rival("DOP853, rule for rest", TOLERANCE, |t, r| dense(&rests(t, true), Dop853(r)));
 pub const STIFF_SPRING: Method = Method::rival("stiff spring, RK45", STIFFNESS, |t, k| stiff(t, k, 1e-8));
-/// In larger steps, for motions whose other errors are larger.
+/// With a larger tolerance, for motions whose other errors are larger.
 pub const ROUGH_SPRING: Method = Method { follow: |t, k| stiff(t, k, 1e-6), ..STIFF_SPRING };
 pub const RK45_THROUGH: Method =
     Method::rival("RK45 straight through", TOLERANCE, |t, r| through(t, Rk45(r)));
@@ -119,7 +119,7 @@ fn touch(task: &Task, kind: IntegratorKind) -> Result<Log, Found> {
     events(task, Some(task.spring()), kind, Locate::Dense)
 }
 
-/// A spring of stiffness `k` (N/m) in place of the impact.
+/// A spring of stiffness `k` in N/m in place of rigid impacts.
 fn stiff(task: &Task, k: f64, tolerance: f64) -> Result<Log, Found> {
     through(&Task { stiffness: k, ..*task }, Rk45(tolerance))
 }

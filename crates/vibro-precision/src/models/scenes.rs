@@ -1,4 +1,4 @@
-//! Scenes of models: what is asked, of which methods with which settings, and what is true.
+//! Benchmark scenes of models: the question, the methods with their settings, and the truth.
 
 mod chaos;
 
@@ -10,27 +10,27 @@ use std::f64::consts::TAU;
 use vibro_model::{Compliance, Rig, Sine, Steady};
 use vibro_record::{Error, Result, median};
 
-/// What a judge says of the motions that are told: their error, or why there is none.
+/// The error of the motions found, or why there is none.
 type Verdict = std::result::Result<f64, String>;
 type Judge = dyn Fn(&[Log]) -> Verdict;
 
-/// A method with its settings.
+/// A method with the settings to run.
 type Run = (Method, &'static [f64]);
 
 /// A scene before it is measured.
 struct Setup {
     scene: BenchmarkScene,
-    /// Motions that are followed one after another; the time of one answer is the mean.
+    /// Motions that are followed one after another; the time of one answer is their mean.
     tasks: Vec<Task>,
     methods: Vec<Run>,
     judge: Box<Judge>,
 }
 
-/// Repeats of an answer: in full, and quick.
+/// Repeats of an answer, in a full and a quick run.
 const REPEATS: [usize; 2] = [15, 3];
 
 impl Setup {
-    /// Runs, times and judges every method; `quick` with the first half of its settings.
+    /// Runs, times and judges every method; with `quick`, for the first half of its settings only.
     fn measured(self, quick: bool) -> BenchmarkScene {
         let one = |method: &Method, setting: f64| {
             let follow = || self.tasks.iter().map(|task| (method.follow)(task, setting)).collect();
@@ -48,7 +48,7 @@ impl Setup {
     }
 }
 
-/// Every scene of the models, each method measured; `quick` takes fewer settings, repeats and scenes.
+/// Every scene of the models, with each method measured; `quick` takes fewer settings, repeats and scenes.
 pub fn scenes(quick: bool, progress: &mut dyn FnMut(&str)) -> Result<Vec<BenchmarkScene>> {
     let mut found = Vec::new();
     let mut add = |setup: Setup| {
@@ -69,10 +69,10 @@ pub fn scenes(quick: bool, progress: &mut dyn FnMut(&str)) -> Result<Vec<Benchma
     Ok(found)
 }
 
-/// For a method without a setting.
+/// Setting of a method that has none.
 const ONE: &[f64] = &[0.0];
 
-/// Fixed steps, as far as they go within a second.
+/// Methods with fixed steps a cycle, up to numbers that take about a second.
 const LOOPS: [Run; 3] =
     [(by::EULER, &[100.0, 1e3, 1e4]), (by::RK4_LOOP, &[100.0, 1e3, 1e4]), (by::MOREAU, &[100.0, 1e3, 1e4])];
 /// Methods that locate impacts.
@@ -84,7 +84,7 @@ const EVENTS: &[Run] = &[
     (by::TSIT45, &[1e-4, 1e-6, 1e-9, 1e-12]),
 ];
 
-/// Frequency in Hz at which ν = ω/Ω₁ is that.
+/// Frequency in Hz at which ν = ω/Ω₁ has this value.
 pub(super) fn at(rig: &Rig, nu: f64) -> f64 {
     nu * (rig.k1 / rig.m1).sqrt() / TAU
 }
@@ -99,11 +99,11 @@ pub(super) const GOLDEN_B: [(usize, f64); 5] = [
     (1098, 99.932_500_537_538_15),
 ];
 
-/// How far the truth of all impacts may be off, in s: ten times what its own test finds up to 2 s, behind
-/// which errors die away.
+/// Largest error in s of the true impact times: ten times that found in its own test up to 2 s, after which
+/// errors decay.
 const FOLLOWED: f64 = 1e-11;
 
-/// Impacts from rest that are crossed at speed.
+/// From rest, with every impact crossed at speed.
 pub(super) fn task_b(until: f64) -> Task {
     let rig = Rig::thesis();
     Task::sine(rig, 0.5, at(&rig, 2.1), until)
@@ -113,13 +113,13 @@ fn scene_b(seconds: f64) -> Result<Setup> {
     let task = task_b(seconds);
     let golden = GOLDEN_B.iter().filter(|g| g.1 < seconds);
     let count = golden.clone().next_back().map_or(0, |g| g.0);
-    // Time of each impact, and how far off it may be.
+    // Time of each impact and its uncertainty, in s.
     let followed = truth::motion(&task, None)?.impacts;
     let mut truth: Vec<[f64; 2]> = followed.iter().take(count).map(|i| [i.0, FOLLOWED]).collect();
     for (number, time) in golden {
         truth[number - 1] = [*time, 0.0];
     }
-    // No time is known better than to its rounding.
+    // No time is known better than its rounding.
     let least = f64::EPSILON * seconds / 2.0;
     let judge = move |log: &[Log]| -> Verdict {
         let last = truth[count - 1][0] + 0.5 * task.cycle();
@@ -153,22 +153,21 @@ fn scene_b(seconds: f64) -> Result<Setup> {
     Ok(Setup { scene, tasks: vec![task], methods, judge: Box::new(judge) })
 }
 
-/// Starts in each direction of a grazing motion.
+/// Starts for the reaching motion and for the missing one.
 const STARTS: usize = 8;
 
-/// A motion that reaches `depth` (m) into the other mass, or misses it by −`depth`, and the time of its
+/// A motion that reaches `depth` in m into the other mass, or misses it by −`depth`, and the time of its
 /// impact in s.
 ///
 /// Mass 1 is on its forced motion `A cos ω(t − t_p)` and mass 2 rests, so with the gap A − d they meet at
-/// `t_p − 2 asin(√(d/2A))/ω`, or never. The difference A − Δ is exact, so the truth knows the d that the
-/// rounded gap leaves.
+/// `t_p − 2 asin(√(d/2A))/ω`, or never. The difference A − Δ is exact, so d is that of the rounded gap Δ.
 pub(super) fn grazing_task(depth: f64, start: usize) -> Result<(Task, Option<f64>)> {
     let rig = Rig::thesis();
     let frequency = at(&rig, 2.1);
     let steady = Steady::new(&rig, &Sine { force: 0.5, frequency })?;
     let (amplitude, omega) = (steady.amplitude(), steady.omega);
     let gap = amplitude - depth;
-    // Peaks at places of the cycle that no step size favours.
+    // Peaks at instants of the cycle that favour no step size.
     let peak = (0.3 + 0.043_217 * start as f64) / frequency;
     let turn = omega * peak;
     let task = Task {
@@ -222,7 +221,7 @@ fn grazing(depth: f64) -> Result<Setup> {
 pub(super) const GOLDEN_C: [f64; 3] =
     [0.152_721_089_353_360_45, 0.220_247_418_265_660_51, 0.574_521_373_816_090_7];
 
-/// Impacts that accumulate, rest, and release: the pre-loaded rig from x₁ = −2 mm.
+/// Impacts that accumulate to rest, and release: the pre-loaded rig from x₁ = −2 mm.
 pub(super) fn task_c() -> Task {
     let rig = Rig { gap: -5e-4, ..Rig::thesis() };
     Task {
@@ -262,11 +261,11 @@ fn scene_c() -> Setup {
     Setup { scene, tasks: vec![task_c()], methods, judge: Box::new(judge) }
 }
 
-/// Stiffness in N/m of contacts, and cycles until the motion is read: the slowest multiplier of the rigid
-/// orbit, 0.970, is then below 1e-16; with a contact of 7 % of the period it is −0.9945, and what is left
-/// turns round from impact to impact: the mean of sixteen keeps 2.6e-3 of it, 2e-10 of the start.
+/// Stiffness in N/m of contacts, and cycles until the motion is read. The slowest multiplier of the rigid
+/// orbit, 0.970, is then below 1e-16. With a contact of 7 % of the period it is −0.9945: the remainder
+/// changes sign from impact to impact, and the mean of sixteen keeps 2.6e-3 of it, 2e-10 of the start.
 const SOFT_CONTACTS: [(f64, f64); 3] = [(1e8, 1250.0), (1e6, 1250.0), (1e4, 3000.0)];
-/// Impacts whose mean speed is read.
+/// Last impacts, whose mean approach speed is read.
 const READ: usize = 16;
 
 fn soft(stiffness: f64, cycles: f64) -> Result<Setup> {
@@ -315,8 +314,8 @@ fn soft(stiffness: f64, cycles: f64) -> Result<Setup> {
     Ok(Setup { scene, tasks: vec![task], methods, judge: Box::new(judge) })
 }
 
-/// Ends in Hz and rate in Hz/s of a slow sweep over a vibro-impact resonance, and the time in s before which
-/// its start is still felt.
+/// Start and end in Hz and rate in Hz/s of a slow sweep over a vibro-impact resonance, and the time in s
+/// during which the transient of its start matters.
 const FROM: f64 = 10.2;
 const TO: f64 = 10.8;
 const RATE: f64 = 0.02;
@@ -367,7 +366,7 @@ mod tests {
             let setup = scene_b(until).unwrap();
             let log = ours::flights(&task).unwrap();
             assert!((setup.judge)(std::slice::from_ref(&log)).unwrap() < 1e-13);
-            // One that no golden number tells.
+            // An impact that none of the golden numbers covers.
             let mut late = log;
             late.impacts[10].0 += 1e-6;
             assert!(((setup.judge)(&[late]).unwrap() - 1e-6).abs() < 2.0 * FOLLOWED);

@@ -1,4 +1,4 @@
-//! What is asked of a method: a rig, its excitation, a start and an end; and what comes back.
+//! The task of a method (a rig, its excitation, a start and an end), and the log that it returns.
 
 use crate::{Found, Outcome};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
@@ -20,24 +20,24 @@ pub struct Task {
     pub phase: f64,
     /// State (x₁, v₁, x₂, v₂) at time 0.
     pub start: [f64; 4],
-    /// Stiffness in N/m of the contact, for methods that have one.
+    /// Stiffness of the contact in N/m, for methods with a soft contact.
     pub stiffness: f64,
     /// Time of the end in s.
     pub until: f64,
-    /// The most steps that a method may take before it counts as stalled.
+    /// Most steps that a method may take before it counts as stalled.
     pub most: u64,
-    /// Methods with events let masses that press each other rest where they meet more slowly than the
-    /// tolerance resolves.
+    /// Whether methods with events let masses that press each other rest, where they meet more slowly than
+    /// the tolerance resolves.
     pub rests: bool,
 }
 
-/// What a method tells of a motion.
+/// Impacts and rests of a motion as a method finds them.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Log {
     /// Time in s and approach speed in m/s of each impact.
     pub impacts: Vec<(f64, f64)>,
-    /// Times in s at which the masses come to rest against each other and part again; the last may be
-    /// infinite.
+    /// Times in s at which the masses come to rest against each other and part again; the last part may be at
+    /// ∞.
     pub sticks: Vec<[f64; 2]>,
 }
 
@@ -47,7 +47,7 @@ impl Log {
         Log { impacts: impacts.into_iter().collect(), sticks: Vec::new() }
     }
 
-    /// The last rest ends.
+    /// Ends the last rest at `time` in s.
     pub fn release(&mut self, time: f64) {
         if let Some(rest) = self.sticks.last_mut() {
             rest[1] = time;
@@ -66,12 +66,12 @@ pub struct Spring {
     pub alone: f64,
 }
 
-/// A contact that lasts so many times as long as that of the spring alone counts as rest.
+/// A contact that lasts this many times as long as that of the undamped spring alone counts as rest.
 const RESTS: f64 = 10.0;
 
 impl Spring {
-    /// A spring that rebounds as the rig does; at R = 0, which no damper gives, with the critical one, as is
-    /// usual: it rebounds with e⁻².
+    /// A spring whose damper gives the restitution of the rig. R = 0 needs an infinite damper: critical
+    /// damping is used, as is usual, which rebounds with e⁻².
     pub fn new(rig: &Rig, stiffness: f64) -> Spring {
         let mass = rig.reduced_mass();
         let ratio = damping_ratio(rig.restitution).unwrap_or(1.0);
@@ -79,20 +79,19 @@ impl Spring {
         Spring { stiffness, damping, alone: PI * (mass / stiffness).sqrt() }
     }
 
-    /// Force in N of spring and damper alone, which may pull.
+    /// Force in N of spring and damper alone; it may pull.
     pub fn bound(&self, task: &Task, y: &[f64; 4]) -> f64 {
         -self.stiffness * task.gap(y) + self.damping * (y[1] - y[3])
     }
 
-    /// The rest in a contact between these times in s, if it lasts long enough to be one.
+    /// The contact between these times in s as a rest, if it lasts long enough to be one.
     pub fn rest(&self, from: f64, to: f64) -> Option<[f64; 2]> {
         (to - from > RESTS * self.alone).then_some([from, to])
     }
 }
 
 impl Task {
-    /// A motion under F₀ sin ωt from rest, in twenty million steps at most, with a contact of 1e6 N/m where
-    /// it has one.
+    /// A motion under F₀ sin ωt from rest; at most twenty million steps, and a soft contact of 1e6 N/m.
     pub fn sine(rig: Rig, force: f64, frequency: f64, until: f64) -> Task {
         Task {
             rig,
@@ -108,7 +107,7 @@ impl Task {
         }
     }
 
-    /// The contact of its stiffness that rebounds as the rig does.
+    /// The contact of the task's stiffness with the restitution of the rig.
     pub fn spring(&self) -> Spring {
         Spring::new(&self.rig, self.stiffness)
     }
@@ -118,7 +117,8 @@ impl Task {
         1.0 / self.frequency
     }
 
-    /// Rate of the state (x₁, v₁, x₂, v₂) where the masses push each other with `contact` (N).
+    /// Time derivative of the state (x₁, v₁, x₂, v₂) where the masses push each other with the force
+    /// `contact` in N.
     #[inline]
     pub fn pushed(&self, t: f64, y: &[f64; 4], contact: f64) -> [f64; 4] {
         let rig = &self.rig;
@@ -131,19 +131,19 @@ impl Task {
         ]
     }
 
-    /// Contact force in N that keeps the masses together.
+    /// Contact force in N that keeps the masses in contact.
     pub fn hold(&self, t: f64, y: &[f64; 4]) -> f64 {
         let [_, first, _, second] = self.pushed(t, y, 0.0);
         self.rig.reduced_mass() * (first - second)
     }
 
-    /// Gap in m.
+    /// Gap in m; negative where the masses overlap.
     #[inline]
     pub fn gap(&self, y: &[f64; 4]) -> f64 {
         self.rig.gap + y[2] - y[0]
     }
 
-    /// Exchanges momentum by the impact law: gives the approach speed in m/s.
+    /// Exchanges momentum by the impact law; returns the approach speed in m/s.
     #[inline]
     pub fn collide(&self, y: &mut [f64; 4]) -> f64 {
         let approach = y[1] - y[3];
@@ -153,7 +153,7 @@ impl Task {
         approach
     }
 
-    /// That the budget is spent at `t`.
+    /// The finding that the steps are used up at the time `t`.
     pub fn stalled(&self, t: f64) -> Found {
         let why = format!("{} steps are spent at {t:.6} s of {:.6} s", self.most, self.until);
         Found::new(Outcome::Stalled, why)

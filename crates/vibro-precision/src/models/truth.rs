@@ -1,5 +1,5 @@
-//! The truth, by nothing that this library's models use: integration of order 8 to 1e-13 from event to event,
-//! and Newton's method.
+//! The true motions, independent of this library's models: integration of order 8 to 1e-13 from event to
+//! event, and Newton's method.
 
 use super::rivals::{IntegratorKind, Locate, Trajectory, events};
 use super::task::{Log, Spring, Task};
@@ -7,33 +7,33 @@ use crate::Found;
 use nalgebra::{Matrix4, Vector4};
 use std::f64::consts::{PI, TAU};
 
-/// The integration.
+/// Integrator and its relative tolerance.
 const KIND: IntegratorKind = IntegratorKind::Dop853(1e-13);
 /// Length in m by which displacements are scaled, so that all unknowns are of order 1.
 const LENGTH: f64 = 1e-3;
-/// Rounds of Newton's method.
+/// Most rounds of Newton's method.
 const ROUNDS: usize = 30;
-/// Change of the unknowns for a derivative, in units of 1 mm, 1 mm·ω and 1 rad: half the digits.
+/// Change of the unknowns for a central difference, in units of 1 mm, 1 mm·ω and 1 rad: half the digits.
 const SMALL: f64 = 1e-7;
-/// A motion closes where it misses by no more than this in these units: errors of some ten steps, enlarged by
-/// what near grazing does so.
+/// Largest closing error of a periodic motion in these units: errors of some ten steps, enlarged near
+/// grazing.
 const CLOSED: f64 = 1e-9;
-/// Part of the period within which an impact after another is the same.
+/// Time after an impact, over the period, within which another one counts as the same.
 const AT_ONCE: f64 = 1e-6;
-/// What is left of the start, relative, where Newton's method takes over.
+/// Relative deviation of the last impacts from each other below which Newton's method takes over.
 const NEARLY: f64 = 1e-3;
 
-/// The motion of a task with impacts at once, or with a contact.
+/// The motion of a task with rigid impacts, or with a contact.
 pub fn motion(task: &Task, contact: Option<Spring>) -> Result<Log, Found> {
     events(&Task { rests: true, most: u64::MAX, ..*task }, contact, KIND, Locate::Summed)
 }
 
-/// A motion with one impact a period, as the masses meet.
+/// A periodic motion with one impact a period, described at the impact.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Repeats {
     /// State at the first touch.
     pub before: [f64; 4],
-    /// Phase in rad of the exciting force there.
+    /// Phase of the exciting force there, in rad.
     pub phase: f64,
 }
 
@@ -43,8 +43,8 @@ impl Repeats {
         self.before[1] - self.before[3]
     }
 
-    /// How far off an impact of this approach speed (m/s) at this phase (rad) is: relative and in rad
-    /// together, so that no single one of them is small by chance.
+    /// Distance of an impact with this approach speed in m/s and this phase in rad: the relative error of the
+    /// speed and the phase error in rad, combined, so that neither is small by chance.
     pub fn off(&self, speed: f64, phase: f64) -> f64 {
         let turn = (phase - self.phase + PI).rem_euclid(TAU) - PI;
         (speed / self.speed() - 1.0).hypot(turn)
@@ -63,8 +63,8 @@ fn meeting(course: &mut Trajectory<'_>) -> Result<Option<(f64, [f64; 4])>, Found
     Ok(None)
 }
 
-/// The motion with one impact in `period` (s) of a task, with impacts at once or a contact, that Newton's
-/// method reaches from `guess`.
+/// The motion of a task with one impact in `period` in s, rigid or with a contact, that Newton's method
+/// reaches from `guess`.
 pub fn repeats(task: &Task, contact: Option<Spring>, period: f64, guess: &Repeats) -> Option<Repeats> {
     let omega = TAU * task.frequency;
     let speed = LENGTH * omega;
@@ -78,7 +78,7 @@ pub fn repeats(task: &Task, contact: Option<Spring>, period: f64, guess: &Repeat
         let mut course = Trajectory::new(&task, contact, KIND, Locate::Summed);
         course.meet(0, 0.0, y);
         let mut met = meeting(&mut course).ok()??;
-        // At R = 0 rounding makes them meet at once again.
+        // At R = 0 rounding makes the masses meet again at once.
         while met.0 < AT_ONCE * period {
             met = meeting(&mut course).ok()??;
         }
@@ -98,8 +98,7 @@ pub fn repeats(task: &Task, contact: Option<Spring>, period: f64, guess: &Repeat
             slope.set_column(i, &((missed(&up)? - missed(&down)?) / (2.0 * SMALL)));
         }
         let step = slope.lu().solve(&off)?;
-        // Half the way, and half of that, where the whole leads further off; until rounding is all that is
-        // left.
+        // Halves the step while it increases the error, up to seven times; ends when only rounding is left.
         let nearer = (0..8).find_map(|halvings| {
             let tried = u - step * 0.5_f64.powi(halvings);
             let missed = missed(&tried)?;
@@ -112,7 +111,8 @@ pub fn repeats(task: &Task, contact: Option<Spring>, period: f64, guess: &Repeat
     (off.amax() < CLOSED).then_some(Repeats { before, phase: phase.rem_euclid(TAU) })
 }
 
-/// The motion with one impact a cycle on which a task settles within so many `cycles`, if it does.
+/// The motion with one impact a cycle on which a task settles within this many `cycles`; `None` if it does
+/// not.
 pub fn settled(task: &Task, contact: Option<Spring>, cycles: f64) -> Result<Option<Repeats>, Found> {
     let long = Task { until: cycles * task.cycle(), most: u64::MAX, rests: true, ..*task };
     let mut course = Trajectory::new(&long, contact, KIND, Locate::Summed);
@@ -146,8 +146,8 @@ mod tests {
         ];
         for ((number, time), speed) in GOLDEN_B.into_iter().zip(speeds) {
             let found = log.impacts[number - 1];
-            // A few roundings (1e-15) in each of 512 steps a cycle over 22 cycles, all to one side: 1e-11 rad
-            // of the cycle, 2e-13 s; five times that.
+            // A few roundings (1e-15) in each of 512 steps a cycle over 22 cycles, all of one sign, are 1e-11
+            // rad of the cycle or 2e-13 s; five times that is allowed.
             assert!((found.0 - time).abs() < 1e-12, "{number}: {:e}", found.0 - time);
             assert!((found.1 / speed - 1.0).abs() < 5e-11, "{number}: {:e}", found.1 / speed - 1.0);
         }
@@ -158,14 +158,14 @@ mod tests {
         let log = motion(&task_c(), None).unwrap();
         let found = [log.sticks[0][0], log.sticks[0][1], log.sticks[1][0]];
         for (found, golden) in found.iter().zip(GOLDEN_C) {
-            // The series leaves out what the pressing acceleration changes in the 2w/(a(1 − R)) = 7e-7/a s
+            // The series neglects the change of the pressing acceleration during the 2w/(a(1 − R)) = 7e-7/a s
             // after the last rebound.
             assert!((found - golden).abs() < 1e-10, "{found} {golden}");
         }
     }
 
-    /// Work of the exciting force over a cycle of the settled motion, and what dampers and impact take: by
-    /// Simpson's rule on the states, which the follower does not use.
+    /// Work of the exciting force over a settled cycle against the loss in dampers and impact. Computed by
+    /// Simpson's rule on the states, which the integration does not use.
     #[test]
     fn a_settled_cycle_spends_what_the_force_gives() {
         let task = task_b(2.0);
@@ -193,7 +193,7 @@ mod tests {
             }
         }
         let lost = 0.5 * rig.reduced_mass() * (1.0 - rig.restitution.powi(2)) * found.speed().powi(2);
-        // Simpson's rule leaves (2π/512)⁴/180 = 1e-10 of what oscillates.
+        // Simpson's rule errs by (2π/512)⁴/180 = 1e-10 of the oscillating part.
         assert!((work / (damped + lost) - 1.0).abs() < 1e-8, "{work} {damped} {lost}");
     }
 }

@@ -13,7 +13,7 @@ pub fn fixed(value: f64, decimals: usize) -> String {
     }
 }
 
-/// Digits of exponents.
+/// Superscript digits, for exponents.
 pub(super) const RAISED: &str = "⁰¹²³⁴⁵⁶⁷⁸⁹";
 
 /// `10ⁿ` in superscript digits.
@@ -23,7 +23,7 @@ pub fn power_of_ten(exponent: i32) -> String {
     "10".chars().chain(exponent.to_string().chars().map(raised)).collect()
 }
 
-/// A text whose numbers are written as programs write them, with powers of ten and true minus signs: `1e-9 m`
+/// A text whose numbers, written as programs write them, get powers of ten and true minus signs: `1e-9 m`
 /// becomes `10⁻⁹ m`.
 pub fn typeset(text: &str) -> String {
     let word = |word: &str| {
@@ -42,7 +42,7 @@ pub fn typeset(text: &str) -> String {
     text.split(' ').map(word).collect::<Vec<_>>().join(" ")
 }
 
-/// A number with so many significant digits, as a plain decimal between 10⁻⁴ and 10⁷, else with a power of
+/// A number with this many significant digits, as a plain decimal between 10⁻⁴ and 10⁷, else with a power of
 /// ten.
 ///
 /// Infinite values are written `∞`, a missing one (NaN) as a dash.
@@ -65,20 +65,18 @@ pub fn significant(value: f64, digits: usize) -> String {
     format!("{}×{}", mantissa.replace('-', MINUS), power_of_ten(exponent))
 }
 
-/// The shortest text of a number to twelve significant digits: what computing leaves in the last ones is no
-/// one's input.
+/// The shortest text of a number to twelve significant digits: beyond them are rounding errors of computing.
 pub fn shortest(value: f64) -> String {
     format!("{value:.11e}").parse().unwrap_or(value).to_string()
 }
 
-/// Digits that a value with an uncertainty has at most.
+/// Most significant digits of a value that has an uncertainty.
 const DIGITS: i32 = 10;
 
 /// A value with its standard uncertainty, both rounded to two significant digits of the uncertainty (GUM,
 /// 7.2.6).
 ///
-/// Without a usable uncertainty the value is given to five significant digits, beside a very small one to
-/// ten.
+/// Without a usable uncertainty the value has five significant digits; with a very small one it has ten.
 ///
 /// ```
 /// use vibro_record::units::notation::estimate;
@@ -92,7 +90,7 @@ pub fn estimate(value: f64, std: Option<f64>) -> String {
     };
     let exponent = engineering(value.abs().max(std));
     if value != 0.0 && std < 10f64.powi(decade(value, 1) - DIGITS) {
-        // No number of a measurement has more digits.
+        // No measurement has more digits.
         return format!("{} ± {}", significant(value, DIGITS as usize), significant(std, 2));
     }
     let scale = if (-3..=3).contains(&exponent) { 1.0 } else { 10f64.powi(-exponent) };
@@ -113,8 +111,8 @@ pub fn decimals_needed(value: f64, digits: usize) -> usize {
     usize::try_from(kept - exponent).unwrap_or(0)
 }
 
-/// The power of ten, a multiple of three, that brings `largest` to between 1 and 1000; 0 where a number from
-/// 0.1 to below 10 000 needs none.
+/// The power of ten, a multiple of three, that brings `largest` to between 1 and 1000; 0 for numbers from 0.1
+/// to below 10 000, which need none.
 pub fn engineering(largest: f64) -> i32 {
     if !largest.is_finite() || largest == 0.0 || (0.1..1e4).contains(&largest.abs()) {
         return 0;
@@ -123,10 +121,10 @@ pub fn engineering(largest: f64) -> i32 {
     decade(largest, 10).div_euclid(3) * 3
 }
 
-/// Times in s below this are what rounding leaves of 0: no clock shows them.
+/// Times in s below this are rounding errors of 0: no clock resolves them.
 const ROUNDING: f64 = 1e-15;
 
-/// A quantity in a sentence, with an SI prefix where one fits; a time that rounding leaves of 0 is 0.
+/// A quantity in a sentence, with an SI prefix where one fits. A time below 10⁻¹⁵ s is written as 0.
 ///
 /// ```
 /// use vibro_record::units::notation::quantity;
@@ -144,13 +142,13 @@ pub fn quantity(value: f64, unit: &str, digits: usize) -> String {
         return format!("{} {unit}", significant(value, digits)).trim_end().to_owned();
     }
     let (number, unit) = (significant(value / 10f64.powi(exponent), digits), scaled_unit(unit, exponent));
-    // A unit that takes no prefix.
+    // A unit that takes no prefix is preceded by the power of ten.
     let between = if unit.starts_with("10") { "×" } else { " " };
     [number.as_str(), between, &unit].concat()
 }
 
-/// The reference of a level: a number from 1 to below 1000 in a unit with a prefix, as `1 µm/s`; 0.1 is 100
-/// of the smaller unit.
+/// The reference of a level: a number from 1 to below 1000 in a unit with a prefix, as `1 µm/s`. 0.1 V is 100
+/// mV.
 ///
 /// ```
 /// use vibro_record::units::notation::reference;
@@ -166,8 +164,8 @@ pub fn reference(value: f64, unit: &str) -> String {
 
 /// A unit multiplied by a power of ten, with an SI prefix where one fits (`m` and −3 give `mm`).
 ///
-/// Only coherent units take a prefix, in first place and to the first power, and metres and seconds only that
-/// of a part; any other unit is preceded by the power itself.
+/// Only coherent units take a prefix, in first place and to the first power; metres and seconds only prefixes
+/// below 1. Any other unit is preceded by the power itself.
 pub fn scaled_unit(unit: &str, exponent: i32) -> String {
     const PREFIXES: [(i32, &str); 8] =
         [(-12, "p"), (-9, "n"), (-6, "µ"), (-3, "m"), (3, "k"), (6, "M"), (9, "G"), (12, "T")];
@@ -205,7 +203,7 @@ pub fn labelled(label: &str, unit: &str) -> String {
     }
 }
 
-/// A unit whose quotient in brackets, if it is one of time, is written as a product.
+/// A unit whose quotient in brackets, if it divides by time, is written as a product.
 fn unbracketed(unit: &str) -> String {
     const PRODUCTS: [(&str, &str); 4] =
         [("/s)²", "² s⁻²"), ("/s²)²", "² s⁻⁴"), ("/s)", " s⁻¹"), ("/s²)", " s⁻²")];
@@ -214,7 +212,7 @@ fn unbracketed(unit: &str) -> String {
         .map_or(unit.to_owned(), |(quotient, product)| unit.replacen('(', "", 1).replace(quotient, product))
 }
 
-/// Rounds to `places` decimals, or to tens, hundreds, … where negative.
+/// Rounds to `places` decimals; to tens, hundreds, … where `places` is negative.
 fn rounded(value: f64, places: i32) -> String {
     if places >= 0 {
         return fixed(value, places as usize);
@@ -223,7 +221,7 @@ fn rounded(value: f64, places: i32) -> String {
     fixed((value / unit).round() * unit, 0)
 }
 
-/// Decade of the first digit once rounded to `digits` significant ones.
+/// Power of ten of the first digit, once `value` is rounded to `digits` significant ones.
 fn decade(value: f64, digits: usize) -> i32 {
     scientific(value, digits).1
 }

@@ -1,14 +1,14 @@
 //! Grammar of unit texts: `product := number? factor (('*' | '·' | ' ' | '/') factor)*`, `factor := atom
 //! power?`, `atom := '(' product ')' | 'sqrt(' product ')' | '√' factor | '1' | symbol`.
 //!
-//! A number before a product is a factor, as in `100 mV/g`. A negative exponent behind `/` is not understood:
-//! whoever writes `m/s-2` may mean either power.
+//! A number before a product is a factor, as in `100 mV/g`. A negative exponent after `/` is refused: `m/s-2`
+//! may mean either power.
 
 use super::Dimension;
 use super::notation::RAISED;
 
-/// Symbols of a unit with their dimension (m, kg, s, A, K, rad; not doubled), factor to SI, and whether a
-/// prefix may stand before them.
+/// Symbols of a unit with their dimension (m, kg, s, A, K, rad; not doubled), factor to SI, and whether they
+/// may take a prefix.
 const SYMBOLS: &[(&str, [i8; 6], f64, bool)] = &[
     ("m", [1, 0, 0, 0, 0, 0], 1.0, true),
     ("s sec", [0, 0, 1, 0, 0, 0], 1.0, true),
@@ -63,7 +63,7 @@ const PREFIXES: &[(&str, f64)] = &[
     ("G", 1e9),
 ];
 
-/// Units that instruments spell out.
+/// Units that instruments write in words.
 const WORDS: &[(&str, &str)] = &[
     ("metre", "m"),
     ("meter", "m"),
@@ -87,7 +87,7 @@ pub fn spelled(text: &str) -> Option<String> {
     })
 }
 
-/// Brackets and roots of a text at most.
+/// Most brackets and roots in a text, against deep recursion.
 const MAX_BRACKETS: usize = 16;
 
 type Parsed = (Dimension, f64);
@@ -105,14 +105,14 @@ pub fn parse(text: &str) -> Option<Parsed> {
     (reader.rest.is_empty() && unit.1.is_finite() && unit.1 > 0.0).then_some(unit)
 }
 
-/// What has not been read yet, and how many brackets have.
+/// The text that has not been read yet, and the number of brackets read.
 struct UnitParser<'a> {
     rest: &'a str,
     brackets: usize,
 }
 
 impl<'a> UnitParser<'a> {
-    /// Takes characters as long as they fit.
+    /// Takes characters as long as they satisfy `fits`.
     fn take(&mut self, fits: impl Fn(char) -> bool) -> &'a str {
         let (taken, rest) = self.rest.split_at(self.rest.find(|c| !fits(c)).unwrap_or(self.rest.len()));
         self.rest = rest;
@@ -127,7 +127,7 @@ impl<'a> UnitParser<'a> {
     }
 
     fn product(&mut self) -> Option<Parsed> {
-        // A number may touch its unit, as in `100mV`; one alone is no unit.
+        // A number may touch its unit, as in `100mV`; a number alone is no unit.
         let (mut total, mut blank, mut alone) = match self.number() {
             Some(number) => ((Dimension::NONE, number), true, number != 1.0),
             None => (self.factor(false)?, false, false),
@@ -170,7 +170,7 @@ impl<'a> UnitParser<'a> {
         if self.rest[end..].starts_with('.') {
             end += 1 + digits(&self.rest[end + 1..]);
         }
-        // The letter may also begin a symbol.
+        // The letter e may also begin a symbol.
         if let Some(power) = self.rest[end..].strip_prefix(['e', 'E']) {
             let unsigned = power.strip_prefix(['-', '+']).unwrap_or(power);
             if digits(unsigned) > 0 {
@@ -191,7 +191,7 @@ impl<'a> UnitParser<'a> {
             self.brackets += 1;
             return root((self.brackets <= MAX_BRACKETS).then(|| self.factor(below))??);
         } else if self.one(&['1']).is_some() {
-            // Digits behind it would be another number, not its exponent.
+            // Digits after it would be another number, not its exponent.
             return Some((Dimension::NONE, 1.0));
         } else {
             name = self.take(|c| c.is_alphabetic() || matches!(c, '%' | '°' | '_'));
@@ -203,7 +203,7 @@ impl<'a> UnitParser<'a> {
         };
         match self.power()? {
             2 => Some(base),
-            // Nobody divides by milliseconds: `ms-2` are metres.
+            // Nobody divides by milliseconds: `ms-2` means metres per square second.
             halves if name == "ms" && halves < 0 && !below => {
                 Some((symbol("m")?.0.times(symbol("s")?.0.half_power(halves)?), 1.0))
             }
@@ -212,7 +212,7 @@ impl<'a> UnitParser<'a> {
         }
     }
 
-    /// Exponent in halves: 2 where none is written.
+    /// Exponent in halves; 2 where none is written.
     fn power(&mut self) -> Option<i8> {
         let text = if self.one(&['^']).is_some() {
             let bracket = self.one(&['(']).is_some();
@@ -222,7 +222,7 @@ impl<'a> UnitParser<'a> {
             }
             text.to_owned()
         } else {
-            // `m/s2` and `m s-2`: a digit that follows a symbol is its exponent.
+            // `m/s2` and `m s-2`: a digit after a symbol is its exponent.
             let plain = self.take(|c| c.is_ascii_digit() || c == '-').to_owned();
             let raised = if plain.is_empty() { self.take(|c| c == '⁻' || RAISED.contains(c)) } else { "" };
             let digit = |c| RAISED.chars().zip('0'..='9').find(|(r, _)| *r == c).map_or('-', |(_, d)| d);
@@ -244,7 +244,7 @@ fn root(inner: Parsed) -> Option<Parsed> {
 fn symbol(name: &str) -> Option<Parsed> {
     let find = |name: &str| SYMBOLS.iter().find(|s| s.0.split(' ').any(|symbol| symbol == name));
     let prefixed = || {
-        // Gauss, and millivolts in capitals: no bench has gigaseconds or megavolts.
+        // Gs is gauss, MV is millivolts in capitals: a bench has neither gigaseconds nor megavolts.
         let first = name.chars().next().filter(|_| !matches!(name, "Gs" | "MV"))?;
         let (_, scale) = PREFIXES.iter().find(|p| p.0.contains(first))?;
         Some((find(&name[first.len_utf8()..]).filter(|s| s.3)?, *scale))
@@ -321,7 +321,7 @@ mod tests {
         assert_eq!(Unit::parse("deg/s").unwrap().si().symbol(), "rad/s");
         assert_eq!(Unit::parse("rad/s").unwrap().times_seconds(1), Unit::of(Quantity::Angle));
         assert_eq!(Unit::parse("m/rad").unwrap().si().symbol(), "m·rad^-1");
-        // 360° a second is one turn a second; two roundings.
+        // 360°/s is one turn a second; two roundings.
         assert!((Unit::parse("deg/s").unwrap().hertz().unwrap() * 360.0 - 1.0).abs() < 1e-15);
         assert_eq!(Unit::parse("m/s").unwrap().hertz(), None);
     }

@@ -1,8 +1,8 @@
-//! What a number measures.
+//! Physical quantities.
 
 use super::Dimension;
 
-/// Physical quantities this toolkit handles by name.
+/// Quantities that this toolkit knows by name, with their units.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Quantity {
     /// m
@@ -35,7 +35,7 @@ pub enum Quantity {
     Ratio,
     /// rad
     Angle,
-    /// rad/s: 2π times a frequency, and never taken for one
+    /// rad/s: 2π times a frequency, never read as a frequency
     AngularVelocity,
     /// rad/s²
     AngularAcceleration,
@@ -45,7 +45,7 @@ pub enum Quantity {
     Mobility,
     /// 1/kg, that is (m/s²)/N
     Accelerance,
-    /// Anything else; the unit says what.
+    /// Any other; see the unit.
     Other,
 }
 
@@ -95,7 +95,7 @@ impl Quantity {
         self.entry().map_or("", |e| e.2)
     }
 
-    /// Whether it is a motion over a force.
+    /// Whether it is a frequency response function, a motion over a force.
     pub fn is_function(self) -> bool {
         matches!(self, Quantity::Receptance | Quantity::Mobility | Quantity::Accelerance)
     }

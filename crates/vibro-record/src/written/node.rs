@@ -1,4 +1,4 @@
-//! Values of TOML with their places, read as what a type asks for.
+//! TOML values with their places, read as the types that are expected.
 
 use crate::kind::Kind;
 use serde::de::value::{MapAccessDeserializer, MapDeserializer, SeqDeserializer, StrDeserializer};
@@ -9,26 +9,26 @@ use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-/// What is wrong, and where.
+/// An error in a TOML value, and its place.
 #[derive(Debug)]
 pub struct Fault {
     pub what: What,
-    /// Where.
+    /// Bytes in the text, where known.
     pub span: Option<Range<usize>>,
 }
 
 #[derive(Debug)]
 pub enum What {
-    /// A key that is not among these.
+    /// An unknown key, with the known ones.
     UnknownKey(String, &'static [&'static str]),
-    /// A name of a quantity as a key that is not among these.
+    /// A key that should be the name of a quantity but is not a known one.
     UnknownName(String, Kind),
     MissingKey(&'static str),
-    /// A key that stands there under two of its names.
+    /// A key that is given under two of its names.
     Twice(&'static str),
     /// A value of another kind.
     Value(Kind),
-    /// In the words of the type.
+    /// Any other error, in the words of the type.
     Other(String),
 }
 
@@ -92,12 +92,12 @@ impl<'de> Node<'de> {
         Node { span: value.span(), value: value.into_inner(), is_key: false }
     }
 
-    /// A table at its place.
+    /// A table with its place.
     pub fn table(rows: DeTable<'de>, span: &Range<usize>) -> Node<'de> {
         Node { value: DeValue::Table(rows), span: span.clone(), is_key: false }
     }
 
-    /// Reads it as what its type asks for; what is wrong with the value itself has its place and this kind.
+    /// Reads the node as the expected type. An error of the value itself gets its place and this kind.
     fn read<V: Visitor<'de>>(self, kind: Option<Kind>, visitor: V) -> Result<V::Value, Fault> {
         let span = self.span.clone();
         let name = self.value.as_str().filter(|_| self.is_key).map(str::to_owned);
@@ -121,7 +121,7 @@ impl<'de> Node<'de> {
             DeValue::String(text) => visitor.visit_str(&text),
             DeValue::Integer(number) => match i64::from_str_radix(number.as_str(), number.radix()) {
                 Ok(number) => visitor.visit_i64(number),
-                // Beyond all whole numbers; as a number it has a range of its own.
+                // Too large for a whole number; read as a number it fails the range of its key.
                 Err(_) => visitor.visit_f64(number.as_str().parse().unwrap_or(f64::INFINITY)),
             },
             DeValue::Float(number) => match number.as_str().parse() {
@@ -146,7 +146,7 @@ impl<'de> Node<'de> {
 
 type Rows<'de, I> = MapDeserializer<'de, I, Fault>;
 
-/// Keys and values in their order.
+/// Keys and values of a table in their order.
 fn rows_of(rows: DeTable<'_>) -> Rows<'_, impl Iterator<Item = (Node<'_>, Node<'_>)>> {
     let key =
         |key: Spanned<_>| Node { span: key.span(), value: DeValue::String(key.into_inner()), is_key: true };
@@ -161,7 +161,7 @@ impl<'de> IntoDeserializer<'de, Fault> for Node<'de> {
     }
 }
 
-/// Methods that ask for a value of a kind.
+/// Methods that expect a value of one kind.
 macro_rules! asks {
     ($($name:ident: $kind:expr),*) => {
         $(fn $name<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Fault> {
@@ -220,7 +220,7 @@ impl<'de> Deserializer<'de> for Node<'de> {
 
     fn deserialize_map<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Fault> {
         match self.value {
-            // A list would pass for the fields of a struct in their order.
+            // A list would be accepted as the fields of a struct in their order.
             DeValue::Table(_) => self.read(Some(Kind::Table), visitor),
             _ => Err(Fault { what: What::Value(Kind::Table), span: Some(self.span) }),
         }
@@ -264,7 +264,7 @@ impl<'de> Deserializer<'de> for Node<'de> {
 /// A value by its name.
 ///
 /// # Errors
-/// With the names that are known.
+/// The names that are known.
 pub fn named<T: DeserializeOwned>(name: &str) -> Result<T, Kind> {
     T::deserialize(StrDeserializer::<Fault>::new(name)).map_err(|fault| match fault.what {
         What::Value(kind) => kind,

@@ -46,8 +46,8 @@ fn agrees_with_scipy() {
         for (a, b) in found.iter().zip(expected) {
             worst = worst.max((a - b).abs());
         }
-        // Values of order one through at most eight sections, each of which forgets its rounding within some
-        // ten samples.
+        // Values of order one pass at most eight sections, and each forgets its rounding within some ten
+        // samples.
         assert!(worst < 1e-12, "{name}: {worst:e}");
     }
     println!("largest difference from scipy: {worst:e}");
@@ -64,7 +64,7 @@ fn corners_are_where_they_are_said() {
         ];
         for (filter, corners) in filters {
             for corner in corners {
-                // Sixteen sections of a few roundings each, times the slope that their sharp poles have at
+                // Sixteen sections with a few roundings each, times the slope that their sharp poles have at
                 // the corner.
                 let gain = filter.response(corner).norm();
                 assert!((gain / root - 1.0).abs() < 1e-12, "{filter}: {gain}");
@@ -83,8 +83,8 @@ fn settled_filters_stand_still() {
         let mut out = vec![3.0; 1000];
         filter.causal(&mut out, 3.0);
         let level = 3.0 * filter.response(0.0).re;
-        // Rounding of the states, kept for 1/(2π·5 Hz) = 32 samples by poles that magnify it by as much a
-        // section.
+        // Rounding of the states, kept for 1/(2π·5 Hz) = 32 samples by poles that enlarge it by as much in
+        // each section.
         assert!(out.iter().all(|v| (v - level).abs() < 1e-9), "{filter}");
     }
 }

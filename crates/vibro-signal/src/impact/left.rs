@@ -1,4 +1,4 @@
-//! What is left of a response when the record of a blow ends.
+//! The part of a response that is cut off when the record of a blow ends.
 
 use super::Blows;
 use crate::fft::Transform;
@@ -7,27 +7,26 @@ use std::f64::consts::TAU;
 use vibro_record::Finding;
 use vibro_record::code;
 
-/// Parts of a record after the blow; the first and the last are compared.
+/// Parts of a record after the blow; the powers of the first and the last are compared.
 const PARTS: usize = 4;
-/// Fewest samples of a part.
+/// Fewest samples of a part for a useful spectrum.
 const FEWEST: usize = 16;
-/// So many times the scatter of a mean power is no noise: in white noise less than one record in a hundred is
-/// then said to ring on.
+/// Excess power over the noise, in standard deviations of the mean noise power, that counts as response:
+/// white noise exceeds it in fewer than one record in a hundred.
 const BEYOND: f64 = 6.0;
-/// Lines with less than this part of the highest power are not those of the response.
+/// Lines with less than this part of the highest power do not belong to the response.
 const STRONG: f64 = 0.01;
-/// Less than this part of a response at the end of its record is not worth a finding: sensors are not as
-/// good.
+/// Smallest part of a response at the end of its record that is worth a finding: sensors are less accurate.
 const LEAST: f64 = 1e-3;
 
-/// Takes into the standard deviations of a function, line by line, what is left of a response when its
-/// weighted record ends, relative to its beginning, from the blows that begin at `kept`, with a finding where
-/// it is most. Nothing where records are too short to tell.
+/// Adds to the standard deviations of a function, line by line, the part of the response that is left when
+/// its weighted record ends, relative to its beginning. The blows begin at `kept`. A finding states the line
+/// where it is largest. Nothing is added where records are too short to tell.
 ///
 /// The last quarter of a mode that decays as e^(−σt) has the transform of the first one times r = e^(−3σT/4);
-/// what is left at T is r^(4/3). A mode whose record ends there has lost e^((s − iω)T) of its transform, s
-/// its pole: that is also the size of the relative error of its part of H. The noise is that before the
-/// quietest blow, taken for white; before the others the blow before may still ring.
+/// r^(4/3) is left at T. A mode whose record ends at T has lost e^((s − iω)T) of its transform, where s is
+/// its pole; that is also the relative error of its part of H. The noise, taken for white, is that before the
+/// quietest blow: before the others the previous blow may still ring.
 pub(super) fn widen(transfer: &mut Transfer, values: &[f64], kept: &[usize], how: &Blows, weights: &[f64]) {
     let quarter = (how.length - how.before) / PARTS;
     if quarter < FEWEST || how.before < 2 || kept.is_empty() {
@@ -58,7 +57,7 @@ pub(super) fn widen(transfer: &mut Transfer, values: &[f64], kept: &[usize], how
     let (squares, sum) = hann.iter().fold((0.0, 0.0), |(q, s), h| (q + h * h, s + h));
     let strong = STRONG * head.iter().copied().fold(0.0, f64::max);
     let part = |(k, (head, tail)): (usize, (&f64, &f64))| {
-        // The level that was taken off is uncertain, which a Hann window spreads over two lines.
+        // The subtracted level is uncertain; a Hann window spreads this over two lines.
         let level = if k < 2 { sum * sum / how.before as f64 } else { 0.0 };
         let noise = noise * weight * weight * (squares + level);
         let scatter = noise * (n.recip().sqrt() + (2.0 / how.before as f64).sqrt());
@@ -69,14 +68,14 @@ pub(super) fn widen(transfer: &mut Transfer, values: &[f64], kept: &[usize], how
         let whole = PARTS as f64 / (PARTS - 1) as f64;
         (excess * n / head).sqrt().powf(whole).min(1.0)
     };
-    // What is left of each line, and whether this is one of the response, no noise and no hum.
+    // Part left at each line, and whether the line belongs to the response rather than to noise or hum.
     let parts: Vec<(f64, bool)> =
         head.iter().zip(&tail).enumerate().map(|line| (part(line), *line.1.0 > strong)).collect();
-    // Lines of a record to one of a part.
+    // Lines of the record for one line of a part.
     let step = how.length as f64 / quarter as f64;
     let (mut most, mut finding) = (0.0, None);
     for (k, h) in transfer.frf.values.iter().enumerate() {
-        // The first line of a function is one above 0 Hz.
+        // The first line of a function is the first above 0 Hz.
         let place = ((k + 1) as f64 / step).round() as usize;
         let Some((part, strong)) = parts.get(place).or(parts.last()) else { continue };
         transfer.magnitude_std[k] = transfer.magnitude_std[k].hypot(part * h.norm());

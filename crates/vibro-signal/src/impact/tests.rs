@@ -13,7 +13,8 @@ fn trace(unit: &str, values: Vec<f64>) -> Trace {
     Trace { meta, axis: Axis::time(0.0, 1.0 / RATE, values.len()), values }
 }
 
-/// Half-sine blows of 1 ms, and the displacement of the mode by the exact impulse response, sample by sample.
+/// Half-sine blows of five samples (1.2 ms), and the displacement of the mode by the exact impulse response,
+/// sample by sample.
 fn bench(blows: &[(usize, f64)], n: usize) -> [Trace; 2] {
     let (m, f, zeta) = MODE;
     let (omega, width) = (2.0 * PI * f, 5);
@@ -34,7 +35,7 @@ fn bench(blows: &[(usize, f64)], n: usize) -> [Trace; 2] {
     [trace("N", force), trace("m", response)]
 }
 
-/// Receptance of the mode with some decay more.
+/// Receptance of the mode with additional decay in 1/s.
 fn truth(f: f64, added: f64) -> Complex64 {
     let (m, f0, zeta) = MODE;
     let omega = 2.0 * PI * f0;
@@ -66,16 +67,16 @@ fn blows_give_the_receptance_and_the_decay_that_the_window_adds() {
         (plain.transfer.frf.meta.quantity, plain.transfer.averages, plain.added_decay),
         (Quantity::Receptance, 3, 0.0)
     );
-    // Sampled impulses against a continuous system: half a sample of delay and (ωΔt)²/12, at 200 Hz below 1
-    // %; what the last blow left is e^(−ζωt) of it after four seconds.
+    // Sampled impulses against a continuous system: half a sample of delay and (ωΔt)²/12, below 1 % at 200
+    // Hz. The rest of the last blow's response is e^(−ζωt) of it after four seconds.
     near(&plain, 0.01);
-    // A quarter of the time: the response has not died away, the window sees to it.
+    // An eighth of the length: the response has not decayed, so the exponential window is needed.
     let how = Blows { length: 2048, left_at_end: Some(0.001), ..how };
     let short = from_blows(&force, &response, &how, Estimator::H1).unwrap();
     let expected = -0.001f64.ln() / ((2048.0 - 100.0) / RATE);
     assert!((short.added_decay / expected - 1.0).abs() < 1e-12);
     assert!(has(&short, "window-adds-decay"));
-    // The part cut off is 0.001·e^(−ζωt) of the whole, over the damped peak of the mode.
+    // The part cut off is 0.001·e^(−ζωt) of the whole, relative to the damped peak of the mode.
     near(&short, 0.015);
 }
 
@@ -86,8 +87,8 @@ fn double_hits_and_overload_are_left_out_by_name() {
     let [mut force, response] = bench(&blows, 70_000);
     force.values.iter_mut().for_each(|v| *v = v.min(78.0));
     let how = Blows { length: 8192, before: 100, force_window: None, left_at_end: None };
-    // The blows of 100 and 120 N pass 78 N with the sample in the middle and both its neighbours: three equal
-    // ones.
+    // The blows of 100 and 120 N exceed 78 N with their middle sample and both its neighbours: three equal
+    // values.
     let found = from_blows(&force, &response, &how, Estimator::H1).err().unwrap().to_string();
     assert!(
         found.contains("double hit") && found.contains("overload") && found.contains("cuts it off"),
@@ -112,7 +113,8 @@ fn one_clean_blow_is_enough_and_has_no_coherence() {
     near(&found, 0.01);
 }
 
-/// A half-sine of 1.2 ms excites little beyond 1 kHz: noise of the force makes no function there.
+/// A half-sine of 1.2 ms excites little beyond 1 kHz, so lines there, where the force is noise, have no
+/// function.
 #[test]
 fn where_the_blow_is_below_its_noise_there_is_no_function() {
     let [mut force, response] = bench(&[(9000, 100.0)], 30_000);
@@ -121,7 +123,7 @@ fn where_the_blow_is_below_its_noise_there_is_no_function() {
     let how = Blows { length: 16_384, before: 500, force_window: None, left_at_end: None };
     let found = from_blows(&force, &response, &how, Estimator::H1).unwrap();
     assert!(has(&found, "frf-not-excited"));
-    // |X| of a half-sine of 5 samples and the power of 0.3 times white noise, 10 dB above it.
+    // |X|² of a half-sine of five samples, and a floor 10 dB above the power of white noise of 0.3 N.
     let pulse = |f: f64| {
         let sample = |i: usize| {
             100.0 * (PI * (i as f64 + 0.5) / 5.0).sin() * Complex64::cis(-2.0 * PI * f / RATE * i as f64)
@@ -132,7 +134,7 @@ fn where_the_blow_is_below_its_noise_there_is_no_function() {
     let (mut loud, mut quiet, mut seen) = (0, 0, 0);
     for (k, value) in found.transfer.frf.values.iter().enumerate() {
         let power = pulse(found.transfer.frf.axis.at(k));
-        // Noise of a tenth of the floor takes less than half of four times the floor away.
+        // Noise at a tenth of the floor removes less than half of a line at four times the floor.
         assert!(power < 4.0 * floor || value.is_finite());
         loud += usize::from(power >= 4.0 * floor);
         if power < 0.01 * floor {
@@ -140,8 +142,8 @@ fn where_the_blow_is_below_its_noise_there_is_no_function() {
             seen += usize::from(value.is_finite());
         }
     }
-    // Noise alone is ten times its mean at one of e^10 lines; that much and the blow's tenth of a part at one
-    // of e^8.
+    // Noise alone reaches ten times its mean power in one of e^10 lines; together with the blow, then at a
+    // tenth of that mean, in one of e^8.
     assert!(loud > 1000 && quiet > 500 && seen <= 3, "{loud} {quiet} {seen}");
 }
 
@@ -201,7 +203,7 @@ fn double_hits_are_found_whatever_the_offset_and_the_sign() {
             let expected = [None, Some("double hit")].repeat(4);
             assert_eq!(rejected, expected, "offset {offset} N, sign {sign}");
             for (i, blow) in found.blows.iter().enumerate() {
-                // The noise of one sample and of the level.
+                // Allowed: the noise of one sample and of the quiet level.
                 assert!((sign * blow.peak - (80.0 + 5.0 * i as f64)).abs() < 0.4, "{offset}: {blow:?}");
             }
         }
@@ -223,7 +225,8 @@ fn each_rail_of_the_response_is_watched_on_its_own() {
             .collect::<Vec<_>>()
     };
     assert_eq!(rejected(&clean), [None; 4]);
-    // Only the strong blows pass 60 % of the largest value; the other side goes further than the rail.
+    // Only the strong blows pass 60 % of the largest value; on the other side the signal goes beyond the
+    // clipping level.
     for (low, high) in [(-1e9, 0.6 * largest), (-0.6 * largest, 1e9), (-0.6 * largest, 0.6 * largest)] {
         for offset in [0.0, 0.3 * largest] {
             let mut response = clean.clone();
@@ -270,8 +273,8 @@ fn the_windows_applied_are_named() {
     }
 }
 
-/// A record that ends too early: the error near the resonance is what is left of the response, which is
-/// measured and in the standard deviations.
+/// A record that ends before the response has decayed: the error near the resonance is the part cut off. It
+/// is measured and included in the standard deviations.
 #[test]
 fn what_is_left_at_the_end_of_a_record_is_said() {
     let [force, response] = bench(&[(500, 100.0), (18_000, 80.0), (36_000, 120.0)], 53_000);
@@ -283,17 +286,18 @@ fn what_is_left_at_the_end_of_a_record_is_said() {
         assert!(has(&found, "response-cut-off"), "{length}: {:?}", found.transfer.findings);
         for (k, h) in found.transfer.frf.values.iter().enumerate() {
             let f = found.transfer.frf.axis.at(k);
-            // Where the mode is most of the response; sampled impulses are within 1 %.
+            // Where the mode dominates the response; sampled impulses are exact within 1 %.
             if (f - f0).abs() < 8.0 {
                 let error = (h.norm() / truth(f, 0.0).norm() - 1.0).abs();
                 let std = found.transfer.magnitude_std[k] / h.norm();
                 assert!(error < 2.0 * std + 0.01, "{length}, {f} Hz: {error} against {std}");
-                // A few periods in a quarter of the shortest record: its line at −60 Hz adds a few per cent.
+                // A quarter of the shortest record holds only a few periods: the line at −60 Hz adds a few
+                // per cent.
                 assert!(std > 0.8 * left && std < 1.25 * left, "{length}: {std} against {left}");
             }
         }
     }
-    // Noise that stays is nothing left.
+    // Steady noise at the end of a record is no response that was cut off.
     let mut noise = Noise::new(3);
     let top = response.values.iter().fold(0.0f64, |m, v| m.max(v.abs()));
     let values = response.values.iter().map(|v| v + 0.05 * top * (noise.uniform() - 0.5)).collect();
@@ -302,12 +306,12 @@ fn what_is_left_at_the_end_of_a_record_is_said() {
     assert!(!has(&found, "response-cut-off"), "{:?}", found.transfer.findings);
 }
 
-/// A short blow has four or five samples: cut at its ceiling it stays there for two, or one.
+/// A short blow has four or five samples: clipped, it stays at its ceiling for two samples or one.
 #[test]
 fn short_blows_at_the_ceiling_are_overloads() {
     let blows = [(500, 100.0), (8000, 130.0), (15_500, 160.0), (23_000, 90.0), (30_500, 121.0)];
     let [mut force, response] = bench(&blows, 38_000);
-    // Not symmetric about a sample, as no blow is.
+    // Not symmetrical about a sample, as real blows.
     for (k, (at, peak)) in blows.iter().enumerate() {
         let width = 4.6;
         for i in 0..6 {
@@ -338,9 +342,11 @@ fn the_next_blow_is_no_bounce_and_a_long_rest_counts() {
         let blows: Vec<(usize, f64)> = blows.iter().map(|at| (*at, 100.0)).collect();
         spacing(&bench(&blows, n)[0]).unwrap()
     };
-    // The first of five samples of a half-sine is above a fifth of its peak: blows begin where they are put.
+    // The first of five samples of a half-sine is above a fifth of its peak, so each blow begins at its first
+    // sample.
     assert_eq!(of(&[500, 6500, 13_500], 20_000), 6000);
-    // 100 samples are 24 ms; a break is no measure of what a bounce is.
+    // A second contact after 100 samples (24 ms) is a bounce; one after 1000 samples is not, even where
+    // longer breaks occur.
     assert_eq!(of(&[500, 6500, 6600, 13_500], 20_000), 6000);
     assert_eq!(of(&[500, 1500, 2500, 12_500, 13_500], 15_000), 1000);
     assert_eq!(of(&[500, 600], 9000), 8400);
@@ -353,13 +359,14 @@ fn the_next_blow_is_no_bounce_and_a_long_rest_counts() {
 enum AntiAlias {
     /// Σ rₖ/(s − sₖ), s in rad a sample.
     Poles(Vec<(Complex64, Complex64)>),
-    /// sinc under a Hann window of so many samples on either side, and the cut-off as a part of the rate.
+    /// Linear phase: sinc under a Hann window of this many samples on either side, and the cut-off over the
+    /// sampling rate.
     Linear(f64, f64),
 }
 
 impl AntiAlias {
     /// Poles of a Butterworth filter, or with a ripple of a Chebyshev filter (Oppenheim & Schafer, appendix
-    /// B), that cut off at this part of the rate.
+    /// B), with its cut-off as a part of the sampling rate.
     fn poles(order: usize, corner: f64, ripple_db: Option<f64>) -> AntiAlias {
         let stretch = ripple_db.map_or([1.0, 1.0], |db| {
             let a = (1.0 / (10f64.powf(0.1 * db) - 1.0).sqrt()).asinh() / order as f64;
@@ -379,7 +386,7 @@ impl AntiAlias {
         AntiAlias::Poles(all.into_iter().map(|(p, r)| (p, r / gain)).collect())
     }
 
-    /// Samples of the filtered force, of values `OVER` times as dense.
+    /// Samples of the filtered force, from values `OVER` times as dense.
     fn sampled(&self, dense: &[f64]) -> Vec<f64> {
         let dt = 1.0 / OVER as f64;
         match self {
@@ -415,11 +422,11 @@ impl AntiAlias {
     }
 }
 
-/// Values before the filter to one behind it.
+/// Values before the filter for one sample after it.
 const OVER: usize = 16;
 
-/// Of single blows behind anti-alias filters those that are called double hits, and of blows with a second
-/// hit of 10 to 60 % after 3 to 60 ms those that are not. Blows last 0.2 to 2 ms at 4096 Hz.
+/// Number of single blows after anti-alias filters that are called double hits, and of double hits that are
+/// missed: second hits of 10 to 60 % after 3 to 60 ms. Blows last 0.2 to 2 ms at 4096 Hz.
 fn double_hits(draws: u64) -> (usize, usize) {
     let (mut false_doubles, mut lost) = (0, 0);
     for seed in 0..draws {

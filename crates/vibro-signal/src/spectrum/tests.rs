@@ -20,7 +20,7 @@ fn trace() -> Trace {
 
 #[test]
 fn every_scaling_gives_the_sine_its_closed_form() {
-    // Mean, cosine and alternation: the outer two have one line only, not two of half the height.
+    // Mean, cosine and alternation: the outer two have a single line, not two of half the height.
     for window in Window::ALL {
         let density = RATE / N as f64 * window.enbw();
         for (scaling, expected) in [
@@ -47,7 +47,7 @@ fn every_scaling_gives_the_sine_its_closed_form() {
     assert!((lines[30].arg() - 0.7).abs() < 1e-13);
 }
 
-/// Parseval: the density's area is the mean square, exactly without a window.
+/// Parseval: the area under the density is the mean square, exactly so without a window.
 #[test]
 fn density_holds_the_power() {
     for n in [N, N - 1] {

@@ -29,7 +29,7 @@ fn measured(columns: [(&str, Vec<f64>); 2], length: usize) -> Result<(Averages, 
     Ok((averages, metas))
 }
 
-/// A system that lags: a low-pass, whose phase is negative and whose response is known in closed form.
+/// A system that lags: a low-pass, with a negative phase and a known response in closed form.
 #[test]
 fn a_lagging_system_has_its_magnitude_and_a_negative_phase() {
     let filter = Filter::low_pass(60.0, 2, RATE).unwrap();
@@ -43,8 +43,8 @@ fn a_lagging_system_has_its_magnitude_and_a_negative_phase() {
         assert_eq!((found.frf.axis.start(), found.frf.values.len()), (RATE / 1024.0, 512));
         for k in 10..200 {
             let truth = filter.response(found.frf.axis.at(k));
-            // What segments cut off at their ends: the filter remembers some 5 ms of 1 s, under a window that
-            // is small there.
+            // Segments are cut at their ends: the filter remembers some 5 ms of 1 s, where the window is
+            // small.
             assert!((found.frf.values[k] / truth - 1.0).norm() < 0.02, "{estimator:?} line {k}");
             assert!(found.frf.values[k].arg() < 0.0);
             assert!(found.coherence[k] > 0.999);
@@ -56,7 +56,7 @@ fn a_lagging_system_has_its_magnitude_and_a_negative_phase() {
 fn noise_lowers_h1_or_raises_h2_and_hv_lies_between() {
     let mut noise = Noise::new(5);
     let x = white(&mut noise, 400_000);
-    // Half the power again as noise: in the excitation, then in the response, of a gain of 2.
+    // Noise of half the power: added to the excitation, then to the response of a gain of 2.
     let clean: Vec<f64> = x.iter().map(|v| 2.0 * v).collect();
     let half = 0.5f64.sqrt();
     let noisy: Vec<f64> = x.iter().map(|v| v + half * draw(&mut noise)).collect();
@@ -90,7 +90,7 @@ fn coherence_agrees_with_scipy() {
     for (a, b) in found.coherence.iter().zip(expected) {
         assert!((a - b).abs() < 1e-12);
     }
-    // Bendat & Piersol's random error, of the independent averages less one.
+    // Random error of Bendat & Piersol, with the independent averages less one.
     let (k, n) = (9, averages.effective - 1.0);
     let g = found.coherence[k];
     let error = (1.0 - g).sqrt() / (g.sqrt() * (2.0 * n).sqrt());
@@ -106,7 +106,7 @@ fn one_average_has_no_coherence_and_an_empty_excitation_is_refused() {
     assert!(one.coherence.is_empty() && one.phase_std.iter().all(|std| std.is_nan()));
     assert!(one.frf.values.iter().all(|h| (h - 1.0).norm() < 1e-12));
     assert!(measured([("N", vec![0.0; 400]), ("m", vec![1.0; 400])], 64).is_err());
-    // Two segments that share half of their samples are not two.
+    // Two segments that share half of their samples count as less than two.
     let (averages, metas) = measured([("N", x.clone()), ("m", x.clone())], 66).unwrap();
     assert_eq!(averages.count, 2);
     let error = transfer(&averages, 1, &metas, Estimator::H1).unwrap_err().to_string();
@@ -144,7 +144,7 @@ fn mobility_becomes_receptance_only_when_asked() {
     assert_eq!(receptance.coherence[0], mobility.coherence[gone]);
 }
 
-/// A multisine: only its own lines are excited, and only there is a function.
+/// A multisine: only its own lines are excited, and only these have a function.
 #[test]
 fn lines_without_excitation_have_no_function() {
     let sines = |scale: f64| -> Vec<f64> {
@@ -155,7 +155,7 @@ fn lines_without_excitation_have_no_function() {
     };
     let columns = [("N", sines(1.0)), ("m", sines(3.0))];
     let (mut averages, metas) = measured(columns, 100).unwrap();
-    // Without rounding.
+    // Removes rounding from the lines that are not excited.
     for (k, x) in averages.auto[0].iter_mut().enumerate() {
         if ![9, 10, 11, 29, 30, 31, 46, 47, 48].contains(&k) {
             *x = 0.0;

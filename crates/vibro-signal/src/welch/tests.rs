@@ -28,7 +28,7 @@ fn averages(traces: Vec<Trace>, length: usize, overlap: f64, window: Window) -> 
     welch.average(&mut Traces::from_memory(traces)?, true, |_| ())
 }
 
-/// Both sides round each of some 20 segments' lines, whose largest are of order one.
+/// Both sides have the rounding of some 20 segments' lines, the largest of order one.
 fn close(found: &[f64], expected: &[f64], scale: f64) {
     assert_eq!(found.len(), expected.len());
     for (k, (a, b)) in found.iter().zip(expected).enumerate() {
@@ -44,7 +44,7 @@ fn agrees_with_scipy() {
         for scaling in [Scaling::Psd, Scaling::Power] {
             let found = spectrum::averaged(&averages, 0, &records()[0].meta, window, scaling).unwrap();
             let expected = reference(&format!("{} 64 {}", scaling.name(), window.name()));
-            // What is left of the mean at 0 Hz is not given.
+            // The rest of the mean at 0 Hz is not given.
             assert!(found.values.magnitude(0).is_nan());
             close(&found.values.magnitudes()[1..], &expected[1..], 1.0);
         }
@@ -68,8 +68,8 @@ fn products_agree_with_scipy() {
     }
 }
 
-/// Batches, groups and cores must not be seen in the result: more segments than one group, against one
-/// segment after the other.
+/// Batches, groups and cores must not affect the result: more segments than one group, compared with one
+/// segment after another.
 #[test]
 fn long_records_are_averaged_like_short_ones() {
     let n = 300_001;
@@ -87,7 +87,7 @@ fn long_records_are_averaged_like_short_ones() {
     }
     assert_eq!((found.count, count), (599, 599));
     for (a, s) in found.auto[0].iter().zip(sum) {
-        // Another order of 599 positive summands.
+        // The 599 positive summands are added in another order.
         assert!((a * 599.0 / s - 1.0).abs() < 599.0 * f64::EPSILON);
     }
 }
@@ -95,7 +95,7 @@ fn long_records_are_averaged_like_short_ones() {
 #[test]
 fn overlapping_segments_are_not_independent() {
     let w = window::samples(Window::Hann, 4096);
-    // Half overlap of Hann windows: squared correlation 1/36, so that many segments lose 2/36 of their
+    // Hann windows with half overlap have a squared correlation of 1/36, so many segments lose 2/36 of their
     // number.
     let many = effective(&w, 2048, 10_000) / 10_000.0;
     assert!((many - 1.0 / (1.0 + 2.0 / 36.0)).abs() < 1e-5, "{many}");
@@ -136,6 +136,6 @@ fn a_mean_that_is_kept_is_the_line_at_zero() {
         Scaling::Peak,
     );
     let found = found.unwrap().values.magnitudes();
-    // 64 samples of order five.
+    // A sum over 64 samples of order five.
     assert!((found[0] - 5.0).abs() < 1e-12 && (found[8] - 1.0).abs() < 1e-12, "{found:?}");
 }

@@ -1,7 +1,7 @@
-//! The crate diffsol, used as its manual shows: a root function for the contact, the state set anew behind
-//! it, and on from there.
+//! The crate diffsol, used as its manual shows: a root function for the contact, after which the state is set
+//! and the integration continues.
 //!
-//! It compares the signs of the root function at the ends of its steps.
+//! The crate compares the signs of the root function at the ends of its steps.
 
 use super::super::task::{Log, Spring, Task};
 use super::stages::{Guard, Locate, Stage, System, Trajectory};
@@ -22,8 +22,8 @@ pub enum Diffsol {
     Bdf(f64),
 }
 
-/// Part of the whole time that is too short to be followed: the crate takes a stop this close for one that it
-/// has reached.
+/// Part of the whole time that is too short to be followed: the crate treats a stop time this close as
+/// reached.
 const SHORT: f64 = 1e-12;
 
 impl From<DiffsolError> for Found {
@@ -32,7 +32,7 @@ impl From<DiffsolError> for Found {
     }
 }
 
-/// Follows the motion with impacts at once, or with a contact.
+/// Follows the motion with rigid impacts, or with a contact.
 pub fn followed(task: &Task, spring: Option<Spring>, how: Diffsol) -> Result<Log, Found> {
     let (Diffsol::Tsit45(relative) | Diffsol::Bdf(relative)) = how;
     let course = Trajectory::new(task, spring, IntegratorKind::Rk45(relative), Locate::Ends);
@@ -44,7 +44,7 @@ pub fn followed(task: &Task, spring: Option<Spring>, how: Diffsol) -> Result<Log
         .atol(FLOOR.map(|floor| relative * floor))
         .rhs_implicit(
             |y, _, t, rate| rate.copy_from_slice(&now(t, y)),
-            // The rate is linear in the state, apart from the drive.
+            // The derivative is linear in the state, apart from the drive.
             |_, _, t, v, product| {
                 let [moved, still] = [now(t, v), now(t, &[0.0; 4])];
                 product.copy_from_slice(&std::array::from_fn::<f64, 4, _>(|i| moved[i] - still[i]));
@@ -53,8 +53,8 @@ pub fn followed(task: &Task, spring: Option<Spring>, how: Diffsol) -> Result<Log
         .init(|_, _, y| y.copy_from_slice(&first), first.len())
         .root(|y, _, t, values| values.copy_from_slice(&falls(&system, stage.get(), t, &four(y))), 2)
         .build()?;
-    // Counted over the whole run, 50 of them as it comes; a step that Newton's method does not solve is
-    // shortened, and one too short is an error all the same.
+    // The crate counts failures of Newton's method over the whole run and allows 50 by default. A failed step
+    // is shortened in any case, and a step that is too short is still an error.
     problem.ode_options.max_nonlinear_solver_failures = usize::MAX;
     match how {
         Diffsol::Tsit45(_) => run(course, problem.tsit45()?, &stage),
@@ -62,12 +62,12 @@ pub fn followed(task: &Task, spring: Option<Spring>, how: Diffsol) -> Result<Log
     }
 }
 
-/// What ends a stage when it falls through zero; 1 where there is nothing more.
+/// Functions that end a stage when they fall through zero; 1 where there is no further one.
 fn falls(system: &System<'_>, stage: Stage, t: f64, y: &[f64; 4]) -> [f64; 2] {
     system.guards(stage).map(|guard| guard.map_or(1.0, |g: Guard| g.value(system.task, t, y)))
 }
 
-/// Steps a solver to the end.
+/// Steps a solver to the end of the task.
 fn run<'a, E: OdeEquations<T = f64, V = NalgebraVec<f64>> + 'a>(
     mut now: Trajectory<'_>,
     mut solver: impl OdeSolverMethod<'a, E>,
@@ -86,8 +86,8 @@ fn run<'a, E: OdeEquations<T = f64, V = NalgebraVec<f64>> + 'a>(
             OdeSolverStopReason::RootFound(time, which) if before[which] > 0.0 => {
                 now.meet(which, time, four(solver.interpolate(time)?.inner().as_slice()));
                 if now.stage == Stage::Apart {
-                    // A hair apart, as in the crate's bouncing ball: a root function that starts at zero or
-                    // below is not seen to fall.
+                    // A tiny gap, as in the crate's bouncing ball: a fall is not detected where the root
+                    // function starts at or below zero.
                     now.y[0] = now.y[0].min(now.y[2] + task.rig.gap - f64::EPSILON);
                 }
                 stage.set(now.stage);
@@ -98,7 +98,7 @@ fn run<'a, E: OdeEquations<T = f64, V = NalgebraVec<f64>> + 'a>(
                 *state.h = first_step(task, now.t, &now.y);
                 continue;
             }
-            // It rises. The crate's search begins anew only when it is told that the state may have changed.
+            // The function rises. The crate continues its search only after the state may have been changed.
             OdeSolverStopReason::RootFound(..) => {
                 solver.state_mut();
             }
@@ -106,7 +106,7 @@ fn run<'a, E: OdeEquations<T = f64, V = NalgebraVec<f64>> + 'a>(
         }
         (now.t, now.y) = (solver.state().t, four(solver.state().y.inner().as_slice()));
         if now.stage == Stage::Together {
-            // The force bends with the excitation: its sign is tested eight times a cycle at least.
+            // The force varies with the excitation: its sign is tested at least eight times a cycle.
             let state = solver.state_mut();
             *state.h = state.h.min(task.cycle() / 8.0);
         }
@@ -134,8 +134,8 @@ mod tests {
         relative
     }
 
-    /// Two equal masses without dampers let go a gap of nothing apart: each meets its mirror image, and the
-    /// distance between them follows z″ = −ω²z.
+    /// Two equal masses without dampers, released with a gap of zero in equilibrium: each meets its mirror
+    /// image, and the distance z between them follows z″ = −ω²z.
     fn mirrored(restitution: f64, until: f64) -> (Task, f64) {
         let thesis = Rig::thesis();
         let rig = Rig { m2: thesis.m1, k2: thesis.k1, c1: 0.0, c2: 0.0, gap: 0.0, restitution, ..thesis };
@@ -145,8 +145,8 @@ mod tests {
         (Task { start, most: STEPS, ..sine }, omega)
     }
 
-    /// What all steps together can leave of (ωz, z′) in m/s: the norm of four errors is below 1, so each is
-    /// below twice its tolerance, and z is the difference of two. Between contacts neither grows.
+    /// Largest error of (ωz, z′) in m/s after all steps: the norm of four errors is below 1, so each is below
+    /// twice its tolerance, and z is the difference of two. Between contacts neither grows.
     fn allowed(how: Diffsol, omega: f64) -> f64 {
         let step = omega * (FLOOR[0] + START) + (FLOOR[1] + omega * START);
         STEPS as f64 * 4.0 * relative(how) * step
@@ -161,7 +161,8 @@ mod tests {
             assert_eq!(log.impacts.len(), 4, "{how:?}");
             for (n, (time, approach)) in log.impacts.iter().enumerate() {
                 let speed = 2.0 * omega * START * 0.7_f64.powi(n as i32);
-                // At an impact without acceleration an error turns round and shrinks by R, as the speed does.
+                // An impact without acceleration changes the sign of an error and reduces it by R, as the
+                // speed.
                 let off = allowed(how, omega);
                 assert!(
                     (time - (FRAC_PI_2 + PI * n as f64) / omega).abs() < off / (omega * speed),
@@ -197,7 +198,7 @@ mod tests {
             let log = followed(&task, Some(spring), how).unwrap();
             assert_eq!(log.impacts.len(), 3, "{how:?}");
             for (n, (found, truth)) in log.impacts.iter().zip(&touches).enumerate() {
-                // In contact (Ωz, z′) does not grow: a contact makes (ωz, z′) larger by Ω/ω at most.
+                // In contact (Ωz, z′) does not grow: a contact enlarges (ωz, z′) by Ω/ω at most.
                 let off = allowed(how, omega) * (stiff / omega).powi(n as i32);
                 assert!((found.0 - truth.0).abs() < off / (omega * truth.1), "{how:?}: {found:?} {truth:?}");
                 assert!((found.1 - truth.1).abs() < off, "{how:?}: {found:?} {truth:?}");

@@ -1,11 +1,11 @@
-//! Integration from event to event: each impact, end of a contact or release is located, and the integration
-//! begins anew behind it.
+//! Integration from event to event: each impact, end of a contact and release is located, and the integration
+//! starts again after it.
 
 use super::super::task::{Log, Spring, Task};
 use super::stepper::{IntegratorKind, Stepper, rk4};
 use crate::Found;
 
-/// Where the masses are.
+/// Stage of a motion between two events.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Stage {
     Apart,
@@ -13,16 +13,16 @@ pub(super) enum Stage {
     Together,
     /// Pushed apart by spring and damper of the contact.
     Touching,
-    /// The contact's force is zero, its surfaces are not yet back at their rest.
+    /// After the contact force has become zero, while the surfaces have not yet recovered their shape.
     Released,
 }
 
-/// What ends a stage when it falls to zero.
+/// A function that ends a stage when it falls to zero.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Guard {
     /// Weights·y + offset.
     Linear([f64; 4], f64),
-    /// The force that keeps the masses together.
+    /// The contact force that keeps the masses together.
     Hold,
 }
 
@@ -35,7 +35,7 @@ impl Guard {
     }
 }
 
-/// A task with impacts at once, or with a contact.
+/// A task with rigid impacts, or with a contact spring.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct System<'a> {
     pub task: &'a Task,
@@ -43,7 +43,7 @@ pub(super) struct System<'a> {
 }
 
 impl System<'_> {
-    /// Rate of the state in a stage.
+    /// Time derivative of the state in a stage.
     #[inline]
     pub fn rate(&self, stage: Stage, t: f64, y: &[f64; 4]) -> [f64; 4] {
         let push = match (stage, &self.spring) {
@@ -54,7 +54,7 @@ impl System<'_> {
         self.task.pushed(t, y, push)
     }
 
-    /// What ends a stage, whichever falls first.
+    /// The functions that end a stage; the first to fall ends it.
     pub fn guards(&self, stage: Stage) -> [Option<Guard>; 2] {
         let gap = self.task.rig.gap;
         let (k, c) = self.spring.map_or((0.0, 0.0), |s| (s.stiffness, s.damping));
@@ -70,26 +70,26 @@ impl System<'_> {
     }
 }
 
-/// How an event is looked for.
+/// Method of locating events.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Locate {
-    /// Signs at the ends of steps, then halving: the event functions of the usual packages.
+    /// Signs at the ends of steps, then bisection, as in the usual packages.
     Ends,
     /// The first root of the dense output, none missed.
     Dense,
-    /// The same; and what is left of a chatter that ends in rest is summed up, a geometric series of flights
-    /// that takes 2w/(a(1 − R)).
+    /// As `Dense`. The rest of a chatter that ends in rest is summed as a geometric series of flights, which
+    /// takes 2w/(a(1 − R)).
     Summed,
 }
 
-/// How far a motion has been followed.
+/// A motion as far as it has been followed.
 pub struct Trajectory<'a> {
     pub(super) system: System<'a>,
     kind: IntegratorKind,
     locate: Locate,
     /// Approach speed in m/s below which masses that press each other stay together.
     sticks: f64,
-    /// Steps that it may still take.
+    /// Steps that may still be taken.
     left: u64,
     pub log: Log,
     pub t: f64,
@@ -98,8 +98,8 @@ pub struct Trajectory<'a> {
 }
 
 impl<'a> Trajectory<'a> {
-    /// The start of a task, with impacts at once or with a contact. Its rule for rest is the speed at which a
-    /// bounce is as high as the integrator's error, 1 mm times its relative tolerance.
+    /// The start of a task, with rigid impacts or with a contact. Impacts count as rest below the speed at
+    /// which a bounce is as high as the integrator's error, 1 mm times its relative tolerance.
     pub fn new(
         task: &'a Task,
         spring: Option<Spring>,
@@ -119,8 +119,8 @@ impl<'a> Trajectory<'a> {
         }
     }
 
-    /// Follows the motion to what ends its stage: the guard that falls, when, and the state there; none where
-    /// the task ends before.
+    /// Follows the motion to the end of its stage. Returns which guard fell, when, and the state there;
+    /// `None` where the task ends before.
     pub fn next(&mut self) -> Result<Option<(usize, f64, [f64; 4])>, Found> {
         let (system, stage) = (self.system, self.stage);
         let (task, guards) = (system.task, system.guards(stage));
@@ -131,7 +131,7 @@ impl<'a> Trajectory<'a> {
                 return Err(task.stalled(self.t));
             }
             self.left -= 1;
-            // The holding force bends with the excitation: its sign is tested eight times a cycle at least.
+            // The holding force varies with the excitation: its sign is tested at least eight times a cycle.
             let longest = if stage == Stage::Together { task.cycle() / 8.0 } else { f64::INFINITY };
             let step = stepper.step(f, task.until.min(self.t + longest))?;
             let fallen = guards.iter().flatten().enumerate().filter_map(|(which, guard)| {
@@ -149,18 +149,18 @@ impl<'a> Trajectory<'a> {
         Ok(None)
     }
 
-    /// A contact since the last impact that lasts up to a time (s) is told as rest if it was long enough.
+    /// Logs the contact since the last impact, which ends at `until` in s, as a rest if it was long enough.
     fn rested(&mut self, until: f64) {
         let last = self.log.impacts.last();
         self.log.sticks.extend(self.system.spring.zip(last).and_then(|(c, from)| c.rest(from.0, until)));
     }
 
-    /// Whether the masses meet where this stage ends.
+    /// Whether the masses are apart: the next event is then an impact.
     pub fn apart(&self) -> bool {
         self.stage == Stage::Apart
     }
 
-    /// What follows where a guard has fallen at time and state.
+    /// Continues with the next stage where guard `which` has fallen, at the time `t` and the state `y`.
     pub fn meet(&mut self, which: usize, t: f64, mut y: [f64; 4]) {
         let System { task, spring } = self.system;
         self.t = t;
@@ -190,8 +190,8 @@ impl<'a> Trajectory<'a> {
             }
             (Stage::Together, _) => {
                 self.log.release(t);
-                // The gap opens like the cube of time: a ten-thousandth of a cycle passes unwatched, until it
-                // is more than rounding.
+                // The gap opens with the cube of time: events are not looked for during 1e-4 of a cycle,
+                // until the gap exceeds rounding.
                 let short = 1e-4 * task.cycle();
                 y[0] = y[2] + task.rig.gap;
                 y = rk4(&|t: f64, y: &[f64; 4]| task.pushed(t, y, 0.0), t, &y, short);
@@ -209,7 +209,7 @@ impl<'a> Trajectory<'a> {
     }
 }
 
-/// Follows the motion with impacts at once, or with a contact.
+/// Follows the motion with rigid impacts, or with a contact.
 pub fn events(
     task: &Task,
     spring: Option<Spring>,
@@ -226,7 +226,7 @@ pub fn events(
     Ok(course.log)
 }
 
-/// Integrates straight through contacts of a spring that never pulls, step sizes left to the error control;
+/// Integrates through the contacts of a spring that never pulls, with steps from the error control alone;
 /// touches are read off afterwards.
 pub fn through(task: &Task, kind: IntegratorKind) -> Result<Log, Found> {
     let spring = task.spring();

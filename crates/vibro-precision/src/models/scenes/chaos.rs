@@ -1,4 +1,4 @@
-//! A window of irregular motion, of which only the statistics can be asked.
+//! A window of irregular motion, in which only statistics can be compared.
 
 use super::super::rivals::{self as by, IntegratorKind, Locate, events};
 use super::super::task::{Log, Task};
@@ -8,19 +8,19 @@ use rayon::prelude::*;
 use vibro_model::Rig;
 use vibro_record::Result;
 
-/// Restitution, force in N and frequency in Hz of a window that has been irregular for 200 000 cycles: no
-/// method can follow the motion, all can be asked for its statistics.
+/// Restitution, force in N and frequency in Hz of a window that stays irregular for 200 000 cycles: no method
+/// can follow the motion, but all can give its statistics.
 const WINDOW: (f64, f64, f64) = (0.97, 0.3, 5.61);
-/// Cycles left out at the beginning, and cycles that every method reads.
+/// Cycles left out at the beginning, and cycles that every method evaluates.
 const SETTLE: f64 = 100.0;
 const CYCLES: f64 = 4000.0;
-/// Other starts that the truth is computed from.
+/// Number of other starts, from which the truth is computed.
 const OTHERS: usize = 10;
-/// Further off than so many standard errors the statistics are those of another motion: of errors told from
-/// ten starts one in 300 is.
+/// Largest error in standard errors: beyond it the statistics count as those of another motion. With a
+/// scatter known from ten starts, chance exceeds it in one of 300.
 const ALLOWED: f64 = 4.0;
 
-/// The motion from x₁ (m) at rest.
+/// The motion from rest at x₁ in m, over this many cycles.
 fn irregular(x1: f64, cycles: f64) -> Task {
     let (restitution, force, frequency) = WINDOW;
     let rig = Rig { restitution, ..Rig::thesis() };
@@ -28,7 +28,7 @@ fn irregular(x1: f64, cycles: f64) -> Task {
     Task { start: [x1, 0.0, 0.0, 0.0], ..plain }
 }
 
-/// Mean and standard deviation of the approach speeds.
+/// Mean and standard deviation of the approach speeds in m/s.
 fn statistics(log: &Log) -> [f64; 2] {
     moments(log.impacts.iter().filter(|i| i.0 > SETTLE / WINDOW.2).map(|i| i.1))
 }
@@ -39,8 +39,8 @@ fn moments(values: impl Iterator<Item = f64> + Clone) -> [f64; 2] {
     [mean, (values.map(|v| (v - mean).powi(2)).sum::<f64>() / (n - 1.0)).sqrt()]
 }
 
-/// The statistics by integration of order 8 with tight tolerance, from starts that no method is given, so
-/// that no run of a method is among them.
+/// The statistics by integration of order 8 with tight tolerance, from starts that no method uses, so that
+/// the truth contains no run of a method.
 fn irregular_truth() -> Result<Vec<[f64; 2]>> {
     let one = |start: usize| {
         let task = irregular(-1e-4 * (start + 1) as f64, CYCLES);
@@ -53,19 +53,19 @@ fn irregular_truth() -> Result<Vec<[f64; 2]>> {
 pub(super) fn scene() -> Result<Setup> {
     let runs = irregular_truth()?;
     let truth = [0, 1].map(|i| moments(runs.iter().map(|run| run[i])));
-    // Standard error of what a method reads, relative, that of the truth included.
+    // Relative standard error of a method's statistics, including that of the truth.
     let scatter = truth.map(|[mean, std]| std / mean * (1.0 + 1.0 / OTHERS as f64).sqrt());
     let judge = move |log: &[Log]| -> Verdict {
         let found = statistics(&log[0]);
         let off = [0, 1].map(|i| (found[i] / truth[i][0] - 1.0).abs());
-        // Not a number is no statistics either.
+        // NaN is no statistic, either.
         if let Some(i) = (0..2).find(|i| off[*i].is_nan() || off[*i] > ALLOWED * scatter[*i]) {
             let (name, part) = (["mean", "standard deviation"][i], 100.0 * off[i]);
             return Err(format!(
                 "the {name} of the approach speeds is {part:.1} % off: those of another motion"
             ));
         }
-        // Below a standard error both are chance, and all methods alike.
+        // Errors below a standard error are chance: all methods then get the standard error.
         Ok((0..2).map(|i| off[i].max(scatter[i])).fold(0.0, f64::max))
     };
     let (restitution, force, frequency) = WINDOW;
@@ -103,18 +103,18 @@ mod tests {
         let log = ours::flights(&irregular(0.0, 20_000.0)).unwrap();
         let mut last: Vec<f64> = log.impacts.iter().rev().take(1000).map(|i| i.1).collect();
         last.sort_by(f64::total_cmp);
-        // What repeats after fewer than 500 impacts has every speed at least twice.
+        // A motion that repeats after fewer than 500 impacts has every speed at least twice.
         last.dedup_by(|a, b| (*a - *b).abs() < 1e-9);
         assert!(last.len() > 990, "{}", last.len());
     }
 
-    /// Where one start led to another motion than the others, its statistics would be others.
+    /// If one start led to another motion than the others, its statistics would differ.
     #[test]
     fn other_starts_scatter_alike() {
         let all = irregular_truth().unwrap();
         for i in 0..2 {
             let [mean, std] = moments(all.iter().map(|run| run[i]));
-            // Of ten normal numbers none is 9/√10 of their own standard deviations off; three are rare.
+            // None of ten numbers can be 9/√10 = 2.85 of their own standard deviations off; 2.6 are rare.
             assert!(all.iter().all(|run| (run[i] - mean).abs() < 2.6 * std), "{all:?}");
         }
     }
