@@ -527,4 +527,28 @@ pub const ALL: &[Dialect] = &[
             &[],
         ),
     },
+    Dialect {
+        of: "A logger in German, rate in the head",
+        oddity: "`2.000,0 Hz` in the head, one column with decimal commas",
+        file: "messung.csv",
+        text: || table("Abtastrate;2.000,0 Hz\nBeschl. [m/s²]\n", |i| comma(&fixed(value(0, i), 6))),
+        outcome: read(
+            &[ch("Beschl.", "m/s²", 0, 1.0, 5e-7)],
+            X::Even(0.0),
+            &["decimal-comma-assumed", "rate-from-head"],
+        ),
+    },
+    Dialect {
+        of: "ROS and Linux, time as two numbers",
+        oddity: "seconds and their parts in two columns",
+        file: "imu.csv",
+        text: || {
+            table("tv_sec,tv_usec,acc [m/s^2]\n", |i| {
+                let microseconds = 999_000 + 500 * i;
+                let (seconds, rest) = (1_714_560_000 + microseconds / 1_000_000, microseconds % 1_000_000);
+                format!("{seconds},{rest},{}", fixed(value(0, i), 6))
+            })
+        },
+        outcome: read(&[ch("acc", "m/s²", 0, 1.0, 5e-7)], X::Even(0.0), &["axis-clock", "axis-rounded"]),
+    },
 ];

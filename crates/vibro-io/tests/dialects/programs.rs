@@ -341,4 +341,15 @@ pub const ALL: &[Dialect] = &[
             },
         }),
     },
+    Dialect {
+        of: "R, write.table",
+        oddity: "names in quotes, one fewer than columns: rows have names, too",
+        file: "trace.txt",
+        text: || {
+            table("\"time_s\" \"acc\"\n", |i| {
+                format!("\"{}\" {} {}", i + 1, fixed(at(0.0, i), 4), fixed(value(0, i), 6))
+            })
+        },
+        outcome: read(&[ch("acc", "", 0, 1.0, 5e-7)], X::Even(0.0), &["unit-unsaid"]),
+    },
 ];
