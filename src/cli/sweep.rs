@@ -1,5 +1,5 @@
-//! `vibro response`, `vibro waterfall`, `vibro excitation`: what the thesis' scripts sinesw3, sinesw and
-//! sineswpf did.
+//! `vibro response`, `vibro waterfall`, `vibro excitation`: the work of the thesis' scripts sinesw3, sinesw
+//! and sineswpf.
 
 use super::{CommandArgs, init, print};
 use crate::analysis::AnswerCache;
