@@ -34,7 +34,7 @@ pub struct Proposal {
     pub tables: Vec<Table>,
     /// Files in no table, each with the reason.
     pub left: Vec<(String, String)>,
-    /// What notes in the folder state.
+    /// Lines of notes in the folder that may state a key.
     notes: Vec<Note>,
 }
 
@@ -169,7 +169,7 @@ impl Table {
         self
     }
 
-    /// Adds what is stated in `reading`, as far as the table takes it.
+    /// Adds the settings for reading that `reading` states, if the table has a key for them.
     fn stated(&self, reading: &Reading) -> Table {
         let names = |key| self.rows.iter().any(|row| row.key == key);
         let takes = |key: &str| names("file") || names("traces") && ["rate", "unit"].contains(&key);

@@ -78,7 +78,7 @@ impl Campaign {
         (1..).zip(all).map(one).collect()
     }
 
-    /// The tables of a section as they are written: keys and values.
+    /// The tables of a section as written in the file: keys and values.
     ///
     /// # Errors
     /// If the campaign is not TOML.

@@ -35,7 +35,7 @@ pub enum DriveKind {
     Sine,
 }
 
-/// What to compute, and how.
+/// The table `[compute]`: results to compute, and settings.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Compute {
@@ -43,10 +43,11 @@ pub struct Compute {
     pub overlay: bool,
     /// Draw waterfalls. Default true.
     pub waterfall: bool,
-    /// Lines on both sides of the excitation in which a peak is looked for. Default 3.
+    /// Lines on each side of the excitation that are searched for the peak. Default 3.
     #[serde(alias = "band")]
     pub peak_lines: usize,
-    /// Cut-off in Hz. Default: two lines or a quarter of the lowest excitation.
+    /// Lowest frequency used, in Hz. Default: the larger of two lines and a quarter of the lowest
+    /// excitation.
     pub fmin: Option<f64>,
     /// Highest frequency in waterfalls, in Hz. Default: the base band.
     pub fmax: Option<f64>,
@@ -140,7 +141,7 @@ impl ModelEntry {
 #[derive(Debug, Clone, PartialEq, Default, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct FitEntry {
-    /// Parameters to be found. None: nothing is fitted.
+    /// Parameters to fit. Without any, nothing is fitted.
     pub parameters: Vec<Parameter>,
     /// Prior of a parameter from another measurement: `[value, standard uncertainty]`.
     pub prior: BTreeMap<Parameter, [f64; 2]>,
@@ -168,7 +169,7 @@ impl FitEntry {
     /// The parameter of this name that a fit can find.
     ///
     /// # Errors
-    /// If there is none.
+    /// If no parameter that can be fitted has this name.
     pub fn parameter(name: &str) -> Result<Parameter, Error> {
         Parameter::named(name).filter(|p| p.can_be_fitted()).ok_or_else(|| {
             let error = Error::usage(format!("no parameter of a fit is named {name:?}"), FitEntry::known());

@@ -41,7 +41,7 @@ struct StagedFile {
     staged: Staged,
 }
 
-/// What exists under the name of a file to be written.
+/// State of the place where a file is to be written.
 #[derive(Debug, PartialEq, Eq)]
 enum Present {
     /// A file with the same bytes.

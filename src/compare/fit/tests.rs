@@ -145,10 +145,10 @@ fn miscalibrated(mut data: Data, std: f64, seed: u64) -> Data {
 const SEEDS: u64 = 500;
 const FEW: u64 = 8;
 
-/// Checks that of 500 seeds the truth is in the joint 95 % region in 92 to 98 %, three standard deviations
-/// of a binomial; in the interval of each parameter in 91 % or more, four of them; on the mean of all
-/// intervals in 92 to 98 %. `drawn` gives points and unknowns of a seed. The fits begin at the truth with
-/// its motions: other tests cover the search.
+/// Checks the coverage of 95 % in 500 seeds. The joint region must hold the truth in 92 to 98 % (three
+/// standard deviations of a binomial), the interval of each parameter in 91 % or more (four), and the mean
+/// of all intervals in 92 to 98 %. `drawn` gives points and unknowns of a seed. The fits begin at the truth
+/// with its motions: other tests cover the search.
 fn covered(
     seeds: u64,
     setting: &Setting,

@@ -9,7 +9,7 @@ use ndarray::Axis;
 
 /// Reference of levels in SI units: 1 µm, 1 µm/s, …
 const REFERENCE: f64 = 1e-6;
-/// Range of a map in dB: that of a 16-bit analyser.
+/// Range of a map in dB, that of a 16-bit analyser.
 const RANGE: f64 = 90.0;
 
 /// Waterfall from the cut-off to `fmax` in Hz; with `None`, to the last visible line.

@@ -156,8 +156,7 @@ fn a_scale_is_as_uncertain_as_the_calibration() {
     assert!(finding(&far, "calibration-assumed").is_none(), "{:?}", far.findings);
 }
 
-/// A load cell that reads 1 % too much is not told from a gap that is 1 % larger, unless the force is
-/// fitted.
+/// A load cell that reads 1 % too much looks like a gap that is 1 % larger, unless the force is fitted.
 #[test]
 fn the_gap_is_as_uncertain_as_a_fixed_force() {
     let rest = "\"restitution\", \"c1\", \"c2\", \"gap\"]";
