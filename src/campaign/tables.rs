@@ -49,7 +49,7 @@ pub struct Compute {
     /// Lowest frequency used, in Hz. Default: the larger of two lines and a quarter of the lowest
     /// excitation.
     pub fmin: Option<f64>,
-    /// Highest frequency in waterfalls, in Hz. Default: the base band.
+    /// Highest frequency in waterfalls, in Hz. Default: the last visible line.
     pub fmax: Option<f64>,
 }
 

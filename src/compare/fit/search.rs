@@ -18,10 +18,10 @@ const COARSE: [f64; 2] = [0.3, 0.1];
 pub(crate) const FINE: [f64; 4] = [0.1, 0.03, 0.01, 0.003];
 /// Factor on the standard deviation of a point in the scale of its z, so that noise is no outlier.
 const WIDE: f64 = 3.0;
-/// Difference in cost up to which two ends of the search may be one place: a tenth of a point …
+/// Largest difference in cost between two ends of the search that are one place: a tenth of a point.
 const SAME_COST: f64 = 0.1;
-/// … if their coordinates differ by at most this relative amount. The cost alone does not tell: losses that
-/// replace each other cost the same.
+/// Largest relative difference of their coordinates. An equal cost alone is no proof: losses that replace
+/// each other cost the same.
 const SAME_PLACE: f64 = 0.02;
 /// Factor on the stated values within which starts lie: the accuracy of what a person knows of a rig.
 const REACH: f64 = 1.5;
