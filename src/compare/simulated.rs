@@ -31,7 +31,8 @@ pub struct Simulated {
 /// with the rig's restitution.
 ///
 /// Each point has its own answer: an error where a parameter is impossible or the motion has too many
-/// events to follow. The sweep then continues from the last finite state, or from rest where there is none.
+/// events to follow. The sweep then continues from the state reached, or from rest where the motion could
+/// not start or its state is not finite.
 pub fn simulated(rig: &Rig, law: Option<Law>, points: &[(f64, f64)], pace: Pace) -> Vec<Result<Simulated>> {
     let rigid = |sine: Sine, state, phase| Simulation::from_state(rig, &sine, state, phase);
     let Some(law) = law else { return swept(rig, points, |motion| read(motion, pace), rigid) };
