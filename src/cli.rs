@@ -1,4 +1,5 @@
-//! The command `vibro`: what was typed, checked, done and printed. Nothing in the library uses this folder.
+//! The command `vibro`: checks and runs what was typed and prints the result. Nothing in the library uses
+//! this folder.
 
 mod campaign;
 mod complain;
@@ -27,8 +28,8 @@ use clap::{Arg, ArgAction, ArgMatches, Args, Command as Typed};
 use std::any::TypeId;
 use std::path::PathBuf;
 
-/// All commands by what they are for, in the order of the help: what is typed behind `vibro`, for example,
-/// and what it does. A new one is a row.
+/// All commands by purpose, in the order of the help. A row has an example of what is typed after `vibro`,
+/// and what the command does. A new command is a new row.
 const GROUPS: &[(&str, &[CommandRow])] = &[
     (
         "Begin with a folder of recordings",
@@ -135,18 +136,18 @@ fn rows() -> impl Iterator<Item = &'static CommandRow> {
     GROUPS.iter().flat_map(|(_, rows)| rows.iter())
 }
 
-/// What is typed behind the name of a command, and what it does.
+/// Arguments of a command, and its work.
 trait CommandArgs: Args {
-    /// Who reads what is complained of: what a campaign says is corrected there.
+    /// How messages name settings: as options, or as keys where a campaign must be corrected.
     const VOICE: Voice = Voice::Command;
 
-    /// Does it, and gives the exit code.
+    /// Runs the command and returns the exit code.
     fn run(&self, json: bool) -> Result<u8>;
 }
 
 /// A row of the table of commands.
 struct CommandRow {
-    /// What is typed behind `vibro`, for example.
+    /// Example of what is typed after `vibro`.
     example: &'static str,
     about: &'static str,
     voice: Voice,
@@ -174,21 +175,21 @@ impl CommandRow {
     }
 }
 
-/// What styles of figures there are.
+/// Help of the option `--style`.
 const STYLES: &str =
     "Figures for a report, paper (86 mm wide, grey) or slide (1.6 times larger) [default: report]";
 
-/// What bounds the memory that a file may take.
+/// Help of the option `--max-memory`.
 const MEMORY: &str =
     "Memory that a file and its analysis may take, such as 2GB [default: a quarter of the machine's]";
 
-/// What the program is for.
+/// Purpose of the program.
 const ABOUT: &str = "Measure impacting machines: from analyser files to answers, each with its uncertainty";
 
 /// The commands that a newcomer needs.
 const FIRST: [&str; 5] = ["init", "run", "demo", "info", "response"];
 
-/// What stands there where no command was typed.
+/// Help where no command was typed.
 fn short() -> String {
     let lines: String = rows().filter(|row| FIRST.contains(&row.name())).map(CommandRow::line).collect();
     format!(
@@ -196,7 +197,7 @@ fn short() -> String {
     )
 }
 
-/// All commands by what they are for.
+/// Help with all commands by purpose.
 fn long() -> String {
     let group = |(name, rows): &(&str, &[CommandRow])| {
         format!("{name}:\n{}\n", rows.iter().map(CommandRow::line).collect::<String>())
@@ -227,12 +228,12 @@ fn command() -> Typed {
     options(all.subcommands(commands))
 }
 
-/// Parses the command line, does what it says, and gives the exit code: 0 done, 1 no answer possible, 2 wrong
-/// usage or unreadable input.
+/// Parses and runs the command line and returns the exit code: 0 done, 1 no answer possible, 2 wrong usage
+/// or unreadable input.
 pub fn main() -> u8 {
     let typed = match command().try_get_matches_from(respelt::args()) {
         Ok(typed) => typed,
-        // What could not be parsed may have asked for JSON all the same.
+        // A command line that cannot be parsed may still ask for JSON.
         Err(error) => {
             let json = std::env::args_os().take_while(|a| a != "--").any(|a| a == "--json");
             return complain::usage(&error, json);
@@ -254,7 +255,7 @@ pub fn main() -> u8 {
         _ => Medium::Report,
     };
     let replace = last.and_then(|typed| typed.try_get_one("replace").ok()?).copied().unwrap_or(false);
-    // Nothing has set it before.
+    // Set only here, so this cannot fail.
     let _ = print::WRITTEN.set(print::OutputSettings { medium, replace });
     if let Err(error) = numbers(last.unwrap_or(&typed)) {
         return complain::error(&error, Voice::Command, json);
@@ -266,7 +267,7 @@ pub fn main() -> u8 {
     (row.run)(typed, json).unwrap_or_else(|error| complain::error(&error, row.voice, json))
 }
 
-/// Checks all numbers that were typed behind a command, alone, as a range or in a list.
+/// Checks the ranges of all numbers typed after a command: alone, in a range or in a list.
 fn numbers(typed: &ArgMatches) -> Result<()> {
     for key in typed.ids().map(clap::Id::as_str) {
         for words in typed.try_get_raw(key).ok().flatten().into_iter().flatten() {
@@ -278,15 +279,15 @@ fn numbers(typed: &ArgMatches) -> Result<()> {
     Ok(())
 }
 
-/// Makes options of the fields of all keys, in their order: each has the name of its field and, where it
-/// names no other, a value of the kind that its type says. A negative number is taken: whether it makes
-/// sense, its check says better than a complaint about an unknown option.
+/// Turns the fields of all keys into options, in their order. An option has the name of its field and,
+/// unless it states another, a value name by its type. Negative numbers are accepted here: a later check
+/// explains them better than an error about an unknown option.
 fn options(command: Typed) -> Typed {
     let mut order = 0;
     let option = |arg: Arg| {
         order += 1;
         let takes = arg.get_action().takes_values();
-        // Options of all commands stand behind their own.
+        // Options of all commands come after a command's own.
         let order = if arg.is_global_set() { usize::MAX } else { order };
         let arg = arg.allow_negative_numbers(takes).display_order(order);
         if arg.get_index().is_some() {
@@ -310,18 +311,18 @@ fn options(command: Typed) -> Typed {
     command.args(more.into_iter().filter(|(wanted, _)| *wanted).map(|(_, arg)| arg))
 }
 
-/// Heading in the help of the options of what is printed and written. Those of how files are read have theirs
-/// at their struct; an analysis' own have none and stand first.
+/// Heading in the help for options of printed and written output. Options for reading files have a heading
+/// at their struct; those of an analysis have none and come first.
 const OUTPUT: &str = "Output";
 
 /// Options of commands that write files.
 const WRITES: [&str; 4] = ["out", "output", "each_cycle", "write_lists"];
 
-/// What is replaced where it is stated.
+/// Help of the option `--replace`.
 const REPLACE: &str =
     "Replace files that vibro did not write, or that were changed since; never what the command reads";
 
-/// The kind of an option's value.
+/// Placeholder in the help for the value of an option, by its type.
 fn kind(arg: &Arg) -> &'static str {
     let is = arg.get_value_parser().type_id();
     if is == TypeId::of::<PathBuf>() {
@@ -341,8 +342,8 @@ fn kind(arg: &Arg) -> &'static str {
     }
 }
 
-/// How the values of a type are read that names no other way: so that what is wrong with one is of a type of
-/// ours.
+/// Sets the parser of a value by its type where none is stated, so that a wrong value gives an error of our
+/// own type.
 fn read_by_type(arg: Arg) -> Arg {
     let is = arg.get_value_parser().type_id();
     match () {
@@ -363,7 +364,7 @@ mod tests {
 
     #[test]
     fn every_option_that_takes_a_number_has_its_range() {
-        // The model checks these: ends of a range as what is varied, the others with what is asked of it.
+        // The model checks these itself: varied parameters, and settings of the questions to it.
         let asked = ["from", "to", "step", "tolerance", "noise_floor", "gap_std"];
         let of_model = |key: &str| Parameter::named(key).is_some() || asked.contains(&key);
         let mut left = vec![command()];
@@ -389,7 +390,7 @@ mod tests {
         assert!(seen > 80, "{seen}");
     }
 
-    /// What is wrong with a value is known by a type or a list of names, whichever crate reads it.
+    /// A refused value comes with its expected kind or a list of names, whichever crate parses it.
     #[test]
     fn every_value_that_is_refused_is_refused_with_its_kind() {
         let mut left: Vec<(Vec<String>, Typed)> = vec![(vec!["vibro".to_owned()], command())];

@@ -61,7 +61,7 @@
 //! ```
 //!
 //! # Answers of a campaign
-//! The response of mass 1 in the example campaign, taken from velocity to displacement:
+//! The response of mass 1 in the example campaign, integrated from velocity to displacement:
 //! ```
 //! use vibroimpact::analysis::{named, open};
 //! use vibroimpact::measure::response::ResponseOptions;
@@ -74,7 +74,7 @@
 //! # Ok::<(), vibroimpact::Error>(())
 //! ```
 
-// Questions to models and the comparison of methods are asked by the command alone.
+// Only the command asks questions of models and compares methods: without it, this code is unused.
 #![cfg_attr(not(feature = "cli"), allow(dead_code, unused_imports))]
 
 pub mod analysis;

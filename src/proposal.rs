@@ -1,7 +1,7 @@
-//! What the recordings of a folder can be measured for: a campaign that is proposed, with what was found,
-//! guessed and is missing.
+//! Proposes a campaign for the recordings of a folder: keys that were found or guessed, and those that are
+//! missing.
 //!
-//! A record of unknown kind is tried: the first analysis that answers without a doubt is proposed.
+//! A record of unknown kind is tried: the first analysis whose answer has no doubt is proposed.
 
 mod alike;
 mod folder;
@@ -24,17 +24,17 @@ use serde::Serialize;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
-/// A campaign for a folder.
+/// A proposed campaign for a folder.
 #[derive(Debug, Clone, Serialize)]
 pub struct Proposal {
     /// The folder.
     #[serde(skip)]
     pub folder: Folder,
-    /// Its tables, in the order of a campaign.
+    /// Tables in the order of a campaign.
     pub tables: Vec<Table>,
-    /// Files that stand in no table, and why.
+    /// Files in no table, each with the reason.
     pub left: Vec<(String, String)>,
-    /// What notes in the folder state.
+    /// Lines of notes in the folder that may state a key.
     notes: Vec<Note>,
 }
 
@@ -43,13 +43,13 @@ pub struct Proposal {
 pub struct Table {
     /// `sweep` for `[[sweep]]`.
     pub section: &'static str,
-    /// Its files in words.
+    /// Files of the table, in words.
     pub files: String,
-    /// What they are.
+    /// Kind of these files, in words.
     pub about: &'static str,
-    /// Whether that is a guess.
+    /// Whether the kind is a guess.
     pub guess: bool,
-    /// Its keys in order.
+    /// Keys in order.
     pub rows: Vec<TableKey>,
     /// Why its records give no answer yet; `None` where they do.
     pub refused: Option<Refusal>,
@@ -60,14 +60,14 @@ pub struct Table {
 pub struct Refusal {
     /// Code of the refusal; empty where it has none.
     pub code: String,
-    /// In words.
+    /// Reason in words.
     pub why: String,
-    /// What to try; empty where nothing would help.
+    /// Hint; empty where there is none.
     pub hint: String,
 }
 
 impl Refusal {
-    /// The reason and what to try.
+    /// The reason with the hint.
     pub fn in_words(&self) -> String {
         if self.hint.is_empty() { self.why.clone() } else { format!("{}; try: {}", self.why, self.hint) }
     }
@@ -80,29 +80,29 @@ pub struct TableKey {
     pub key: &'static str,
     /// Its value as TOML; empty where it is missing.
     pub value: String,
-    /// How it is known.
+    /// Where the value comes from.
     pub known: KeyStatus,
 }
 
-/// Characters of a key and its value beside which the comments of a table stand in a column.
+/// Longest `key = value`, in characters, beside which the comments of a table are aligned in a column.
 const WIDEST: usize = 60;
 
 /// How the value of a key is known.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum KeyStatus {
-    /// The files say it.
+    /// The files state it.
     Found,
-    /// It was concluded; the reason.
+    /// It was inferred; the reason.
     Guessed(&'static str),
-    /// A person can say it, and the answer then says more; what it is.
+    /// Optional and not stated: a person may add it for a fuller answer; a description.
     Open(&'static str),
-    /// A person must say it; what it is.
+    /// Required and not stated: a person must add it; a description.
     Missing(&'static str),
 }
 
 impl KeyStatus {
-    /// The reason of a guess, or what is missing.
+    /// Reason of a guess, or description of a key that is not stated.
     pub fn why(self) -> Option<&'static str> {
         match self {
             KeyStatus::Found => None,
@@ -118,19 +118,19 @@ impl Table {
         Table { section, about, files, guess: false, rows: Vec::new(), refused }
     }
 
-    /// The same, where what the files are is a guess.
+    /// The same table, with the kind of its files marked as a guess.
     fn surmised(self) -> Table {
         Table { guess: true, ..self }
     }
 
-    /// What it is, in words.
+    /// Files and their kind, in words.
     pub fn in_words(&self) -> String {
         let guess = if self.guess { ", guessed" } else { "" };
         format!("{}: {}{guess}", self.files, self.about)
     }
 
     fn with(mut self, key: &'static str, value: impl Serialize, known: KeyStatus) -> Table {
-        // A string of JSON is one of TOML, and so are its numbers, words and lists of these.
+        // Strings, numbers, booleans and lists of these are written alike in JSON and TOML.
         let value = serde_json::to_string(&value).unwrap_or_default();
         self.rows.push(TableKey { key, value, known });
         self
@@ -144,12 +144,12 @@ impl Table {
         self.with(key, value, KeyStatus::Guessed(why))
     }
 
-    /// A key that may be stated, and a value where the table is tried, or none.
+    /// Adds a key that may be stated, with a placeholder for a trial of the table, or none.
     fn open(self, key: &'static str, instead: &str, what: &'static str) -> Table {
         self.without(key, instead, KeyStatus::Open(what))
     }
 
-    /// A key that must be stated, and a value where the table is tried.
+    /// Adds a key that must be stated, with a placeholder for a trial of the table.
     fn missing(self, key: &'static str, instead: &str, what: &'static str) -> Table {
         self.without(key, instead, KeyStatus::Missing(what))
     }
@@ -159,7 +159,7 @@ impl Table {
         self
     }
 
-    /// The same with what stands in for values that are not stated.
+    /// The same table with placeholders as values of keys that are not stated, for a trial.
     fn tried(mut self) -> Table {
         for row in &mut self.rows {
             if matches!(row.known, KeyStatus::Open(_) | KeyStatus::Missing(_)) && !row.value.is_empty() {
@@ -169,7 +169,7 @@ impl Table {
         self
     }
 
-    /// With what is stated of the files.
+    /// Adds the settings for reading that `reading` states, if the table has a key for them.
     fn stated(&self, reading: &Reading) -> Table {
         let names = |key| self.rows.iter().any(|row| row.key == key);
         let takes = |key: &str| names("file") || names("traces") && ["rate", "unit"].contains(&key);
@@ -177,7 +177,7 @@ impl Table {
         stated.fold(self.clone(), |table, (key, value)| table.found(key, value))
     }
 
-    /// Whether a key is missing: it cannot run before that is filled in.
+    /// Whether a required key is missing: the table cannot run before it is filled in.
     pub fn lacks(&self) -> bool {
         self.rows.iter().any(|row| matches!(row.known, KeyStatus::Missing(_)))
     }
@@ -188,18 +188,20 @@ impl Table {
         if own.is_empty() { self.value("sweep") } else { own }
     }
 
-    /// What a key says; empty where it says nothing.
+    /// Value of a key without quotes; empty where there is none.
     fn value(&self, key: &str) -> &str {
         self.rows.iter().find(|row| row.key == key).map_or("", |row| bare(&row.value))
     }
 
-    /// Whether a key is open that a line of notes may state. The mass of a sweep is a number, not a weight.
+    /// Whether a line of notes may state this open key. The `mass` of a sweep is a number, not a weight in
+    /// kg.
     fn asks(&self, row: &TableKey, note: &Note) -> bool {
         let open = matches!(row.known, KeyStatus::Open(_) | KeyStatus::Missing(_));
         open && note.is_of(row.key) && (self.section, row.key) != ("sweep", "mass")
     }
 
-    /// As a campaign writes it, what lacks a key as a comment, with what notes state of its open keys.
+    /// The table as TOML, with what notes state of its open keys; commented out where a required key is
+    /// missing.
     fn toml(&self, notes: &[Note]) -> String {
         let said = |row: &TableKey| {
             let of_key = notes.iter().filter(|note| self.asks(row, note));
@@ -239,8 +241,8 @@ impl Proposal {
     /// Name of the file of a campaign in a folder.
     pub const FILE: &str = analysis::OWN;
 
-    /// A campaign for what lies in a folder and up to two levels below it, and is not named by one that is
-    /// `known`.
+    /// Proposes a campaign for the recordings in a folder and up to two levels below, without those that
+    /// the campaign `known` already names.
     ///
     /// # Errors
     /// If it is no folder, cannot be listed, or holds no recording.
@@ -293,8 +295,8 @@ impl Proposal {
         Ok(proposal)
     }
 
-    /// Gives a table what the campaign states of a file whose name differs in a number alone, and a sweep a
-    /// name of its own.
+    /// Copies to each table what the known campaign states of a file whose name differs only in a number.
+    /// Gives each sweep a name of its own.
     fn join(&mut self, known: &Campaign) -> Result<()> {
         let of = |rows: &[(String, String)], key: &str| {
             rows.iter().find(|row| row.0 == key).map_or_else(String::new, |row| bare(&row.1).to_owned())
@@ -305,7 +307,7 @@ impl Proposal {
             let all = known.written(table.section)?;
             let like = all.iter().find(|rows| folder::alike(&file, &of(rows, "file")));
             for (key, value) in like.into_iter().flatten() {
-                // Drops of one series have one name.
+                // Drops of one series share a name.
                 let same = key != "file" && (key != "name" || table.section == "drop");
                 for row in table.rows.iter_mut().filter(|row| same && row.key == key) {
                     (row.value, row.known) = (value.clone(), KeyStatus::Found);
@@ -322,7 +324,7 @@ impl Proposal {
         Ok(())
     }
 
-    /// The campaign as a file has it.
+    /// The campaign as TOML.
     pub fn toml(&self) -> String {
         let root = self.folder.root();
         let folder = root.canonicalize().unwrap_or_else(|_| root.to_owned());
@@ -341,7 +343,7 @@ impl Proposal {
         text
     }
 
-    /// Its tables, and the files that are not used.
+    /// The tables as TOML, and the files that are not used.
     pub fn tables(&self) -> String {
         let mut text = String::new();
         for table in &self.tables {
@@ -371,7 +373,7 @@ fn bare(value: &str) -> &str {
     value.trim_matches(['"', '\''])
 }
 
-/// Time traces that are one sweep, one file a step: a campaign of it alone.
+/// Proposes a campaign of one sweep for time traces, one file a step.
 ///
 /// # Errors
 /// If the first file cannot be read, or holds no force and response.

@@ -1,4 +1,4 @@
-//! What an analysis of one record has to show.
+//! The answer of the analysis of a record.
 
 use super::compared_rig::ComparedRig;
 use super::evidence::Evidence;
@@ -11,39 +11,39 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 use std::borrow::Borrow;
 
-/// What an analysis found, for programs and for people. Names of figures and files are those of a record
-/// alone, `impacts`; a campaign adds a number or a name.
+/// Results of an analysis, for programs and for people. Figures and files are named as for a single record,
+/// such as `impacts`; a campaign adds a number or a name.
 #[derive(Debug, Default, Serialize, Deserialize)]
 pub struct Answer {
-    /// All numbers by their keys.
+    /// All numbers, by key.
     pub result: Map<String, Value>,
-    /// What a person should know.
+    /// Findings, each with its record.
     pub findings: Vec<About>,
-    /// The channel that it is of; empty where it is of several.
+    /// Channel of the record; empty for several channels.
     pub channel: String,
-    /// Its main numbers, with which a report begins: all columns but that of the record.
+    /// Main numbers for the head of a report: all columns except that of the record.
     pub headlines: Vec<Table>,
-    /// What a person wants first.
+    /// Tables that are shown first.
     pub tables: Vec<Table>,
-    /// Tables for a person who looks at this record alone.
+    /// Tables with details, for a close look at this record.
     pub details: Vec<Table>,
     /// Figures.
     pub figures: Vec<(String, Figure)>,
-    /// Files of numbers.
+    /// Files of numbers: name and content.
     pub files: Files,
-    /// By which steps a file became a result, for each record that tells.
+    /// Processing steps from file to result, for each record that has them.
     pub histories: Vec<(String, Vec<Step>)>,
     /// The model that the measurements were compared with.
     pub compared: Option<ComparedRig>,
-    /// What it shows of the kinds of its records.
+    /// Evidence on the kinds of its records.
     pub evidence: Vec<Evidence>,
-    /// Why its main part is missing, where the rest can be shown all the same.
+    /// Reason why the main result is missing, where the rest can still be shown.
     #[serde(skip)]
     pub refused: Option<Error>,
 }
 
 impl Answer {
-    /// The answer of a result.
+    /// An answer with the numbers of a result.
     ///
     /// # Errors
     /// If it cannot be written as JSON.
@@ -51,12 +51,12 @@ impl Answer {
         let Value::Object(mut result) = serde_json::to_value(result).map_err(unwritten)? else {
             return Err(Error::refused("the result is no object"));
         };
-        // The answer has them as its findings.
+        // The findings are added to the answer by themselves.
         result.shift_remove("findings");
         Ok(Answer { result, ..Answer::default() })
     }
 
-    /// Adds what is known of a record; `""` is the whole answer.
+    /// Adds findings on a record; `""` stands for the whole answer.
     pub fn add(&mut self, record: &str, findings: impl IntoIterator<Item = impl Borrow<Finding>>) {
         self.findings.extend(findings.into_iter().map(|f| (record.to_owned(), f.borrow().clone())));
     }
@@ -66,13 +66,13 @@ impl Answer {
         self.figures.push((name.into(), figure));
     }
 
-    /// Adds a table for a person, and as a file of numbers.
+    /// Adds a table to show, also as a CSV file.
     pub fn table(&mut self, name: &str, table: Table) {
         self.csv(name, &table);
         self.tables.push(table);
     }
 
-    /// Adds all of another answer; tables with the same columns are one.
+    /// Adds another answer; tables with the same title and columns are joined.
     pub(super) fn append(&mut self, mut more: Answer) {
         join(&mut self.headlines, more.headlines);
         join(&mut self.tables, more.tables);
@@ -86,13 +86,13 @@ impl Answer {
         self.files.append(&mut more.files);
     }
 
-    /// Adds a table as a file of numbers.
+    /// Adds a table as a CSV file.
     pub fn csv(&mut self, name: &str, table: &Table) {
         self.files.push((format!("{name}.csv"), table.csv().into_bytes()));
     }
 }
 
-/// Adds tables; those with the same title and columns are one.
+/// Adds tables; those with the same title and columns are joined.
 fn join(tables: &mut Vec<Table>, more: Vec<Table>) {
     for table in more.into_iter().filter(|table| !table.rows.is_empty()) {
         let same = |known: &&mut Table| known.title == table.title && known.columns == table.columns;
@@ -108,13 +108,13 @@ fn join(tables: &mut Vec<Table>, more: Vec<Table>) {
     }
 }
 
-/// The error of a result that JSON has no place for.
+/// The error of a result that JSON cannot represent.
 #[allow(clippy::needless_pass_by_value)]
 pub(crate) fn unwritten(error: serde_json::Error) -> Error {
     Error::refused(format!("the result cannot be written as JSON: {error}"))
 }
 
-/// The finding that a record gave no answer, under this code.
+/// Finding under this code that a record gave no answer, with the reason.
 pub fn left_out(code: &'static str, error: &Error) -> Finding {
     let found = Finding::caution(code).name("why", error.why().trim_end_matches('.'));
     let found = error.code().into_iter().fold(found, |found, code| found.name("refusal", code));

@@ -17,8 +17,8 @@ use crate::report::layout::{pair, table, titled};
 use crate::report::{Cell, Table};
 use serde::Deserialize;
 
-/// Memory that the search works in, as a multiple of the trace: of ten million samples, 8.8 traces were
-/// measured in all.
+/// Memory for the search, as a multiple of the trace: with ten million samples 8.8 traces were measured in
+/// all.
 const BESIDE: f64 = 8.0;
 
 /// How modes of a decay are found.
@@ -81,12 +81,12 @@ fn modes(name: &str, found: &DecayResult) -> Table {
     table.note(note + &decrement.unwrap_or_default())
 }
 
-/// That of the amplitudes.
+/// Unit of the amplitudes.
 fn unit(found: &DecayResult) -> &'static str {
     found.modes.first().map_or("", |mode| mode.amplitude.unit)
 }
 
-/// The strongest mode over its amplitude.
+/// Frequency and damping of the strongest mode over its amplitude.
 fn levels(name: &str, found: &DecayResult) -> Table {
     table(
         titled("Damping over amplitude", name),

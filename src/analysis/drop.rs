@@ -70,10 +70,10 @@ pub struct Keys {
 }
 
 impl Keys {
-    /// Whether the keys go together, beside a file or without one.
+    /// Checks that the keys go together, with or without a file.
     ///
     /// # Errors
-    /// With the key that does not.
+    /// The key that does not.
     pub fn usable(&self, file: bool) -> Result<()> {
         let (interval, intervals) = (self.interval.is_some(), !self.intervals.is_empty());
         let (before, after) = (self.before.is_some(), !self.after.is_empty() || self.after2.is_some());
@@ -121,7 +121,7 @@ impl Keys {
         Ok(())
     }
 
-    /// Velocities before and after, in the order of the masses.
+    /// Velocities before and after the impact in m/s, in the order of the masses.
     fn velocities(&self) -> Option<Velocities> {
         let mut after = self.after.iter().copied();
         Some(Velocities {
@@ -133,7 +133,7 @@ impl Keys {
         })
     }
 
-    /// The first key of which two drops of one series have different values.
+    /// The first key whose values differ between two drops of one series.
     fn differing(&self, other: &Keys) -> Option<&'static str> {
         let equal = [
             ("height", self.height == other.height),
@@ -150,7 +150,7 @@ impl Keys {
     }
 }
 
-/// Drops of one name, whose mean is taken.
+/// Drops of one name, evaluated together.
 pub struct Series {
     drop: Drop,
     trains: Vec<Train>,
@@ -159,7 +159,7 @@ pub struct Series {
     /// File and trace of each drop with a record.
     records: Vec<(String, Plot)>,
     findings: Vec<About>,
-    /// Each record that is left out, and why it allows no answer.
+    /// Records left out, each with the reason why it allows no answer.
     refused: Vec<(String, Error)>,
 }
 
@@ -186,7 +186,7 @@ impl Series {
         }
     }
 
-    /// Adds what the keys say of a drop without a record.
+    /// Adds the numbers in the keys, for a drop without a record.
     pub(crate) fn add_numbers(&mut self, keys: &Keys) {
         self.drop.intervals.extend(keys.interval);
         if !keys.intervals.is_empty() {
@@ -215,7 +215,7 @@ impl Series {
             self.drop.possible(*first, "the first interval")?;
         }
         self.trains.push(train);
-        // Times alone matter here.
+        // Only times matter: a missing calibration is not reported.
         let of_trace = trace.meta.findings.iter().filter(|found| found.code != Trace::UNCALIBRATED);
         let findings = recording.findings.iter().chain(of_trace).chain(&found.findings);
         self.findings.extend(findings.map(|found| (file.clone(), found.clone())));
@@ -224,10 +224,10 @@ impl Series {
         Ok(())
     }
 
-    /// Leaves out a record of a command line that allows no answer, where others may.
+    /// Leaves out a record that allows no answer, with a caution, since other records may allow one.
     ///
     /// # Errors
-    /// The error of the record, where it is none of its data.
+    /// The error itself, if it does not concern the data of the record.
     pub(crate) fn leave_out(&mut self, file: &Path, error: Error) -> Result<()> {
         if error.exit_code() != 1 {
             return Err(error);
@@ -290,7 +290,7 @@ impl Series {
     }
 }
 
-/// Whether the methods agree.
+/// Whether the methods agree, in words.
 fn together(found: &Restitution) -> &'static str {
     match found.agree {
         _ if found.by.len() < 2 => "one method",
@@ -324,7 +324,7 @@ impl Analysis for Keys {
     fn check(entry: &Entry<Keys>, earlier: &[Entry<Keys>]) -> Result<()> {
         entry.keys.usable(entry.file.is_some())?;
         let Some(name) = &entry.name else { return Ok(()) };
-        // Drops of one name are one series, whose keys are equal.
+        // Drops of one name are one series and must have equal keys.
         let mut series = earlier.iter().filter(|e| e.name.as_ref() == Some(name)).peekable();
         if let Some(key) = series.peek().and_then(|first| first.keys.differing(&entry.keys)) {
             return Err(Error::usage(
@@ -350,7 +350,7 @@ impl Analysis for Keys {
     fn run(entries: &[Entry<Keys>], job: &mut Job<'_>) -> Result<()> {
         let mut all: Vec<(Option<&String>, String, Series)> = Vec::new();
         for entry in entries {
-            // Files without a name are no series, even where one folder has the same file name as another.
+            // Files without a stated name are no series, even if files in two folders share a name.
             let stated = entry.name.as_ref();
             let at = all.iter().position(|s| stated.is_some() && s.0 == stated).unwrap_or_else(|| {
                 all.push((stated, name_of(entry), Series::new(&entry.keys)));

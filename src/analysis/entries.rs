@@ -1,4 +1,4 @@
-//! The tables of a campaign that are of one kind of record.
+//! The tables of a campaign of one kind of record.
 
 use super::kind::Analysis;
 use super::recordings::{is_pattern, matching};
@@ -9,8 +9,8 @@ use crate::record::shown;
 use std::collections::BTreeSet;
 use std::path::PathBuf;
 
-/// The tables of a kind of record as they are written, one of each file that a pattern matches, with what is
-/// wrong with the table.
+/// The tables of a kind of record with the errors in them. A table with a pattern gives one table for each
+/// matching file.
 fn written<A: Analysis>(campaign: &Campaign) -> Result<Vec<(Entry<A>, Result<()>)>> {
     let folder = campaign.within();
     let each = |(entry, checked): (Entry<A>, Result<()>)| {
@@ -37,8 +37,8 @@ fn written<A: Analysis>(campaign: &Campaign) -> Result<Vec<(Entry<A>, Result<()>
     Ok(campaign.entries(A::SECTION, A::OF_FILES)?.into_iter().flat_map(each).collect())
 }
 
-/// The tables of a kind of record that can be; one whose file is a pattern stands for one of each file that
-/// it matches.
+/// The tables of a kind of record without faults. A table with a pattern gives one table for each matching
+/// file.
 ///
 /// # Errors
 /// As [`Campaign::entries`].
@@ -48,16 +48,16 @@ pub(crate) fn entries<A: Analysis>(campaign: &Campaign) -> Result<Vec<Entry<A>>>
     Ok(all.filter(|entry| !faults.contains(&entry.place())).collect())
 }
 
-/// As [`entries`], where none may be left out.
+/// As [`entries`], but no table may have a fault.
 ///
 /// # Errors
-/// That of the first table that cannot be.
+/// The error of the first table with a fault.
 pub(crate) fn all_entries<A: Analysis>(campaign: &Campaign) -> Result<Vec<Entry<A>>> {
     check::<A>(campaign)?.into_iter().next().map_or(Ok(()), |fault| Err(fault.error))?;
     entries(campaign)
 }
 
-/// What is wrong with the tables of a kind of record.
+/// The faults in the tables of a kind of record.
 ///
 /// # Errors
 /// As [`Campaign::entries`].

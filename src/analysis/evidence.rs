@@ -1,4 +1,4 @@
-//! What an answer shows of its record's kind, for those who ask what kind it is.
+//! Evidence in an answer on the kind of its record, for proposals of a campaign.
 
 use crate::measure::decay::DecayResult;
 use crate::measure::impacts::Impacts;
@@ -11,13 +11,14 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[allow(missing_docs)] // each kind says what its fields are
 pub enum Evidence {
-    /// A sweep: its steps, those of them with an uncertainty, and whether it jumps.
+    /// A sweep: number of steps, number of those with an uncertainty, and whether it jumps.
     Sweep { steps: usize, sure: usize, jumps: bool },
-    /// A decay: when it begins and ends, and the end of its record, in s.
+    /// A decay: its beginning and end, and the end of its record, in s.
     Decay { start: f64, end: f64, last: f64 },
-    /// Impacts: how many, how many are missed, and the spread of their intervals as a part of one.
+    /// Impacts: number found, number missed, and spread of the intervals over their median.
     Impacts { n: usize, missed: usize, spread: f64 },
-    /// Drops: their files, their restitution, and whether each has one interval between impacts.
+    /// Drops: number of files, coefficient of restitution, and whether each has one interval between
+    /// impacts.
     Drops { files: usize, restitution: f64, one_interval_each: bool },
     /// A contact pulse: its duration in s.
     Pulse { duration: f64 },
@@ -50,7 +51,7 @@ impl From<&PulseResult> for Evidence {
 }
 
 impl Evidence {
-    /// That of drops in so many files.
+    /// Evidence of drops in this number of files.
     pub fn of_drops(found: &Restitution, files: usize) -> Evidence {
         let one_interval_each = found.intervals.iter().all(|intervals| intervals.len() == 1);
         Evidence::Drops { files, restitution: found.restitution.value, one_interval_each }

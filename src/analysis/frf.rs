@@ -29,18 +29,18 @@ use crate::units::notation::significant;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 
-/// Part of the power of a reference that its strongest sine has, at least, where it is alone: 20 dB above all
-/// else. Noise and blows spread their power over all lines.
+/// Share of a reference's power in its strongest sine from which it is a pure sine: 20 dB above all else.
+/// Noise and blows spread their power over all lines.
 const ALONE: f64 = 0.99;
-/// Samples of a reference that are looked at first.
+/// Samples at the beginning of a reference that are tested first.
 const HEAD: usize = 1 << 16;
 
 /// Code of the finding that a sweep jumps.
 const JUMPS: &str = "modal-sweep-jumps";
 
 /// How modes are found, and how the function is taken where a file has two channels.
-// The latter keys are those of `spectrum::Keys` again: a struct that both share would be flattened, and
-// serde does not refuse unknown keys beside a flattened struct, which a campaign must.
+// Keys from `reference` on repeat those of `spectrum::Keys`. In a shared, flattened struct serde would not
+// refuse unknown keys, which a campaign must.
 #[derive(Debug, Clone, Default, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 #[cfg_attr(feature = "cli", derive(clap::Args))]
@@ -91,7 +91,7 @@ pub struct Keys {
     pub delay: Option<f64>,
 }
 
-/// A function and its modes.
+/// A frequency response function and its modes.
 #[derive(Serialize)]
 struct FunctionModes<'a> {
     quantity: &'static str,
@@ -101,7 +101,7 @@ struct FunctionModes<'a> {
 }
 
 impl Keys {
-    /// How the function is taken from two channels.
+    /// Keys for the function of two channels.
     fn spectral_keys(&self) -> spectrum::Keys {
         spectrum::Keys {
             reference: self.reference.clone(),
@@ -120,10 +120,10 @@ impl Keys {
         }
     }
 
-    /// Whether the keys go together.
+    /// Checks that the keys go together.
     ///
     /// # Errors
-    /// With the key that does not.
+    /// The key that does not.
     pub fn usable(&self) -> Result<()> {
         let taken = self.spectral_keys();
         if self.reference.is_some() {
@@ -139,8 +139,8 @@ impl Keys {
         Err(Error::usage(format!("{key} without a reference"), expected).setting(key).set("reference", "1"))
     }
 
-    /// The functions of a file with their modes, figures, tables and files; the one that is taken from two of
-    /// its channels, where a reference is named.
+    /// The frequency response functions of a file, with their modes, figures, tables and files. With a
+    /// reference, the function is computed from two channels.
     ///
     /// # Errors
     /// If a file cannot be read, or no function is there.
@@ -150,7 +150,7 @@ impl Keys {
         let functions = self.functions(source, &mut of_file)?;
         let answers = functions.into_iter().map(|function| {
             let mut answer = self.modes(source.name, &function)?;
-            // What is left of a blow is said once.
+            // A response that is cut off after a blow is reported once.
             let of_modes = answer.findings.iter().any(|(_, found)| found.code == code::MODAL_BLOW_CUT_OFF);
             let said = |(_, found): &&About| !(of_modes && found.code == code::RESPONSE_CUT_OFF);
             answer.findings.splice(0..0, of_file.findings.iter().filter(said).cloned());
@@ -167,7 +167,7 @@ impl Keys {
             let records = found.records();
             let Some(Record::Frf(frf)) = records.first() else { return Ok(Vec::new()) };
             let measured = Measured::complex(frf);
-            // One blow alone has no coherence.
+            // A single blow has no coherence.
             let measured = if records.len() > 1 { measured.with_coherence_of(&records)? } else { measured };
             return Ok(vec![Function {
                 records: records.clone(),
@@ -194,15 +194,15 @@ impl Keys {
         all.into_iter().map(function).collect()
     }
 
-    /// Refuses a reference that is one sine: a function of it is known in one line, and noise over noise in
-    /// all others.
+    /// Refuses a reference that is a single sine: the function would be known at one line, and be noise
+    /// over noise at all others.
     fn refuse_sine(&self, source: &Source<'_>) -> Result<()> {
         let mut traces = self.spectral_keys().traces(source)?;
         let names: Vec<String> = traces.channels().iter().map(|meta| meta.name.clone()).collect();
         traces.keep(&[0]);
         let mut block = vec![Vec::new()];
         let mut alone = None;
-        // Most records that are no sine show it in their beginning.
+        // Most references that are no sine show it at their beginning.
         for enough in [HEAD, usize::MAX] {
             while block[0].len() < enough && traces.append(&mut block)? > 0 {}
             let (meta, values) = (traces.channels()[0].clone(), block[0].clone());
@@ -227,7 +227,7 @@ impl Keys {
     /// The modes of a function, with figures, tables and files.
     ///
     /// # Errors
-    /// If it cannot be searched for modes; one that holds none is shown, and says so.
+    /// If it cannot be searched for modes. A function without modes is shown, with the reason.
     pub fn modes(&self, name: &str, function: &Function) -> Result<Answer> {
         let Function { meta, measured, records, findings } = function;
         let options = ModalOptions {
@@ -238,7 +238,7 @@ impl Keys {
             from_blows: meta.from_blows(),
             clock: meta.clock,
         };
-        // A function without a mode is still a function to be seen.
+        // A function without modes is shown.
         let (found, refused) = match modal(measured, &options) {
             Err(error) if error.exit_code() == 1 => {
                 (ModalResult { modes: Vec::new(), findings: Vec::new() }, Some(error))

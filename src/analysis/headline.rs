@@ -1,13 +1,13 @@
-//! The answers that a report begins with: of each kind of record its main numbers.
+//! Headlines of a report: the main numbers of each kind of record.
 
 use crate::record::{Finding, Severity};
 use crate::report::layout::{Shown, table};
 use crate::report::{Cell, Table};
 
-/// Rows of a headline, at most.
+/// Largest number of rows of a headline.
 const ROWS: usize = 10;
 
-/// The last column.
+/// Name of the last column.
 const REMARK: &str = "remark";
 
 /// Main numbers of a record, one row an item.
@@ -15,7 +15,7 @@ pub fn headline<T>(title: &str, items: impl IntoIterator<Item = T>, columns: &[S
     remarked(title, items, columns, &|_| "")
 }
 
-/// As [`headline`], with what is to be said of an item.
+/// As [`headline`], with a remark on each item.
 pub fn remarked<T>(
     title: &str,
     items: impl IntoIterator<Item = T>,
@@ -26,7 +26,7 @@ pub fn remarked<T>(
     table(title, items, &[columns, &[(REMARK, "", &of)]].concat())
 }
 
-/// The headline of a record of this name, which points to a doubt where there is one.
+/// The headline of a record of this name; it points to the doubt, if there is one.
 pub fn of_record<'a>(
     mut headline: Table,
     name: &str,
@@ -45,7 +45,7 @@ pub fn of_record<'a>(
     headline
 }
 
-/// The headlines that have rows, with the first of these.
+/// The headlines that have rows, cut to their first rows.
 pub fn shortened(headlines: &[Table]) -> Vec<Table> {
     let short = |table: &Table| {
         let mut table = table.clone();

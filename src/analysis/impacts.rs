@@ -19,8 +19,8 @@ use crate::units::notation::quantity;
 use serde::Deserialize;
 use std::path::PathBuf;
 
-/// Memory that the search works in, as a multiple of the trace: of ten million samples, 3.6 traces were
-/// measured in all.
+/// Memory for the search, as a multiple of the trace: with ten million samples 3.6 traces were measured in
+/// all.
 const BESIDE: f64 = 3.0;
 
 /// How impacts are found, and what is known of them.
@@ -54,10 +54,10 @@ pub struct Keys {
 }
 
 impl Keys {
-    /// Whether the keys go together.
+    /// Checks that the keys go together.
     ///
     /// # Errors
-    /// With the key that does not.
+    /// The key that does not.
     pub fn usable(&self) -> Result<()> {
         let wrong = |key, found: &str, expected: &str| Err(Error::usage(found, expected).setting(key));
         if self.reference.is_some() && self.excitation.is_some() {
@@ -114,7 +114,7 @@ impl Keys {
     }
 }
 
-/// What the impacts of a trace repeat, in one row.
+/// Number and rhythm of the impacts of a trace, in one row.
 fn summary(name: &str, found: &Impacts) -> Table {
     let needs = found.excitation.map_or("Impacts/cycles needs the excitation frequency. ", |_| "");
     table(

@@ -1,4 +1,4 @@
-//! What a campaign is computed from, by content.
+//! Digests of all inputs of a campaign.
 
 use super::kept::AnswerCache;
 use super::source::file_name;
@@ -17,15 +17,15 @@ pub fn inputs(campaign: &Campaign, mut all: Vec<PathBuf>, kept: &AnswerCache) ->
     }
     all.sort();
     all.dedup();
-    // The reader says what is wrong with a folder or a pipe.
+    // The reader reports what is wrong with a folder or a pipe.
     all.retain(|path| campaign.within().is_file(path));
     let own = listed(&Sha256::digest(campaign.text()).into(), &file_name(campaign.path()));
-    // One that was proposed is no file that could be checked.
+    // A proposed campaign is no file that could be checked: its line is a comment.
     let own = if campaign.is_file() { own } else { format!("# {own}") };
     let program = listed(&kept.program().unwrap_or_default(), concat!("vibro ", env!("CARGO_PKG_VERSION")));
     let of_file = |path: &Path| {
         let name = path.strip_prefix(campaign.folder()).unwrap_or(path);
-        // The record says why.
+        // The record gives the reason.
         let unread = |_| format!("# {} cannot be read\n", shown(name));
         kept.file(path).map_or_else(unread, |digest| listed(&digest, &name.to_string_lossy()))
     };

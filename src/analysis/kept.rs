@@ -1,5 +1,5 @@
-//! Answers and pictures that are kept for the next run: asked again is only what rests on other words, other
-//! files or another program.
+//! Answers and pictures kept for the next run. Only those are computed again whose keys, files or program
+//! changed.
 
 use crate::error::Result;
 use crate::read::{Digest, Folder};
@@ -13,19 +13,19 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError};
 use std::time::SystemTime;
 
-/// Length and time of a file.
+/// Size and modification time of a file.
 type Stamp = Option<(u64, SystemTime)>;
 
-/// Answers and pictures by the digest of all that they rest on.
+/// Answers and pictures by a digest of all their inputs.
 #[derive(Debug, Default)]
 pub struct AnswerCache {
-    /// Where files lie.
+    /// Access to files.
     folder: Folder,
-    /// Those of the last run.
+    /// Answers of the last run.
     old: BTreeMap<Digest, Vec<u8>>,
-    /// Those of this run.
+    /// Answers of this run.
     now: Mutex<BTreeMap<Digest, Vec<u8>>>,
-    /// Digests of files, and what they looked like before they were read for it.
+    /// Digests of files, with size and time from before they were read for it.
     files: Mutex<BTreeMap<PathBuf, (Digest, Stamp)>>,
 }
 
@@ -33,12 +33,13 @@ impl AnswerCache {
     /// The file of a folder of results in which they are kept.
     pub const FILE: &str = Output::KEPT;
 
-    /// Nothing is known of an earlier run.
+    /// A cache without an earlier run.
     pub fn none(folder: &Folder) -> AnswerCache {
         AnswerCache { folder: folder.clone(), ..AnswerCache::default() }
     }
 
-    /// What the last run of this very program kept in a folder of results; nothing where that cannot be read.
+    /// The cache that the last run of exactly this program left in a folder of results; empty if it cannot
+    /// be read.
     pub fn of(folder: &Folder) -> AnswerCache {
         let kept = AnswerCache::none(folder);
         let old = folder.own_file(AnswerCache::FILE).and_then(|bytes| {
@@ -50,16 +51,16 @@ impl AnswerCache {
         AnswerCache { old: old.unwrap_or_default(), ..kept }
     }
 
-    /// Whether the last run left this.
+    /// Whether the last run kept an answer for these inputs.
     pub fn is_old(&self, on: &Digest) -> bool {
         self.old.contains_key(on)
     }
 
-    /// What rests on this, as it was kept; else it is made, and kept unless one of the files changed
-    /// meanwhile.
+    /// The kept answer for the inputs `on`, else the one that `make` computes. That is kept unless one of
+    /// the files changed meanwhile.
     ///
     /// # Errors
-    /// Those of making it; they are not kept.
+    /// Those of `make`; they are not kept.
     pub fn or_make<T>(&self, on: Digest, files: &[PathBuf], make: impl FnOnce() -> Result<T>) -> Result<T>
     where
         T: Serialize + DeserializeOwned,
@@ -78,13 +79,13 @@ impl AnswerCache {
         Ok(made)
     }
 
-    /// What this run keeps for the next.
+    /// Content of the file for the next run.
     pub fn bytes(&self) -> Vec<u8> {
         let rest = packed(&(self.program(), &*locked(&self.now))).unwrap_or_default();
         [&digest([&rest])[..], &rest].concat()
     }
 
-    /// The digest of a file, which is read once.
+    /// The digest of a file, which is read once a run.
     ///
     /// # Errors
     /// If the file cannot be read.
@@ -98,14 +99,14 @@ impl AnswerCache {
         Ok(digest)
     }
 
-    /// The digest of the program that runs.
+    /// The digest of the running program.
     pub fn program(&self) -> Option<Digest> {
         static OWN: OnceLock<Option<Digest>> = OnceLock::new();
         *OWN.get_or_init(|| Folder::default().digest(&std::env::current_exe().ok()?).ok())
     }
 }
 
-/// The digest of several things, told apart by their lengths.
+/// The digest of several parts, with their lengths so that their borders count.
 pub fn digest<T: AsRef<[u8]>>(parts: impl IntoIterator<Item = T>) -> Digest {
     let mut hash = Sha256::new();
     for part in parts {
@@ -115,7 +116,7 @@ pub fn digest<T: AsRef<[u8]>>(parts: impl IntoIterator<Item = T>) -> Digest {
     hash.finalize().into()
 }
 
-/// A value as `MessagePack`, which holds numbers that are missing.
+/// A value as `MessagePack`, which can represent NaN.
 pub fn packed(value: &impl Serialize) -> Option<Vec<u8>> {
     let mut bytes = Vec::new();
     let mut packer = rmp_serde::Serializer::new(&mut bytes).with_bytes(BytesMode::ForceIterables);

@@ -1,4 +1,4 @@
-//! A kind of record: its keys, and what a campaign asks of them.
+//! A kind of record: its keys and its analysis.
 
 use super::answer::Answer;
 use super::job::Job;
@@ -10,25 +10,25 @@ use crate::report::files::Names;
 use serde::de::DeserializeOwned;
 use std::path::PathBuf;
 
-/// The keys of a kind of record.
+/// Keys of a kind of record, with its analysis.
 pub(crate) trait Analysis: Clone + DeserializeOwned {
-    /// Its section of a campaign: `impacts` for `[[impacts]]`.
+    /// Section of a campaign: `impacts` for `[[impacts]]`.
     const SECTION: &'static str;
-    /// Its heading in the report.
+    /// Heading in the report.
     const TITLE: &'static str;
-    /// Whether records lie in files: their tables then have the keys of how a file is read.
+    /// Whether each record is in a file of its table, which then also has the keys for reading a file.
     const OF_FILES: bool = true;
 
-    /// Names of the files that it writes.
+    /// Names of the files that the analysis writes.
     const FILES: Names;
 
-    /// Whether its tables are answered together, not each by itself.
+    /// Whether all tables together give one answer, instead of one each.
     const TOGETHER: bool = false;
-    /// Other sections that tables without a file name.
+    /// Other sections that a table without a file may refer to by name.
     const RESTS_ON: &'static [&'static str] = &[];
 
-    /// Whether a table can be, after those before it and before anything is measured. An error names the key
-    /// at fault as its setting.
+    /// Checks a table before anything is measured, given the tables before it. The error names the key at
+    /// fault as its setting.
     ///
     /// # Errors
     /// If keys contradict each other, are impossible, or one is missing.
@@ -39,12 +39,12 @@ pub(crate) trait Analysis: Clone + DeserializeOwned {
         entry.name.clone()
     }
 
-    /// Keys that name files beside that of the record.
+    /// A key that names another file beside that of the record.
     fn beside(&self) -> Option<(&'static str, &PathBuf)> {
         None
     }
 
-    /// Keys that name channels of its first file beside `channel`.
+    /// Keys besides `channel` that name channels of the first file.
     fn channels(&self) -> Vec<(&'static str, &String)> {
         Vec::new()
     }
@@ -57,7 +57,7 @@ pub(crate) trait Analysis: Clone + DeserializeOwned {
         named_in(campaign, entry)
     }
 
-    /// Those of its files that hold what it measures: a force may be that of several records.
+    /// Files of a table that hold what is measured, without force files: several records may share these.
     ///
     /// # Errors
     /// As [`Analysis::files`].
@@ -81,7 +81,7 @@ pub(crate) trait OfFile {
     fn measure(&self, source: &Source<'_>) -> Result<Answer>;
 }
 
-/// A row of the table of kinds.
+/// A row of the table of kinds: names and functions of one kind.
 #[derive(Clone, Copy)]
 pub(crate) struct AnalysisKind {
     pub(super) section: &'static str,
@@ -94,7 +94,7 @@ pub(crate) struct AnalysisKind {
     pub(super) run: fn(&mut Job<'_>) -> Result<()>,
 }
 
-/// The file of a table, and those beside it.
+/// The file of a table, and other files that it names.
 pub(super) fn named_in<A: Analysis>(campaign: &Campaign, entry: &Entry<A>) -> Result<Vec<PathBuf>> {
     let own = entry.file.as_ref().map(|file| ("file", file));
     let all = own.into_iter().chain(entry.keys.beside());

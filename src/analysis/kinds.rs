@@ -1,4 +1,4 @@
-//! All kinds of records, and what they say of a campaign together.
+//! All kinds of records, and what all of them check or list in a campaign.
 
 use super::answer::left_out;
 use super::entries::{check, entries};
@@ -30,18 +30,18 @@ pub(crate) fn sections() -> impl Iterator<Item = &'static str> {
     KINDS.iter().map(|kind| kind.section)
 }
 
-/// Reads a campaign and checks all its records. A table with a value that cannot be is left out:
+/// Reads a campaign and checks all its records. A table with an impossible value is left out: see
 /// [`Campaign::faults`].
 ///
 /// # Errors
-/// If it is not TOML, has an unknown key, or a value that cannot be outside of the tables of records; each
+/// If it is not TOML, has an unknown key, or an impossible value outside the tables of records; each error
 /// points at its line.
 pub fn open(path: impl AsRef<Path>) -> Result<Campaign> {
     open_in(&Folder::default(), path.as_ref())
 }
 
-/// As [`open`], of a disk or a memory; names may lead outside the folder of the campaign where `within`
-/// allows it.
+/// As [`open`], from a disk or from memory. File names may lead outside the folder of the campaign where
+/// `within` allows it.
 ///
 /// # Errors
 /// As [`open`].
@@ -49,7 +49,7 @@ pub fn open_in(within: &Folder, path: &Path) -> Result<Campaign> {
     checked(Campaign::from_path(within, path, &sections().collect::<Vec<_>>())?)
 }
 
-/// Checks the text of a campaign and all its records, as if it stood in a file.
+/// Checks the text of a campaign and all its records, as if it were in a file.
 ///
 /// # Errors
 /// As [`open`].
@@ -62,13 +62,13 @@ fn checked(campaign: Campaign) -> Result<Campaign> {
     Ok(campaign.without(faults))
 }
 
-/// The tables of a campaign that cannot be.
+/// Tables of a campaign with impossible values.
 pub(super) fn faults(campaign: &Campaign) -> Result<Vec<Fault>> {
     of_kinds(|kind| (kind.check)(campaign))
 }
 
-/// All that is wrong with the tables of a campaign: values that cannot be, files that do not exist or cannot
-/// be read, channels that a file does not have.
+/// All errors in the tables of a campaign: impossible values, missing or unreadable files, channels that a
+/// file does not have.
 ///
 /// # Errors
 /// As [`open`].
@@ -77,8 +77,8 @@ pub fn errors(campaign: &Campaign) -> Result<Vec<Error>> {
     Ok(of_tables.chain(of_kinds(|kind| (kind.channels)(campaign))?).collect())
 }
 
-/// The recordings that the tables of a campaign name, but for those of a table that names one that is outside
-/// its folder or does not exist.
+/// The recordings that the tables of a campaign name. A table is skipped if one of its files is outside the
+/// folder or does not exist.
 ///
 /// # Errors
 /// As [`open`].
@@ -86,7 +86,7 @@ pub fn files(campaign: &Campaign) -> Result<Vec<PathBuf>> {
     of_kinds(|kind| (kind.files)(campaign))
 }
 
-/// What all kinds of records have, one behind the other.
+/// Joins the lists of all kinds of records.
 pub(crate) fn of_kinds<T>(each: impl Fn(&AnalysisKind) -> Result<Vec<T>>) -> Result<Vec<T>> {
     Ok(KINDS.iter().map(each).collect::<Result<Vec<_>>>()?.into_iter().flatten().collect())
 }
@@ -109,7 +109,7 @@ fn channels_of<A: Analysis>(campaign: &Campaign) -> Result<Vec<Error>> {
     Ok(entries::<A>(campaign)?.iter().filter_map(|entry| channels_in(campaign, entry).err()).collect())
 }
 
-/// Looks for the channels that a table names in its file.
+/// Checks that the file of a table has the channels that the table names.
 fn channels_in<A: Analysis>(campaign: &Campaign, entry: &Entry<A>) -> Result<()> {
     let files = A::files(campaign, entry)?;
     let named = entry.channel.channel.iter().map(|name| ("channel", name));
@@ -118,10 +118,10 @@ fn channels_in<A: Analysis>(campaign: &Campaign, entry: &Entry<A>) -> Result<()>
         return Ok(());
     };
     let surveyed = entry.reading.reader()?.within(campaign.within()).survey(path);
-    // What is wrong in a line of the file is said of that line; what is stated is at fault otherwise.
+    // An error in a line of the file points there; otherwise the table is at fault.
     let at = |error: Error| if error.line().is_some() { error } else { campaign.fault(entry, error) };
     let (_, headers, _) = surveyed.map_err(at)?;
-    // Values that are numbered, as a step without a rate shows.
+    // Traces with a constant step but no sampling rate.
     if headers.iter().all(|h| h.kind == "trace" && h.rate.is_none() && h.dx.is_some()) {
         let error = Error::usage(format!("{} has no sampling rate", shown(path)), "rate = HZ");
         return Err(campaign.fault(entry, error.setting("rate").setting("file")));
@@ -133,7 +133,7 @@ fn channels_in<A: Analysis>(campaign: &Campaign, entry: &Entry<A>) -> Result<()>
 }
 
 fn files_of<A: Analysis>(campaign: &Campaign) -> Result<Vec<PathBuf>> {
-    // A table whose files are not there says so itself.
+    // A table with missing files reports that itself.
     let files = entries::<A>(campaign)?.into_iter().filter_map(|entry| A::files(campaign, &entry).ok());
     Ok(files.flatten().collect())
 }

@@ -39,7 +39,7 @@ pub struct SceneKeys {
     pub width: Option<f64>,
 }
 
-/// A scene that something drives, and what is known of it.
+/// A scene with its excitation, and a finding on missing keys of the rig.
 #[derive(Debug, Clone)]
 struct Driven {
     scene: Scene,
@@ -81,29 +81,29 @@ impl SceneKeys {
     }
 }
 
-/// The finding that keys of a rig are not given and were taken from the thesis' rig.
+/// Doubt that keys of a rig are missing and were taken from the thesis' rig.
 pub(super) fn rig_left_out(table: &str, keys: &[&str]) -> Option<Finding> {
     let found = Finding::doubt("rig-left-out").name("table", table).name("keys", keys.join(", "));
     (!keys.is_empty()).then_some(found)
 }
 
-/// Lines that are listed of each orbit.
+/// Number of spectral lines listed for each orbit.
 const LINES: u32 = 8;
 
-/// An orbit with what is computed from it.
+/// An orbit with quantities computed from it.
 #[derive(Serialize)]
 struct JudgedOrbit<'a> {
     #[serde(flatten)]
     orbit: &'a Orbit,
-    /// Amplitudes of both masses at the first multiples of 1/T.
+    /// Amplitudes in m of both masses at the first multiples of 1/T, with T the period.
     lines: Vec<[f64; 2]>,
-    /// What the uncertainty of the gap leaves of it, where that is stated.
+    /// Whether grazing is farther away than the uncertainty of the gap, where that is stated.
     robust: Option<bool>,
     near_grazing: Option<bool>,
 }
 
 impl JudgedOrbit<'_> {
-    /// `gap_std` in m.
+    /// `gap_std` is the standard uncertainty of the gap in m.
     fn of(orbit: &Orbit, gap_std: Option<f64>) -> JudgedOrbit<'_> {
         let v = &orbit.validity;
         JudgedOrbit {
@@ -115,7 +115,7 @@ impl JudgedOrbit<'_> {
     }
 }
 
-/// Checks an uncertainty of the gap.
+/// Checks a standard uncertainty of the gap in m.
 fn check_gap_std(gap_std: Option<f64>) -> Result<()> {
     match gap_std {
         Some(v) if !(v.is_finite() && v >= 0.0) => {

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-/// Files that a sentence names one by one.
+/// Largest number of files that a sentence names one by one.
 const SHOWN: usize = 5;
 
 /// Names of a few files, and how many more there are.
@@ -21,6 +21,6 @@ pub(crate) struct NamedFile {
     pub section: &'static str,
     /// Name of the table.
     pub table: String,
-    /// What the table states of the record: channels, and how the file is read.
+    /// Statements of the table on the record: channels, and settings for reading.
     pub record: String,
 }

@@ -14,12 +14,12 @@ use serde_json::json;
 use std::fmt::Write as _;
 use std::ops::Range;
 
-/// What one kind of record adds to the report: its heading, and which tables, figures, long tables and
-/// findings.
+/// Part of the report for one kind of record: its heading, and the ranges of its tables, figures, long
+/// tables and findings.
 pub(super) type Part = (&'static str, [Range<usize>; 4]);
 
-/// Lays out all that is shown, with the pictures of its figures: answers first, then kind by kind, then where
-/// they come from.
+/// Lays out the report with the pictures of its figures: answers first, then each kind of record, then the
+/// origin of the numbers.
 pub fn page(
     job: &Job<'_>,
     version: &str,
@@ -90,11 +90,11 @@ fn constant(of: Parameter, value: f64) -> String {
     format!("{} {}", json!(value), Some(of.unit()).filter(|unit| *unit != "1").unwrap_or_default())
 }
 
-/// What stands above the sliders.
+/// Text above the sliders.
 const WHAT_IF: &str = "Curves: motions with one impact a cycle and without impacts, as the model has them for these values. A contact stiffness is taken into account to first \
     order, and curves end where the contact lasts longer than 2.5 % of a cycle.";
 
-/// Most findings that the page begins with.
+/// Largest number of findings at the head of the page.
 const MOST: usize = 8;
 
 fn history(steps: &[Step]) -> String {
@@ -107,7 +107,7 @@ fn history(steps: &[Step]) -> String {
     text
 }
 
-/// An argument as it is, but a decimal number to no more than twelve digits.
+/// An argument as it is; a decimal number with at most twelve digits.
 fn brief(argument: &str) -> String {
     match argument.parse() {
         Ok(number) if argument.contains('.') => shortest(number),

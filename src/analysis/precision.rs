@@ -83,7 +83,7 @@ pub fn failures(map: &FailureMap) -> Table {
     )
 }
 
-/// How often each method of a family came out how.
+/// Number of outcomes of each kind, for each method of a family.
 pub fn borders(family: Family, map: &FailureMap) -> Table {
     let columns: Vec<_> = std::iter::once(("method", "")).chain(OUTCOMES.map(|o| (o.0.name(), ""))).collect();
     let mut table = headed(format!("Borders of {}", family.name()), &columns);

@@ -1,16 +1,16 @@
-//! How far a job is.
+//! Progress of a job.
 
-/// Told how far a job is.
+/// Receiver of the progress of a job.
 pub trait Progress: Sync {
     /// A part with this many steps begins.
     fn start(&self, what: &str, steps: usize);
     /// One step is done.
     fn step(&self);
-    /// So many of all steps are done.
+    /// `done` of `all` steps are done.
     fn at(&self, done: usize, all: usize);
 }
 
-/// Nobody is told.
+/// Ignores the progress.
 impl Progress for () {
     fn start(&self, _: &str, _: usize) {}
     fn step(&self) {}

@@ -44,10 +44,10 @@ pub struct Keys {
 }
 
 impl Keys {
-    /// Whether the keys go together, beside a file or without one.
+    /// Checks that the keys go together, with or without a file.
     ///
     /// # Errors
-    /// With the key that does not.
+    /// The key that does not.
     pub fn usable(&self, file: bool) -> Result<()> {
         let times = [
             ("time_to_peak", self.time_to_peak.is_some()),
@@ -75,10 +75,10 @@ impl Keys {
         Instrument::stated(self.low_pass.map(LowPass::corner), self.order)
     }
 
-    /// The contact of two times.
+    /// The contact from two times.
     ///
     /// # Errors
-    /// If the times cannot be.
+    /// If the times are impossible.
     pub fn times(&self, name: &str) -> Result<Answer> {
         let (peak, duration) = self.time_to_peak.zip(self.duration).unwrap_or((f64::NAN, f64::NAN));
         shown(name, &two_times(peak, duration, self.std, self.mass)?)
@@ -120,7 +120,7 @@ fn shown(name: &str, found: &PulseResult) -> Result<Answer> {
     Ok(answer)
 }
 
-/// What a pulse says, one row a quantity, in SI units.
+/// Quantities of a contact from its pulse, one column each, in SI units.
 fn contact(title: &str, result: &PulseResult) -> Table {
     table(
         titled("Contact", title),

@@ -8,32 +8,32 @@ use glob::{MatchOptions, Pattern};
 use std::collections::BTreeMap;
 use std::path::{Component, Path, PathBuf};
 
-/// Levels below a folder that are looked into.
+/// Levels of subfolders that are searched.
 const LEVELS: usize = 2;
 
-/// Files that nobody takes for recordings.
+/// Endings of files that are no recordings.
 const NO_RECORDINGS: &str =
     "toml json md html pdf png jpg jpeg svg gif doc docx ppt pptx py m rs exe bak log ini tdms_index";
 
-/// What lies in a folder and up to two levels below it.
+/// Contents of a folder and of two levels below it.
 #[derive(Debug, Default)]
 pub struct Recordings {
-    /// Files that may be recordings, numbers in names by value.
+    /// Files that may be recordings, sorted by the numbers in their names.
     pub files: Vec<PathBuf>,
-    /// Files that are none, by their endings.
+    /// Files that are no recordings, by their endings.
     pub others: Vec<PathBuf>,
-    /// What could not be looked at, and why.
+    /// Paths that could not be read, with the reason.
     pub skipped: Vec<(PathBuf, String)>,
 }
 
-/// The recordings of a folder. Hidden files and results are passed over.
+/// The recordings of a folder. Hidden files and results are skipped.
 ///
 /// # Errors
 /// If the folder cannot be listed.
 pub fn recordings(folder: &Folder) -> Result<Recordings> {
     let Walk { mut files, skipped } = folder.walk(folder.root(), LEVELS)?;
     let top = plain(folder.root());
-    // Results of versions that kept no manifest are all that lies in their folder.
+    // Versions without a manifest had a folder for results alone: all files in it are results.
     let has = |path: &Path, name: &str| folder.is_file(&path.join(name));
     let results =
         |path: &Path| path != top && has(path, RESULTS) && has(path, REPORT) && !has(path, Manifest::FILE);
@@ -50,13 +50,13 @@ pub fn recordings(folder: &Folder) -> Result<Recordings> {
     Ok(Recordings { files, others, skipped })
 }
 
-/// Puts files in the order of the numbers in their names: 2 before 10, and 11.15 before 11.2.
+/// Sorts files by the numbers in their names: 2 before 10, and 11.15 before 11.2.
 pub fn in_order(files: &mut [PathBuf]) {
     files.sort_by(|a, b| natord::compare(&with_decimals(a), &with_decimals(b)));
 }
 
-/// A path in which all numbers have decimals of one length, so that they are in order as whole numbers are;
-/// the ending is no decimal, nor are parts of a date or a version.
+/// A path with decimals padded to one length, so that its numbers sort like whole numbers. The ending is no
+/// decimal, nor are parts of a date or a version.
 fn with_decimals(path: &Path) -> String {
     let text = path.to_string_lossy();
     let dot = text.rfind('.').filter(|dot| !text[*dot..].contains(['/', '\\'])).unwrap_or(text.len());
@@ -75,19 +75,19 @@ fn with_decimals(path: &Path) -> String {
     [&out, rest, ending].concat()
 }
 
-/// Decimals that a number in a name has at most.
+/// Largest number of decimals in a name.
 const DECIMALS: usize = 12;
 
-/// Whether a name is the pattern of files in a folder, not that of one.
+/// Whether a name is a pattern of files in a folder, and not the name of a file there.
 pub fn is_pattern(folder: &Folder, name: &Path) -> bool {
     name.to_string_lossy().contains(['*', '?']) && !folder.exists(&folder.root().join(name))
 }
 
-/// The names of files in a folder that a name or a pattern with `*`, `?` or `[…]` means, numbers in them by
-/// value.
+/// Names of files in a folder that match a name or a pattern with `*`, `?` or `[…]`, sorted by their
+/// numbers.
 ///
 /// # Errors
-/// If it is no pattern, no file has such a name, or one that has must not be read.
+/// If the pattern is invalid, no file matches, or a matching file must not be read.
 pub fn matching(folder: &Folder, name: &Path) -> Result<Vec<PathBuf>> {
     if folder.exists(&folder.root().join(name)) {
         return Ok(vec![name.to_owned()]);
@@ -122,12 +122,12 @@ pub fn matching(folder: &Folder, name: &Path) -> Result<Vec<PathBuf>> {
     Ok(files)
 }
 
-/// A star means no more than a part of one name.
+/// A star matches only within one part of a path.
 pub(super) const WHOLE_NAMES: MatchOptions = MatchOptions {
     case_sensitive: true,
     require_literal_separator: true,
     require_literal_leading_dot: false,
 };
 
-/// Levels into which `**` reaches.
+/// Levels of subfolders that `**` reaches.
 const DEEPEST: usize = 16;

@@ -1,4 +1,4 @@
-//! A campaign from its first record to its report.
+//! Runs a campaign, from its first record to its report.
 
 use super::answer::{Answer, unwritten};
 use super::inputs::inputs;
@@ -18,13 +18,13 @@ use crate::record::Finding;
 use crate::report::words::{Voice, put};
 use crate::report::{Output, Picture, files};
 
-/// How many tables, figures, long tables and findings an answer has.
+/// Numbers of tables, figures, long tables and findings in an answer.
 fn size(answer: &Answer) -> [usize; 4] {
     [answer.tables.len(), answer.figures.len(), answer.details.len(), answer.findings.len()]
 }
 
-/// Measures the records of a campaign without a report; where none answers, the finding that says why, if one
-/// does.
+/// Measures the records of a campaign without a report. Where none answers, returns the finding with the
+/// reason, if there is one.
 ///
 /// # Errors
 /// As [`run`].
@@ -44,7 +44,7 @@ pub fn answers(
     Ok(Err(findings.find(|finding| finding.fact("why").is_some())))
 }
 
-/// What a campaign gave.
+/// Outcome of a campaign.
 #[derive(Debug)]
 pub struct CampaignOutcome {
     /// All answers.
@@ -53,22 +53,22 @@ pub struct CampaignOutcome {
     pub files: Vec<String>,
     /// Whether any record was answered.
     pub answered: bool,
-    /// How many answers are those of the last run, because all that they rest on is the same.
+    /// Number of answers kept from the last run, because all their inputs are the same.
     pub again: usize,
 }
 
-/// Does all that a campaign asks for, and writes it to `output`.
+/// Measures all records of a campaign and writes results and report to `output`.
 ///
 /// # Errors
 /// If no record was answered and one of them could not be read; if a file cannot be found or written; if a
-/// file that is not vibro's stands in the way.
+/// file that vibro did not write is in the way.
 pub fn run(
     campaign: &Campaign,
     kept: &AnswerCache,
     output: &mut Output,
     progress: &dyn Progress,
 ) -> Result<CampaignOutcome> {
-    // What an earlier run has read and kept is an input, too.
+    // A file is an input even where its answer is kept from an earlier run: it is not replaced.
     let files = files_of(campaign)?;
     for path in &files {
         campaign.within().reads(path);
@@ -78,7 +78,7 @@ pub fn run(
         ([RESULTS, REPORT, INPUTS, AnswerCache::FILE], KINDS.iter().filter(asked).collect::<Vec<_>>());
     output.expect(|name| own.contains(&name) || kinds.iter().any(|kind| kind.names.has(name)))?;
     let mut job = Job::new(campaign, kept, KINDS, progress);
-    // Before anything is read: what changes meanwhile is for the next run.
+    // Digests are taken before files are read: a change meanwhile is for the next run.
     let inputs = inputs(campaign, files, kept);
     let version = env!("CARGO_PKG_VERSION");
     job.put("campaign", &job.title.clone())?;

@@ -1,4 +1,4 @@
-//! Where a record comes from: a table of a campaign, or a command line.
+//! Source of a record: a table of a campaign, or a command line.
 
 use super::kind::Analysis;
 use super::progress::Progress;
@@ -8,35 +8,35 @@ use crate::read::{Folder, Reader, Recording};
 use crate::record::{Trace, shown};
 use std::path::{Path, PathBuf};
 
-/// A file, how it is read, and who is told of the progress.
+/// A file, its settings for reading, and the receiver of progress.
 #[derive(Clone, Copy)]
 pub struct Source<'a> {
     /// Name of the record for people.
     pub name: &'a str,
     /// The file.
     pub path: &'a Path,
-    /// Which record of the file.
+    /// Channel of the file and its calibration.
     pub channel: &'a Channel,
-    /// What the file does not say.
+    /// Settings for reading that the file does not state.
     pub reading: &'a Reading,
-    /// Where files lie.
+    /// Access to the files.
     pub folder: &'a Folder,
-    /// Path of a further file that a key names.
+    /// Path of another file that a key names.
     pub beside: &'a dyn Fn(&'static str, &Path) -> Result<PathBuf>,
-    /// Told how many samples are done, of how many.
+    /// Receives the number of samples done, and of all.
     pub progress: &'a dyn Progress,
 }
 
 impl Source<'_> {
-    /// A reader that knows what is stated.
+    /// A reader with the stated settings.
     ///
     /// # Errors
-    /// If what is stated cannot be.
+    /// If a stated setting is impossible.
     pub fn reader(&self) -> Result<Reader> {
         Ok(self.reading.reader()?.within(self.folder))
     }
 
-    /// The recording, in which a base band gives the sampling rate.
+    /// The recording; a stated base band sets the sampling rate.
     ///
     /// # Errors
     /// If the file cannot be read.
@@ -44,8 +44,8 @@ impl Source<'_> {
         self.reader()?.rate_of_base_band().from_path(self.path)
     }
 
-    /// As [`Source::recording`], with values at least of the channel that is meant and of those `also` named,
-    /// of which what is made takes `beside` times their memory.
+    /// As [`Source::recording`], with values of at least the chosen channel and the channel `also`. The
+    /// analysis takes `beside` times the memory of these values in addition.
     ///
     /// # Errors
     /// If the file cannot be read, or would take more memory than is allowed.
@@ -55,7 +55,7 @@ impl Source<'_> {
         self.reader()?.rate_of_base_band().beside(beside).only(only).from_path(self.path)
     }
 
-    /// The trace that is meant of a recording.
+    /// The chosen trace of a recording.
     ///
     /// # Errors
     /// If there is no such trace.
@@ -63,10 +63,10 @@ impl Source<'_> {
         recording.trace(self.channel.channel.as_deref(), self.channel.calibration)
     }
 
-    /// Path of a further file, where a key names one.
+    /// Path of another file, if a key names one.
     ///
     /// # Errors
-    /// If it lies where none may lie, or does not exist.
+    /// If it is outside the allowed folder or does not exist.
     pub fn further(&self, key: &'static str, file: Option<&PathBuf>) -> Result<Option<PathBuf>> {
         file.map(|file| (self.beside)(key, file)).transpose()
     }
@@ -77,7 +77,7 @@ pub fn file_name(path: &Path) -> String {
     shown(path.file_name().map_or(path, Path::new))
 }
 
-/// Name of a table for people: that stated, else the file's, else that of its section with its number.
+/// Name of a table for people: stated, else of its file, else of its section with its number.
 pub(crate) fn name_of<K: Analysis>(entry: &Entry<K>) -> String {
     let own = K::stated_name(entry).or_else(|| entry.file.as_deref().map(file_name));
     own.unwrap_or_else(|| format!("{} {}", K::SECTION, entry.number))

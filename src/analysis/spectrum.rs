@@ -1,4 +1,5 @@
-//! Spectra of time records, and the function of two channels: `[[spectrum]]`, `vibro spectrum`.
+//! Spectra of time records, and frequency response functions of two channels: `[[spectrum]]`, `vibro
+//! spectrum`.
 
 pub mod figures;
 
@@ -82,7 +83,7 @@ impl Keys {
     /// The options of the estimator.
     ///
     /// # Errors
-    /// If keys contradict each other or cannot be.
+    /// If keys contradict each other or a value is impossible.
     pub fn options(&self) -> Result<SpectralOptions> {
         if self.estimator.is_some() && self.reference.is_none() {
             let expected = "the channel of the excitation as reference";
@@ -93,7 +94,7 @@ impl Keys {
         Ok(options)
     }
 
-    /// The options of the estimator, contradictions included.
+    /// The options of the estimator, without a check for contradictions.
     pub(crate) fn unchecked(&self) -> SpectralOptions {
         SpectralOptions {
             method: self.method,
@@ -114,7 +115,7 @@ impl Keys {
         }
     }
 
-    /// The lines of a record.
+    /// Spectral lines of a record, or of the spectrum that a file stores.
     ///
     /// # Errors
     /// If the file cannot be read, or the record allows no answer.
@@ -122,7 +123,7 @@ impl Keys {
         let options = self.options()?;
         let mut traces = match self.traces(source) {
             Ok(traces) => traces,
-            // A base band is that of the lines then.
+            // A stated base band is then that of the stored lines, and gives no sampling rate.
             Err(why) => match source.reader()?.survey(source.path) {
                 Ok((_, headers, _)) if is_of_spectra(source, &headers) => return of_file(source, &options),
                 Err(other) if source.reading.base_band.is_some() => return Err(other),
@@ -135,7 +136,7 @@ impl Keys {
     }
 }
 
-/// The lines of a spectrum that the file holds.
+/// Spectral lines that the file itself stores.
 fn of_file(source: &Source<'_>, options: &SpectralOptions) -> Result<SpectralResult> {
     if let Some(factor) = source.channel.calibration {
         let found = format!("a calibration of {factor} of a spectrum that the file holds");
@@ -148,7 +149,7 @@ fn of_file(source: &Source<'_>, options: &SpectralOptions) -> Result<SpectralRes
     Ok(found)
 }
 
-/// Whether a file holds spectra and no traces, or a channel by its name is a spectrum.
+/// Whether a file stores spectra and no traces, or the named channel is a spectrum.
 fn is_of_spectra(source: &Source<'_>, headers: &[Header]) -> bool {
     let of = |kind| headers.iter().filter(move |header| header.kind == kind);
     if of("trace").next().is_none() {
@@ -160,7 +161,7 @@ fn is_of_spectra(source: &Source<'_>, headers: &[Header]) -> bool {
 }
 
 impl Keys {
-    /// The channel of a record, behind its reference where there is one; that may lie in a file of its own.
+    /// Traces of a record: first its reference, if any, which may lie in another file, then the channel.
     ///
     /// # Errors
     /// If a file cannot be read, or two differ in rate, length or begin.
@@ -183,7 +184,7 @@ impl Keys {
     }
 }
 
-/// A reference that lies in a file of its own: `FILE#CHANNEL`.
+/// File and channel of a reference in another file, `FILE#CHANNEL`.
 fn in_other_file(reference: &str) -> Option<(&Path, &str)> {
     let (file, channel) = reference.rsplit_once('#')?;
     let file = Path::new(file);
@@ -206,7 +207,7 @@ pub(super) fn with_reference<A: Analysis>(
     Ok(files)
 }
 
-/// The reference, where it is a channel of the file itself.
+/// The reference, if it is a channel of the record's own file.
 pub(super) fn own_reference(reference: Option<&String>) -> Vec<(&'static str, &String)> {
     let own = reference.filter(|reference| in_other_file(reference).is_none());
     own.into_iter().map(|name| ("reference", name)).collect()
@@ -230,14 +231,14 @@ impl OfFile for Keys {
     }
 }
 
-/// Largest peaks of a record that a table shows.
+/// Number of largest peaks in the table of a record.
 const SHOWN: usize = 8;
 
 /// The largest peaks of a record, one row a peak.
 fn peaks(name: &str, found: &SpectralResult) -> Table {
     let of = |values: &[f64], k: usize| values.get(k).copied().filter(|v| v.is_finite());
     let response = found.response.as_ref();
-    // A peak lies anywhere between the middles of its line and those beside it.
+    // A peak lies anywhere within half a line spacing of its line: rectangular, spacing/√12.
     let line = found.frequency.windows(2).next().map_or(f64::NAN, |w| (w[1] - w[0]) / f64::sqrt(12.0));
     let peaks = table(
         "Largest peaks of spectra",
@@ -261,10 +262,10 @@ fn peaks(name: &str, found: &SpectralResult) -> Table {
     }
 }
 
-/// By how much a sine half-way between two lines reads low.
+/// Largest error of a sine's amplitude, half-way between two lines, by window.
 const LOW: [(&str, &str); 3] = [("hann", "15 %"), ("rectangular", "36 %"), ("hamming", "18 %")];
 
-/// How the lines of a record were taken.
+/// Settings with which the lines were computed.
 fn settings_table(found: &SpectralResult) -> Table {
     table(
         "Settings of the spectra",
@@ -319,7 +320,8 @@ impl Analysis for Keys {
     fn run(entries: &[Entry<Keys>], job: &mut Job<'_>) -> Result<()> {
         job.each("spectra", entries, |entry, source| {
             let mut answer = entry.keys.measure(source)?;
-            // Beside the functions of [[frf]], which are numbered, all are spectra.
+            // In a campaign, file names with `frf` and a number belong to [[frf]]: here all are named
+            // `spectrum`.
             let names = answer.figures.iter_mut().map(|f| &mut f.0);
             for name in names.chain(answer.files.iter_mut().map(|f| &mut f.0)) {
                 *name = name.replacen("frf", "spectrum", 1);

@@ -30,7 +30,7 @@ use rayon::prelude::*;
 use serde::Deserialize;
 use std::path::PathBuf;
 
-/// A sweep of one mass: its files, and what the analyser stored in them.
+/// A sweep of one mass: its files, and the settings with which the analyser stored them.
 #[derive(Debug, Clone, Default, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Keys {
@@ -69,7 +69,7 @@ pub struct Keys {
     pub window: Option<String>,
     /// `peak` or `rms`. Default peak, with a warning.
     pub scaling: Option<Scaling>,
-    /// How often the analyser integrated before it stored. Default once for a displacement.
+    /// Number of integrations by the analyser before it stored. Default 1 for a displacement.
     pub analyser_integrated: Option<u8>,
 }
 
@@ -131,7 +131,7 @@ impl Keys {
         self.checked()
     }
 
-    /// A sweep for each response that is taken from the same traces.
+    /// One sweep for each response in the same traces.
     fn each(&self) -> Vec<Keys> {
         if self.traces.is_empty() || self.force.len() > 1 || self.response.len() < 2 {
             return vec![self.clone()];
@@ -152,10 +152,10 @@ impl Keys {
         self.reader().map(drop)
     }
 
-    /// How the files of this sweep are to be read.
+    /// The reader for the files of this sweep.
     ///
     /// # Errors
-    /// If what is stated of them cannot be.
+    /// If a stated value is impossible.
     pub fn reader(&self) -> Result<SweepReader> {
         let quantity = self.quantity.as_deref().map(|text| {
             Quantity::from_name(text).filter(|q| stored::MOTION.contains(q)).ok_or_else(|| {
@@ -189,7 +189,7 @@ impl Keys {
 /// If there is no such sweep, or its list cannot be read.
 pub fn named(campaign: &Campaign, name: Option<&str>) -> Result<Listed> {
     let all = each(entries(campaign)?);
-    // One that cannot be says why.
+    // A faulty table gives its own error.
     let meant = |fault: &Fault| name.map_or(all.is_empty(), |name| fault.name == name);
     if let Some(fault) = check::<Keys>(campaign)?.into_iter().find(meant) {
         return Err(fault.error);
@@ -232,7 +232,7 @@ fn each(entries: Vec<Entry<Keys>>) -> Vec<Entry<Keys>> {
     entries.into_iter().flat_map(one).collect()
 }
 
-/// Reads all sweeps of a campaign and takes their responses to displacement, with the resonances named.
+/// Responses of all sweeps of a campaign, converted to displacement, with named resonances.
 ///
 /// # Errors
 /// If a list or a spectrum cannot be read, or an excitation cannot be found.
@@ -248,7 +248,7 @@ pub fn responses(campaign: &Campaign, progress: &dyn Progress) -> Result<Vec<Res
 
 type SweptResponse = (Sweep, Response, ResponseOptions);
 
-/// The sweeps of these tables by their names.
+/// Sweep and response of each of these tables, with the name of the sweep.
 fn read_responses(
     campaign: &Campaign,
     entries: Vec<Entry<Keys>>,
@@ -267,7 +267,7 @@ fn read_responses(
     entries.par_iter().map(|entry| (entry.keys.name.clone(), one(entry))).collect()
 }
 
-/// What is known of the responses, each about its sweep.
+/// Findings on responses, each about its sweep.
 fn findings_of(responses: &[Response]) -> impl Iterator<Item = About> {
     responses.iter().flat_map(|r| r.findings.iter().map(|f| (r.name.clone(), f.clone())))
 }
@@ -303,7 +303,7 @@ impl Analysis for Keys {
     }
 
     fn channels(&self) -> Vec<(&'static str, &String)> {
-        // Without traces these are files.
+        // Without traces these keys name files.
         let of_traces = [("force", &self.force), ("response", &self.response)];
         let all = of_traces.into_iter().flat_map(|(key, names)| names.iter().map(move |name| (key, name)));
         all.filter(|_| !self.traces.is_empty()).collect()

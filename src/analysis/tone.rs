@@ -1,4 +1,4 @@
-//! Records that are one sine.
+//! The strongest sine of a record.
 
 use crate::measure::tones::sine;
 use crate::record::Trace;
@@ -8,12 +8,12 @@ use crate::record::Trace;
 pub(crate) struct Strongest {
     /// Its frequency in Hz.
     pub frequency: f64,
-    /// Its part of the power of the record without its mean, 0 to 1.
+    /// Its share of the power of the record without its mean, 0 to 1.
     pub share: f64,
 }
 
 impl Strongest {
-    /// That of a trace; `None` where no line stands out of the noise.
+    /// The strongest sine of a trace; `None` where no line is above the noise.
     pub fn of(trace: &Trace) -> Option<Strongest> {
         let tone = sine(trace, None).ok()?.tones.into_iter().next()?;
         let n = trace.values.len() as f64;

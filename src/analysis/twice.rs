@@ -11,7 +11,7 @@ use crate::record::Finding;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
-/// Tables that name files of another table, one finding for two tables.
+/// Cautions on files that two tables name, one for each two tables.
 ///
 /// # Errors
 /// As [`super::open`].
@@ -33,8 +33,8 @@ pub(crate) fn twice(campaign: &Campaign) -> Result<Vec<Finding>> {
     Ok(pairs.into_iter().map(finding).collect())
 }
 
-/// Whether two tables of one file count one record twice: it is the same of the same kind, or a step of a
-/// sweep and a record of its own.
+/// Whether two tables of one file count one record twice. Either both have the same kind and the same
+/// record, or only one of them takes the file as a step of a sweep.
 fn is_again(one: &NamedFile, first: &NamedFile) -> bool {
     let steps = [first, one].map(|named| named.section == sweep::Keys::SECTION);
     steps[0] != steps[1] || one.section == first.section && one.record == first.record

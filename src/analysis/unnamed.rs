@@ -13,7 +13,7 @@ use glob::Pattern;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-/// Those of the files that the campaign names in no table and in no comment.
+/// The files of `all` that no table and no comment of the campaign names.
 ///
 /// # Errors
 /// As [`files`].
@@ -22,7 +22,7 @@ pub fn unnamed(campaign: &Campaign, all: &[PathBuf]) -> Result<Vec<PathBuf>> {
         files(campaign)?.iter().map(|path| plain(campaign.within().file(path))).collect();
     let folder = plain(campaign.folder());
     let ends = |c: char| !c.is_alphanumeric() && !['_', '-', '.', '/', '\\'].contains(&c);
-    // A table that is still a comment may name a pattern.
+    // A table that is commented out may name a pattern.
     let commented = campaign.text().lines().filter_map(|line| {
         let key = line.trim_start().strip_prefix('#')?.trim_start().strip_prefix("file")?;
         key.trim_start().strip_prefix('=')?.split('"').nth(1)
@@ -33,7 +33,7 @@ pub fn unnamed(campaign: &Campaign, all: &[PathBuf]) -> Result<Vec<PathBuf>> {
         let in_words = || {
             campaign.text().match_indices(&name).any(|(at, _)| {
                 let (before, behind) = (&campaign.text()[..at], &campaign.text()[at + name.len()..]);
-                // A full stop ends a sentence, too, and a part of a file stands behind it.
+                // A full stop may end a sentence. A slash begins the name of a part of the file.
                 let behind = behind
                     .strip_prefix('.')
                     .filter(|b| !b.starts_with(char::is_alphanumeric))
@@ -51,8 +51,8 @@ pub fn unnamed(campaign: &Campaign, all: &[PathBuf]) -> Result<Vec<PathBuf>> {
     Ok(all.iter().filter(new).cloned().collect())
 }
 
-/// What is said of files in the folder of a campaign that it does not name, and of what could not be looked
-/// at, where it is the folder's own.
+/// Notes on files that a campaign does not name, and on files that could not be read. Only the folder's own
+/// campaign gets them.
 ///
 /// # Errors
 /// As [`files`].
@@ -66,7 +66,7 @@ pub fn beside(campaign: &Campaign) -> Result<Vec<Finding>> {
     let found = Finding::note("files-not-named").count("n", new.len());
     let found = (!new.is_empty()).then(|| found.name("files", few(&names)));
     let skipped = seen.skipped.into_iter().map(|(path, why)| (file_name(&path), why));
-    // One that the campaign names says itself why it is not used.
+    // A file that the campaign names has a finding of its own.
     let skipped = skipped.filter(|(name, _)| !campaign.text().contains(name));
     let skipped = skipped.map(|(name, why)| Finding::note("file-not-used").about(name).name("why", why));
     Ok(found.into_iter().chain(skipped).collect())

@@ -17,9 +17,9 @@ pub struct Entry<K> {
     pub name: Option<String>,
     /// File.
     pub file: Option<PathBuf>,
-    /// Which record of the file.
+    /// Channel of the file and its calibration.
     pub channel: Channel,
-    /// What the file does not say.
+    /// Settings for reading that the file does not state.
     pub reading: Reading,
     /// Keys of the analysis.
     pub keys: K,
@@ -29,7 +29,7 @@ pub struct Entry<K> {
     places: Vec<(String, Range<usize>)>,
 }
 
-/// What names a record.
+/// Keys that name a record.
 #[derive(Debug, Default, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 struct Named {
@@ -40,12 +40,12 @@ struct Named {
 const NAMED: [&str; 2] = ["name", "file"];
 
 impl<K> Entry<K> {
-    /// The table and its file, which tell it from all others of the campaign.
+    /// Position of the table and its file, which identify it in the campaign.
     pub fn place(&self) -> (usize, Option<PathBuf>) {
         (self.head.start, self.file.clone())
     }
 
-    /// The first key that says how a file is read.
+    /// The first stated key about the reading of a file.
     pub fn reads(&self) -> Option<&'static str> {
         let mut keys = Reading::KEYS.into_iter().chain(Channel::KEYS);
         keys.find(|key| self.places.iter().any(|(name, _)| name == key))
@@ -53,8 +53,8 @@ impl<K> Entry<K> {
 }
 
 impl Campaign {
-    /// The tables of a section in their order, each with the error of a number that lies outside of its
-    /// range; those of a record in a file have the keys of `Reading` and `Channel`, too.
+    /// The tables of a section in their order, each with the error of a number outside its range. Tables of
+    /// records in files also have the keys of `Reading` and `Channel`.
     ///
     /// # Errors
     /// If one has an unknown key, or a value of the wrong kind.
@@ -78,10 +78,10 @@ impl Campaign {
         (1..).zip(all).map(one).collect()
     }
 
-    /// The tables of a section as they are written: keys and values.
+    /// The tables of a section as written in the file: keys and values.
     ///
     /// # Errors
-    /// If the campaign is no TOML.
+    /// If the campaign is not TOML.
     pub(crate) fn written(&self, section: &str) -> Result<Vec<Vec<(String, String)>>> {
         let Some(DeValue::Array(all)) = self.table()?.remove(section).map(Spanned::into_inner) else {
             return Ok(Vec::new());
@@ -106,7 +106,7 @@ impl Campaign {
             rows.iter().map(|(k, v)| (k.get_ref().to_string(), k.span().start..v.span().end)).collect();
         let beside: Vec<&str> =
             if of_a_file { [&NAMED[..], &Channel::KEYS, &Reading::KEYS].concat() } else { Vec::new() };
-        // A value of the wrong kind is complained of first.
+        // An error about the kind of a value is reported before one about its range.
         let in_range = rows.iter().try_for_each(|(key, value)| {
             let span = || key.span().start..value.span().end;
             range::all_in_range(key.get_ref(), value.get_ref()).map_err(|e| self.pointed(e, span()))
@@ -124,13 +124,13 @@ impl Campaign {
         Ok((Entry { name, file, channel, reading, keys, number, head, places }, in_range))
     }
 
-    /// What a table states, word by word.
+    /// The text of all keys and values of a table.
     pub(crate) fn stated_in<K>(&self, entry: &Entry<K>) -> String {
         let words = entry.places.iter().map(|(_, span)| &self.text[span.clone()]);
         words.collect::<Vec<&str>>().join("\n")
     }
 
-    /// An error about a table: it points at the line of the key that the error names as its setting, else at
+    /// An error about a table. It points at the line of the key that the error has as its setting, else at
     /// the table.
     pub(crate) fn fault<K>(&self, entry: &Entry<K>, error: Error) -> Error {
         let place = |key| entry.places.iter().find(|(name, _)| name == key);
@@ -138,7 +138,7 @@ impl Campaign {
         self.pointed(error, span)
     }
 
-    /// The error with its place in the file.
+    /// The error with its line in the file.
     pub(super) fn pointed(&self, error: Error, span: Range<usize>) -> Error {
         error.named_in(self.path()).excerpt(&self.text, span)
     }

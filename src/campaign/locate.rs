@@ -1,10 +1,10 @@
-//! The text of a campaign: what is meant by words of the field, and where its keys stand.
+//! The text of a campaign: terms of the field for its tables, and the positions of its keys.
 
 use crate::record::Written;
 use std::ops::Range;
 use toml::de::{DeTable, DeValue};
 
-/// Words of the field, and the tables that are meant by them.
+/// Terms of the field that name no table, with the table for each.
 const TABLES: &[(&str, &str)] = &[
     ("modal", "frf"),
     ("hammer", "frf"),
@@ -14,12 +14,12 @@ const TABLES: &[(&str, &str)] = &[
     ("contact", "pulse"),
 ];
 
-/// The text of a campaign with keys that are known beside those of a type.
+/// The text of a campaign, with keys that are allowed beside those of a type.
 pub fn written<'a>(text: &'a str, beside: &'a [&'a str]) -> Written<'a> {
     Written { text, beside, meant: TABLES }
 }
 
-/// Where a key stands in a table or in one of its tables.
+/// Position of a key in a table or its subtables.
 pub fn find(table: &DeTable<'_>, key: &str) -> Option<Range<usize>> {
     table.iter().find_map(|(name, value)| match value.get_ref() {
         _ if name.get_ref() == key => Some(name.span().start..value.span().end),

@@ -1,25 +1,25 @@
-//! Ranges of the numbers that options of the command line and keys of a campaign take: the one table that
-//! both are checked with. A model checks the values of a rig, its excitation and what is asked of them
-//! itself: [`crate::model::Parameter`].
+//! Ranges of the numbers in options of the command line and keys of a campaign, in one table for both. A
+//! model itself checks the values of a rig, of its excitation and of questions to it:
+//! [`crate::model::Parameter`].
 
 use crate::error::{Error, Result};
 use toml::de::DeValue;
 
-/// Largest value of any quantity, and least one that is not 0: estimators multiply at most six values of a
-/// person, and such products stay within 10^±308.
+/// Largest size of any quantity, and smallest size that is not 0. Estimators multiply at most six stated
+/// values: such products stay within 10^±308.
 const LARGEST: f64 = 1e50;
 const LEAST: f64 = 1e-50;
 /// Longest and shortest time in s: thirty years, and less than any contact or sampling interval.
 const LONGEST: f64 = 1e9;
 const SHORTEST: f64 = 1e-12;
 
-/// The lower end of a range, and what is expected where a number lies below it or is none.
+/// Lower end of a range, and the expectation in the error for a number below it, or not a number.
 type Sign = (f64, &'static str);
 const ABOVE: Sign = (f64::MIN_POSITIVE, "a finite number above 0");
 const ZERO: Sign = (0.0, "a finite number of 0 or more");
 const ANY: Sign = (f64::NEG_INFINITY, "a finite number");
 
-/// Keys of one kind: sign, largest size, least size that is not 0, unit.
+/// Keys of one kind: sign, largest size, smallest size that is not 0, unit.
 type Row = (Sign, f64, f64, &'static str, &'static [&'static str]);
 
 const ROWS: &[Row] = &[
@@ -31,9 +31,9 @@ const ROWS: &[Row] = &[
     (ABOVE, LONGEST, SHORTEST, "s", &["time_to_peak", "duration"]),
     (ZERO, LONGEST, SHORTEST, "s", &["refractory", "interval_std", "contact_time", "longest_dropout", "std"]),
     (ANY, LONGEST, SHORTEST, "s", &["delay"]),
-    // Times since 1970, in ns at most.
+    // Times since 1970, even if written in ns.
     (ANY, 4e18, SHORTEST, "s", &["span"]),
-    // A drill compares them with its turn.
+    // A drill compares these with the duration of its turn.
     (ABOVE, f64::MAX, SHORTEST, "s", &["contact", "fit_duration"]),
     (ABOVE, LARGEST, LEAST, "kg", &["mass", "struck_mass", "masses"]),
     (ABOVE, LARGEST, LEAST, "", &["height", "gravity", "grazing", "decibel", "force_calibration"]),
@@ -52,7 +52,7 @@ const ROWS: &[Row] = &[
     (ANY, 1e3, 1.0, "", &["integrate"]),
 ];
 
-/// Checks the value of an option or a key; what has no row is checked where its table is.
+/// Checks the value of an option or a key; a key without a row here is checked with its table.
 ///
 /// # Errors
 /// With the key and its range, if the value lies outside.

@@ -1,5 +1,5 @@
-//! What a person knows of a file that the file does not say: keys of a campaign and options of the command
-//! line alike.
+//! Settings for reading a file that the file does not state itself: keys of a campaign and options of the
+//! command line alike.
 
 use super::value::channel;
 use crate::error::{Error, Result};
@@ -81,7 +81,7 @@ pub fn above_zero(key: &'static str, value: Option<f64>) -> Result<()> {
 }
 
 impl Reading {
-    /// Its keys.
+    /// Names of its keys.
     pub const KEYS: [&str; 12] = [
         "format",
         "allow_missing",
@@ -104,12 +104,12 @@ impl Reading {
         Reading::KEYS.into_iter().filter_map(stated).collect()
     }
 
-    /// The same of files that say their sampling rate or frequencies themselves.
+    /// The same for files that state their sampling rate or frequencies themselves.
     pub fn untimed(&self) -> Reading {
         Reading { rate: None, base_band: None, span: None, stretch: None, resample: None, ..self.clone() }
     }
 
-    /// A reader that knows what is stated.
+    /// A reader with these settings.
     ///
     /// # Errors
     /// On an unknown format or unit.
@@ -140,7 +140,7 @@ impl Reading {
 }
 
 impl Channel {
-    /// Its keys.
+    /// Names of its keys.
     pub const KEYS: [&str; 2] = ["channel", "calibration"];
 }
 

@@ -1,5 +1,4 @@
-//! Tables of a campaign that hold for all sweeps: what drives the rig, how it is predicted, what is computed
-//! and what is fitted.
+//! Tables of a campaign that apply to all sweeps: excitation, model, results to compute and fit.
 
 use crate::error::Error;
 use crate::model::Parameter;
@@ -7,20 +6,20 @@ use crate::model::ladder::Model;
 use serde::Deserialize;
 use std::collections::BTreeMap;
 
-/// A key with an impossible value, and why it is.
+/// A key with an impossible value, and the reason.
 type Fault = (&'static str, String);
 
-/// The first of these keys whose value is not usable.
+/// The first of these checks that fails, as an error.
 fn first_fault(checks: impl IntoIterator<Item = (&'static str, bool, String)>) -> Result<(), Fault> {
     let fault = checks.into_iter().find(|(_, usable, _)| !usable);
     fault.map_or(Ok(()), |(key, _, why)| Err((key, why)))
 }
 
-/// What drives mass 1 in all sweeps.
+/// Excitation of mass 1 in all sweeps.
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Drive {
-    /// `sine`.
+    /// Kind of excitation: `sine`.
     #[serde(default)]
     pub kind: DriveKind,
     /// Force amplitude in N; left out, the measured force is taken.
@@ -36,7 +35,7 @@ pub enum DriveKind {
     Sine,
 }
 
-/// What to compute, and how.
+/// The table `[compute]`: results to compute, and settings.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Compute {
@@ -44,17 +43,18 @@ pub struct Compute {
     pub overlay: bool,
     /// Draw waterfalls. Default true.
     pub waterfall: bool,
-    /// Lines on both sides of the excitation in which a peak is looked for. Default 3.
+    /// Lines on each side of the excitation that are searched for the peak. Default 3.
     #[serde(alias = "band")]
     pub peak_lines: usize,
-    /// Cut-off in Hz. Default: two lines or a quarter of the lowest excitation.
+    /// Lowest frequency used, in Hz. Default: the larger of two lines and a quarter of the lowest
+    /// excitation.
     pub fmin: Option<f64>,
-    /// Highest frequency in waterfalls, in Hz. Default: the base band.
+    /// Highest frequency in waterfalls, in Hz. Default: the last visible line.
     pub fmax: Option<f64>,
 }
 
 impl Compute {
-    /// What cannot be: key and sentence.
+    /// Checks the values; the error is the key with the reason.
     pub(super) fn check(&self) -> Result<(), Fault> {
         let above_zero = [("fmin", self.fmin), ("fmax", self.fmax)].map(|(key, value)| {
             let v = value.unwrap_or(1.0);
@@ -116,14 +116,14 @@ impl Follows {
 const MOST: u32 = 1_000_000;
 
 impl Default for ModelEntry {
-    /// On the thesis' rig a disturbance falls below e⁻⁸ within 300 cycles.
+    /// On the rig of the thesis a disturbance decays below e⁻⁸ within 300 cycles.
     fn default() -> ModelEntry {
         ModelEntry { name: None, tolerance: 0.02, settle: 300, measure: 64 }
     }
 }
 
 impl ModelEntry {
-    /// What cannot be.
+    /// Checks the values.
     pub(super) fn check(&self) -> Result<(), Fault> {
         let tolerance = self.tolerance;
         let expected = format!("tolerance = {tolerance}: expected a part from 0.0001 to 1");
@@ -141,24 +141,24 @@ impl ModelEntry {
 #[derive(Debug, Clone, PartialEq, Default, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct FitEntry {
-    /// Parameters to be found. None: nothing is fitted.
+    /// Parameters to fit. Without any, nothing is fitted.
     pub parameters: Vec<Parameter>,
-    /// What is known of a parameter from another measurement: `[value, standard uncertainty]`.
+    /// Prior of a parameter from another measurement: `[value, standard uncertainty]`.
     pub prior: BTreeMap<Parameter, [f64; 2]>,
     /// Lowest and highest value that a parameter may take.
     pub bounds: BTreeMap<Parameter, [f64; 2]>,
-    /// Starting points. Default 8.
+    /// Number of starting points. Default 8.
     pub starts: Option<usize>,
-    /// Relative standard uncertainty of the calibration of each mass' amplitudes: one factor for all of
-    /// them, and as much again as a slope from the lowest to the highest frequency; and of the factor of
-    /// the force, where that is not fitted. Default 0.01, which is said.
+    /// Relative standard uncertainty of the calibration. It applies to one factor for all amplitudes of a
+    /// mass, to a slope from the lowest to the highest frequency, and to the force where that is not
+    /// fitted. Default 0.01, with a caution.
     pub calibration: Option<f64>,
-    /// Relative standard uncertainty of each amplitude for itself, beside the noise in its spectrum: how far
-    /// a measurement that is repeated strays. Default 0.
+    /// Relative standard uncertainty of each single amplitude beside the noise in its spectrum: the
+    /// repeatability of the measurement. Default 0.
     pub scatter: Option<f64>,
 }
 
-/// Starting points, at most.
+/// Largest number of starting points.
 const MOST_STARTS: usize = 1000;
 
 impl FitEntry {
@@ -169,7 +169,7 @@ impl FitEntry {
     /// The parameter of this name that a fit can find.
     ///
     /// # Errors
-    /// If there is none.
+    /// If no parameter that can be fitted has this name.
     pub fn parameter(name: &str) -> Result<Parameter, Error> {
         Parameter::named(name).filter(|p| p.can_be_fitted()).ok_or_else(|| {
             let error = Error::usage(format!("no parameter of a fit is named {name:?}"), FitEntry::known());
@@ -181,16 +181,16 @@ impl FitEntry {
         })
     }
 
-    /// That nothing in it is impossible.
+    /// Checks that no value is impossible.
     ///
     /// # Errors
-    /// With the key that is, and why.
+    /// The key with an impossible value, and the reason.
     pub fn usable(&self) -> Result<(), Error> {
         let expected = "each parameter once, masses with a prior, and values as docs/campaign.md has them";
         self.check().map_err(|(key, why)| Error::usage(format!("fit of {key}: {why}"), expected))
     }
 
-    /// The key that holds an impossible value, and why.
+    /// Checks the values; the error is the key with the reason.
     pub(super) fn check(&self) -> Result<(), Fault> {
         let mut checks = Vec::new();
         for (i, parameter) in self.parameters.iter().enumerate() {
@@ -234,10 +234,10 @@ impl FitEntry {
         first_fault(checks)
     }
 
-    /// Where a parameter may lie.
+    /// Lowest and highest value of a parameter, in its unit.
     pub fn range(&self, parameter: Parameter) -> (f64, f64) {
         let (least, most) = parameter.limits();
-        // Masses that are pressed together, with a gap below 0, are looked for where bounds say so.
+        // A gap below 0 (masses pressed together) is searched only within stated bounds.
         self.bounds.get(&parameter).map_or((least.max(0.0), most), |[low, high]| (*low, *high))
     }
 }

@@ -1,4 +1,5 @@
-//! Values that a campaign and a command line write alike: names, channels, a low-pass or none, two numbers.
+//! Values of the same form in a campaign and on a command line: names, channels, a low-pass or none, two
+//! numbers.
 
 use crate::record::{Kind, kind};
 use serde::de::value::SeqAccessDeserializer;
@@ -17,7 +18,7 @@ pub fn word<T: DeserializeOwned>(text: &str) -> Result<T, Kind> {
 /// Two numbers with a mark between them: `LO:HI` or `A,B`.
 ///
 /// # Errors
-/// If that is not what stands there.
+/// If the text is anything else.
 pub fn two<const MARK: char>(typed: &str) -> Result<(f64, f64), Kind> {
     kind::pair(typed, MARK)
 }
@@ -31,7 +32,7 @@ pub enum LowPass {
     Off,
 }
 
-/// What it is typed as.
+/// The values that it may have.
 const LOW_PASS: Kind = Kind::NumberOr("a corner in Hz", "none");
 
 impl LowPass {
@@ -40,7 +41,7 @@ impl LowPass {
         if let LowPass::Corner(hz) = self { Some(hz) } else { None }
     }
 
-    /// As it is typed.
+    /// Parses a typed value.
     ///
     /// # Errors
     /// If it is neither.
@@ -69,7 +70,7 @@ enum Scalar<'a> {
     Number(f64),
 }
 
-/// One value as it is taken by `make`; `expected` in words.
+/// Deserializes one value with `make`; `expected` describes it in words.
 fn of<'de, D: Deserializer<'de>, T>(
     from: D,
     expected: &str,
@@ -98,7 +99,7 @@ fn of<'de, D: Deserializer<'de>, T>(
     from.deserialize_any(One(expected, make))
 }
 
-/// A channel as readers take it.
+/// A channel in the form that readers take, a name or a number as text.
 struct ChannelKey(String);
 
 impl<'de> Deserialize<'de> for ChannelKey {
@@ -147,7 +148,7 @@ pub fn one_or_more<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<String>, D:
     from.deserialize_any(Names)
 }
 
-/// Channels, likewise.
+/// A list of channels.
 ///
 /// # Errors
 /// If one is neither a name nor a number.

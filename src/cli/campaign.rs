@@ -1,4 +1,4 @@
-//! `vibro run` and `vibro compare`: what a campaign asks for.
+//! `vibro run` and `vibro compare`: runs a campaign, and compares its responses with the model.
 
 use super::print::folder_of;
 use super::{complain, init, print, stdout};

@@ -49,7 +49,7 @@ pub fn nothing(commands: &str, json: bool) -> u8 {
 /// `json` also an object on standard output.
 pub fn usage(complaint: &clap::Error, json: bool) -> u8 {
     if !complaint.use_stderr() {
-        // A closed pipe behind --help is no reason to complain.
+        // A closed pipe after --help is no error.
         let _ = complaint.print();
         return 0;
     }
@@ -157,7 +157,7 @@ fn commands_with(option: &str) -> Vec<String> {
     super::command().get_subcommands().filter(|c| has(c)).map(|c| c.get_name().to_owned()).collect()
 }
 
-/// A complaint of clap as an error of ours, made from its kind and context; its text is not used.
+/// A message of clap as an error of ours, made from its kind and context; its text is not used.
 fn plain(complaint: &clap::Error) -> Error {
     let context = |kind| complaint.get(kind).map(ToString::to_string).unwrap_or_default();
     let words = Words::typed();

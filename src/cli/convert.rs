@@ -124,7 +124,7 @@ impl TraceProcessing {
         self.integrate != 0 || self.smoothing.is_some() || self.low_pass.is_some() || self.high_pass.is_some()
     }
 
-    /// Processes all records in place; gives a finding for each step.
+    /// Processes all records in place; returns a finding for each step.
     ///
     /// # Errors
     /// If options contradict each other, a record is no time trace, or it cannot be filtered or integrated.

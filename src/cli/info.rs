@@ -25,7 +25,7 @@ const NOTES: usize = 8;
 const WIDE: usize = 90;
 
 impl CommandArgs for Info {
-    /// Lists each file and reports those that cannot be read; gives the exit code of the first failure.
+    /// Lists each file and reports those that cannot be read; returns the exit code of the first failure.
     fn run(&self, json: bool) -> Result<u8> {
         let (within, reader) = (Folder::default(), self.reading.reader()?);
         let (mut files, mut errors, mut about) = (Vec::new(), Vec::new(), Vec::new());

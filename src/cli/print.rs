@@ -126,7 +126,7 @@ impl File {
         self.output.expect(|known| known == self.name)
     }
 
-    /// Writes the file as a whole; gives its path.
+    /// Writes the file as a whole and returns its path.
     ///
     /// # Errors
     /// As [`Output::write`] and [`Output::commit`].

@@ -1,5 +1,5 @@
-//! `vibro response`, `vibro waterfall`, `vibro excitation`: what the thesis' scripts sinesw3, sinesw and
-//! sineswpf did.
+//! `vibro response`, `vibro waterfall`, `vibro excitation`: the work of the thesis' scripts sinesw3, sinesw
+//! and sineswpf.
 
 use super::{CommandArgs, init, print};
 use crate::analysis::AnswerCache;
@@ -321,7 +321,7 @@ impl ExcitationArgs {
         [force, response].map(|path| print::File::of(folder, path, Owner::Recordings)).into_iter().collect()
     }
 
-    /// Writes the hand-over files; gives their paths.
+    /// Writes the hand-over files and returns their paths.
     fn hand_over(&self, files: Vec<print::File>, listed: &Listed, excitation: &[f64]) -> Result<Vec<String>> {
         if files.is_empty() {
             return Ok(Vec::new());

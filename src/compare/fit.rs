@@ -1,9 +1,9 @@
-//! Parameters of the rig from measured responses.
+//! Fits parameters of the rig to measured responses.
 //!
-//! Amplitudes of both masses and directions are compared with what a spectrum shows of the closed-form
-//! motions (one impact a cycle, or none). Which motion a step shows, a simulated sweep with the parameters
-//! found so far decides; parameters and motions are found in turn until both stay. Steps of any other pattern
-//! are left out and counted.
+//! Amplitudes of both masses and directions are compared with those of the closed-form motions (one impact
+//! a cycle, or none) in a spectrum. A simulated sweep with the parameters found so far decides which motion
+//! a step shows. Motions and parameters are updated in turn until both stay the same. Steps of any other
+//! pattern are left out and counted.
 //!
 //! [`data`] → [`problem`] (weighted residuals) → [`search`] (starting points) → [`converge`] (motions and
 //! parameters in turn) → [`answer`].
@@ -42,20 +42,21 @@ use search::{FINE, LocalMinimum, distances};
 use uncertainty::{NORMAL, Uncertainty, profile};
 use unknown::{Setting, Unknown};
 
-/// Starting points where none are asked for.
+/// Default number of starting points.
 const STARTS: usize = 8;
-/// Turns of looking around the best answer, and how many without a better one are the last.
+/// Largest number of turns of the search around the best answer, and of turns in a row without a better
+/// one.
 const TURNS: usize = 6;
 const IDLE: usize = 2;
-/// One point more within one κ is better.
+/// Smallest reduction of the unexplained distance that makes an answer better: one point more within one κ.
 const BETTER: f64 = 1.0;
 /// Relative standard uncertainty of calibrations where none is stated: that of a good sensor. Amplitudes do
-/// not show it, and all that grows with them (gap, force, masses) is as uncertain.
+/// not reveal a calibration error, which scales gap, force and masses.
 const ASSUMED: f64 = 0.01;
 
-/// Finds the parameters that `entry` asks for from displacement responses, beginning with `rig` and the
-/// stated `force` (N; `None`: each point its measured one). With the stiffness of the `contact` (N/m) its
-/// compliance is taken out of the points.
+/// Fits the parameters of `entry` to displacement responses, starting from `rig` and the stated `force` (N;
+/// `None`: the measured force of each point). With the stiffness of the `contact` (N/m) the amplitudes are
+/// corrected for its compliance.
 ///
 /// # Errors
 /// If nothing can be fitted, the entry is impossible, or there are fewer usable points than parameters.
@@ -75,7 +76,7 @@ pub fn fit(
     found(&data, &base, contact, responses, entry)
 }
 
-/// As [`fit`], from points that have been taken.
+/// As [`fit`], for given points.
 fn found(
     data: &Data,
     base: &Setting,
@@ -99,8 +100,8 @@ fn found(
 /// The best answer of several starts, and where each start ended.
 fn identify<'a>(problem: &Problem<'a>, starts: usize) -> Result<(Converged<'a>, Vec<LocalMinimum>)> {
     problem.enough(problem.data.clear())?;
-    // Where the rig is known well, no search is nearer than the rig itself: it counts as an end that no start
-    // reached.
+    // The stated rig is a start as well: where it is known well, no search comes nearer. It counts as an
+    // end that no start reached.
     let stated = LocalMinimum { u: problem.coordinates(&problem.base), starts: 0 };
     let reached: Vec<LocalMinimum> = problem.search(starts).into_iter().chain([stated]).collect();
     let found: Vec<Result<Converged<'a>>> = reached.par_iter().map(|end| problem.converge(&end.u)).collect();
@@ -120,7 +121,7 @@ fn identify<'a>(problem: &Problem<'a>, starts: usize) -> Result<(Converged<'a>, 
     Ok((best, ends))
 }
 
-/// The answer that explains most; the first refusal where there is none.
+/// The answer with the smallest unexplained distance; the first refusal where there is none.
 fn nearest(found: Vec<Result<Converged<'_>>>) -> Result<Converged<'_>> {
     let mut refusals = Vec::new();
     let answers = found.into_iter().filter_map(|one| one.map_err(|refusal| refusals.push(refusal)).ok());
@@ -129,7 +130,7 @@ fn nearest(found: Vec<Result<Converged<'_>>>) -> Result<Converged<'_>> {
     best.ok_or_else(|| refusals.into_iter().next().unwrap_or_else(refused))
 }
 
-/// How many starts ended within one standard uncertainty of the answer in every parameter.
+/// Number of starts that ended within one standard uncertainty of the answer in every parameter.
 fn agreeing(ends: &[LocalMinimum], answer: &Converged<'_>) -> Result<usize> {
     let (best, uncertainty) = (&answer.least.minimum.parameters, Uncertainty::new(&answer.least)?);
     let near = |(i, u): (usize, &f64)| (u - best[i]).abs() <= uncertainty.std(i);

@@ -1,4 +1,4 @@
-//! The force behind each point of a sweep.
+//! The force at each point of a sweep.
 
 use crate::error::{Error, Result};
 use crate::measure::response::{Response, ResponsePoint};
@@ -15,10 +15,10 @@ pub struct Forcing {
     measured: bool,
 }
 
-/// Neighbouring forces within this ratio are one level: a shaker's force drops by less at a resonance, and
-/// levels that are chosen differ by more.
+/// Largest ratio of neighbouring forces of one level: a shaker's force drops by less at a resonance, and
+/// chosen levels differ by more.
 const LEVEL: f64 = 1.2;
-/// Part by which the measured force may differ from the stated one: a load cell is calibrated to 1 or 2 %.
+/// Relative difference of the measured from the stated force that is a caution: load cells err by 1 or 2 %.
 const DIFFERS: f64 = 0.05;
 
 impl Forcing {
@@ -71,7 +71,7 @@ impl Forcing {
         Ok((forcings, findings))
     }
 
-    /// The mean of several; `None` of none.
+    /// Mean of several forcings over frequency; `None` without any.
     pub fn mean(of: &[&Forcing]) -> Option<Forcing> {
         let [first, others @ ..] = of else { return None };
         if others.iter().all(|o| o == first) {
@@ -112,7 +112,7 @@ impl Forcing {
     }
 }
 
-/// Least and largest value; (∞, −∞) of none.
+/// Smallest and largest value; (∞, −∞) without values.
 pub(super) fn range(values: impl Iterator<Item = f64>) -> (f64, f64) {
     values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)))
 }

@@ -1,4 +1,4 @@
-//! Resonances and jumps of a sweep, by the rules that name those of a measured one.
+//! Resonances and jumps of a simulated sweep, named by the rules for a measured one.
 
 use crate::model::sweep::{Point, Swept};
 use serde::Serialize;
@@ -6,22 +6,22 @@ use vibro_measure::jump::Jump;
 use vibro_measure::resonance::{NamedCurve, Resonance, ResonanceKind, name_modes};
 use vibro_record::Direction;
 
-/// Something found on the curve of one mass.
+/// A resonance or jump on the curve of one mass.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Named<T> {
     /// 1 excited, 2 passive.
     pub mass: u8,
     /// Direction of the sweep.
     pub direction: Direction,
-    /// What was found.
+    /// The resonance or jump.
     #[serde(flatten)]
     pub found: T,
 }
 
-/// Resonances and jumps of a sweep of the frequency, both masses and directions together.
+/// Resonances and jumps of a simulated frequency sweep, of both masses and directions.
 ///
-/// The scatter from cycle to cycle counts as the uncertainty of a point, so that irregular stretches are not
-/// full of peaks.
+/// The scatter from cycle to cycle counts as the uncertainty of a point: otherwise irregular ranges would
+/// be full of peaks.
 pub fn named(swept: &Swept) -> (Vec<Named<Resonance>>, Vec<Named<Jump>>) {
     let sides = [(&swept.up, Direction::Up), (&swept.down, Direction::Down)];
     let mut curves: Vec<NamedCurve> = sides
@@ -40,7 +40,7 @@ pub fn named(swept: &Swept) -> (Vec<Named<Resonance>>, Vec<Named<Jump>>) {
     all
 }
 
-/// One mass in one direction.
+/// The curve of one mass in one direction.
 fn curve(points: &[Point], mass: u8, direction: Direction) -> NamedCurve {
     let read = |p: &Point| match mass {
         1 => (p.frequency, p.x1, p.x1_scatter),
@@ -55,8 +55,8 @@ mod tests {
     use crate::model::sweep::{Observable, Pace, Plan, apart};
     use crate::model::{Rig, Simulation, Sine};
 
-    /// The sweep of the thesis up has a peak of each kind: 5.58 Hz where the masses begin to meet, 10.59 Hz
-    /// where they clap.
+    /// The upward sweep of the thesis has a peak of each kind: 5.58 Hz where the masses begin to meet,
+    /// 10.59 Hz where they clap.
     #[test]
     fn the_peaks_of_the_thesis_are_named() {
         let pace = Pace::Rate { rate: 0.02, points: 2200 };

@@ -1,4 +1,4 @@
-//! Pairs of measured and predicted amplitudes, their peaks, and a score.
+//! Overlay of measured sweeps on the model: pairs of amplitudes, peaks and scores.
 
 use super::forcing::{Forcing, levels, range};
 use super::pair::{Pair, PeakPair, Score, outliers, peaks, score};
@@ -11,15 +11,14 @@ use crate::model::Rig;
 use crate::record::{Direction, Finding};
 use serde::Serialize;
 
-/// Sweeps of about one force, and the prediction for them.
+/// Sweeps at about the same force, and their prediction.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Level {
     /// Median force amplitude in N.
     pub force: f64,
-    /// Sweeps.
+    /// Names of the sweeps.
     pub sweeps: Vec<String>,
-    /// The curve for figures: for the stated force, else for the mean of the measured forces of these
-    /// sweeps.
+    /// Curve for figures: at the stated force, else at the mean of the measured forces of these sweeps.
     #[serde(skip)]
     pub curve: Prediction,
 }
@@ -31,33 +30,33 @@ pub struct Overlay {
     pub force: Option<f64>,
     /// Levels of force.
     pub levels: Vec<Level>,
-    /// Point by point.
+    /// Measured and predicted amplitudes, point by point.
     pub pairs: Vec<Pair>,
-    /// Peak by peak.
+    /// Measured and predicted resonances, peak by peak.
     pub peaks: Vec<PeakPair>,
-    /// Sweep by sweep.
+    /// Agreement, sweep by sweep.
     pub scores: Vec<Score>,
     /// The choice of a model for each level of force and direction; empty where a model is named.
     pub rungs: Vec<Rungs>,
-    /// What a person must know.
+    /// Findings on the comparison.
     pub findings: Vec<Finding>,
 }
 
-/// Frequencies of the predicted curve: nearer to each other than the width of a line in a figure.
+/// Frequencies of the predicted curve: spaced more closely than the width of a line in a figure.
 const CURVE: usize = 1200;
 
-/// Overlays measured displacement responses (fundamentals of spectra) on the motions of the rig. `force` in
-/// N; where it is `None` each point is predicted for its own measured force, and the curve between points for
-/// the force between theirs.
+/// Compares measured displacement responses (fundamentals of spectra) with the motions of the rig. `force`
+/// is in N. With `None` each point is predicted for its own measured force, and the curve for forces
+/// interpolated between the points.
 ///
-/// Each point is predicted by a simulated sweep through the points in their order: of coexisting solutions,
-/// history decides as in the measurement. Where contacts are rigid and the sweep reaches a motion of the
-/// closed form, that gives the amplitude. The ladder of models decides whether contacts are rigid, unless a
-/// model is named.
+/// Each point is predicted by a simulated sweep through the points in their order: history chooses between
+/// coexisting solutions as in the measurement. Where contacts are rigid and the sweep reaches a motion of
+/// the closed form, the closed form gives the amplitude. The ladder of models decides whether contacts are
+/// rigid, unless a model is named.
 ///
 /// # Errors
-/// If no response names its mass and direction, no force is known, or the rig is impossible; if the model
-/// named needs what is not known of the contact.
+/// If no response states its mass and direction, no force is known, or the rig is impossible; if the named
+/// model needs unknown properties of the contact.
 pub fn overlay(
     rig: &Rig,
     force: Option<f64>,
@@ -70,7 +69,7 @@ pub fn overlay(
         findings.push(Finding::caution("responses-not-overlaid").count("n", left_out));
     }
     let (low, high) = frequencies(&swept);
-    // Room for the markers of the outer points.
+    // Room for the markers of the outermost points.
     let margin = 0.03 * (high - low);
     let ends = ((low - margin).max(low / 2.0), high + margin);
     let curve = |forcing: &Forcing| Prediction::over(rig, forcing, ends, CURVE);
@@ -117,7 +116,7 @@ fn frequencies<'a>(swept: impl IntoIterator<Item = &'a Swept<'a>>) -> (f64, f64)
     range(swept.into_iter().flat_map(|s| &s.response.points).map(|p| p.excitation))
 }
 
-/// Findings of the predicted motions.
+/// Findings on the predicted motions.
 fn of_motions(pairs: &[Pair], pace: Pace) -> Vec<Finding> {
     let count = |of: &dyn Fn(&Pair) -> bool| pairs.iter().filter(|p| of(p)).count();
     let cycles = (pace.settle + pace.measure) as usize;
@@ -142,8 +141,8 @@ mod tests {
     use crate::measure::response::ResponsePoint;
     use crate::model::ladder::Model;
 
-    /// A sweep of mass 1 whose force rises from `force` by half a thousandth a step, with the amplitudes of
-    /// the closed form without impacts, F/|k − ω²m + iωc|.
+    /// A sweep of mass 1 whose force rises from `force` by 0.05 % a step, with amplitudes of the closed
+    /// form without impacts, F/|k − ω²m + iωc|.
     fn free(name: &str, rig: &Rig, force: f64) -> Response {
         let point = |i: i32| {
             let (excitation, force) = (20.0 + 0.5 * f64::from(i), force * (1.0 + 5e-4 * f64::from(i)));
@@ -192,12 +191,12 @@ mod tests {
         assert_eq!(levels, [&["weak".to_owned(), "weak again".to_owned()][..], &["strong".to_owned()][..]]);
         assert_eq!(own.pairs.len(), 90);
         for pair in &own.pairs {
-            // Both are the same quotient, computed along different ways: a few roundings.
+            // Both are the same quotient, computed in different ways: a few roundings.
             let residual = pair.residual.unwrap();
             assert!(residual.abs() < 1e-12 * pair.measured.value, "{pair:?}");
         }
         assert!(!own.findings.iter().any(|f| f.code == "points-off-prediction"), "{:?}", own.findings);
-        // With one force for all, the points at another are off by the ratio of forces.
+        // With one force for all, points at another force are off by the ratio of forces.
         let stated = overlay(&rig, Some(0.1), &Predicting::default(), &responses[..1]).unwrap();
         assert_eq!(stated.force, Some(0.1));
         let worst = stated.pairs.iter().map(|p| p.measured.value / p.predicted.unwrap()).fold(1.0, f64::min);
@@ -205,7 +204,7 @@ mod tests {
         assert!((stated.scores[0].max_relative.unwrap() - 0.5).abs() < 1e-12, "{:?}", stated.scores);
         let of = |code: &str| stated.findings.iter().find(|f| f.code == code).unwrap();
         assert_eq!(of("points-off-prediction").get("n"), Some(30.0));
-        // The force is half of the stated one, and rises by half a thousandth a step.
+        // The force is half of the stated one, and rises by 0.05 % a step.
         assert!((of("stated-force-differs").get("part").unwrap() - 0.5).abs() < 1e-12);
     }
 
@@ -214,7 +213,7 @@ mod tests {
         let rig = Rig::thesis();
         let mut sweep = free("m", &rig, 0.1);
         sweep.points[7].amplitude.value *= 2.0;
-        // Within its uncertainty, and below its limit.
+        // Point 9 is within its uncertainty, point 11 below its upper limit.
         sweep.points[9].amplitude.value *= 1.2;
         sweep.points[9].amplitude.std = Some(sweep.points[9].amplitude.value);
         sweep.points[11].amplitude.value *= 0.5;
@@ -231,8 +230,8 @@ mod tests {
 
     #[test]
     fn a_mass_that_rings_on_rests_in_the_closed_form() {
-        // From impacts at 5 Hz up over the fold at 10.66 Hz (0.1 N, R 0.98): behind it the masses part and
-        // the struck one rings on.
+        // A sweep up from impacts at 5 Hz past the fold at 10.66 Hz (0.1 N, R 0.98): above it the masses
+        // part and the struck one rings on.
         let rig = Rig { restitution: 0.98, ..Rig::thesis() };
         let mut sweep = free("m", &rig, 0.1);
         sweep.direction = Some(Direction::Up);

@@ -31,23 +31,24 @@ pub struct Pair {
     pub upper_limit: Option<f64>,
     /// Predicted amplitude in m; `None` where the motion cannot be followed.
     pub predicted: Option<f64>,
-    /// How far the predicted amplitude scatters from cycle to cycle, in m: 0 for what repeats every cycle.
+    /// Scatter of the predicted amplitude from cycle to cycle in m: 0 for a motion that repeats every
+    /// cycle.
     pub scatter: Option<f64>,
     /// Kind of the predicted motion.
     pub motion: Option<MotionKind>,
-    /// Impacts/cycles of its pattern, or a word.
+    /// Pattern of the predicted motion: impacts/cycles, or a word.
     pub regime: Option<String>,
-    /// What predicted the amplitude: the closed form where it has the motion of the simulated sweep, else
-    /// the model that was simulated.
+    /// Model that predicted the amplitude: the closed form where it has the motion of the simulated sweep,
+    /// else the simulated model.
     pub model: Model,
-    /// Stable motions of the closed form at this point: with more than one, history decides.
+    /// Number of stable motions of the closed form at this point: with more than one, history decides.
     pub choices: usize,
     /// Measured minus predicted in m.
     pub residual: Option<f64>,
 }
 
 impl Predictor<'_> {
-    /// The points of a sweep in their order, each with its prediction.
+    /// Measured points of a sweep in their order, each with its prediction.
     pub fn pairs(&self, sweep: &Swept<'_>) -> Result<Vec<Pair>> {
         let Predictor { rig, law, model, pace } = *self;
         let Swept { response, mass, direction, ref forcing } = *sweep;
@@ -81,15 +82,16 @@ impl Predictor<'_> {
     }
 }
 
-/// A simulated motion is one of the closed form where both amplitudes agree to this part: what 300 cycles
-/// leave of the start near a border of stability.
+/// Relative difference of both amplitudes up to which a simulated motion is one of the closed form: near a
+/// border of stability 300 cycles leave that much of the start.
 const SETTLED: f64 = 0.02;
 
 /// The motion of the closed form that a simulation reached.
 pub(super) fn reached<'a>(simulated: &Simulated, motions: &'a [Motion]) -> Option<&'a Motion> {
     let kind = MotionKind::of(simulated.regime);
     motions.iter().filter(|m| m.is_seen() && m.kind == kind).find(|m| {
-        // The ringing of a mass that comes to rest is compared with the other's amplitude.
+        // A mass at rest still rings in a simulation: its amplitude is compared with that of the other
+        // mass.
         let size = |i: usize| if m.amplitude[i] > 0.0 { m.amplitude[i] } else { m.amplitude[1 - i] };
         (0..2).all(|i| (simulated.amplitude[i] - m.amplitude[i]).abs() <= SETTLED * size(i))
     })
@@ -104,7 +106,7 @@ pub struct PeakPair {
     pub mass: u8,
     /// Direction of the sweep.
     pub direction: Direction,
-    /// What the measured one is.
+    /// Kind of the measured resonance.
     pub kind: ResonanceKind,
     /// Measured frequency in Hz, with its uncertainty.
     pub measured_frequency: Estimate,
@@ -116,21 +118,21 @@ pub struct PeakPair {
     pub measured_amplitude: Estimate,
     /// Predicted amplitude in m.
     pub predicted_amplitude: Option<f64>,
-    /// Measured over predicted amplitude, less one.
+    /// Measured over predicted amplitude, minus one.
     pub amplitude_difference: Option<f64>,
 }
 
-/// A predicted peak belongs to a measured one within this ratio of frequencies: a stiffness is known to a
-/// fifth.
+/// Largest ratio of frequencies of a measured and a predicted peak that are paired: a stiffness is known to
+/// about 20 %, its frequency to 10 %.
 const NEAR: f64 = 1.1;
 
 /// Each measured resonance of a sweep with the predicted one nearest to it.
 pub(super) fn peaks(sweep: &Swept<'_>, curve: &[Followed]) -> Vec<PeakPair> {
     let Swept { response, mass, direction, .. } = *sweep;
-    // Where a branch ends, its last point is the peak: a missing value beside it counts as low.
+    // At the end of a branch its last point is the peak: missing values beside it count as low.
     let closed: Vec<f64> =
         curve.iter().map(|p| if p.amplitude.is_nan() { 0.0 } else { p.amplitude }).collect();
-    // Free motion has no peak in reach of the gap: its end is where impacts begin.
+    // Free motion has no peak within the gap: where it ends, impacts begin.
     let maxima = local_maxima(&closed, 1.2).into_iter().filter(|m| curve[m.at].impacting);
     let predicted: Vec<(f64, f64)> = maxima.map(|m| top(curve, &closed, m.at)).collect();
     let one = |r: &Resonance| {
@@ -155,8 +157,8 @@ pub(super) fn peaks(sweep: &Swept<'_>, curve: &[Followed]) -> Vec<PeakPair> {
     response.resonances.iter().filter(|r| r.kind.is_maximum()).map(one).collect()
 }
 
-/// Top of a predicted curve at its grid point `i`: the vertex, or the point itself where the branch ends
-/// beside it.
+/// Frequency in Hz and amplitude in m of a predicted peak at grid point `i`: the vertex of a parabola, or
+/// the point itself where the branch ends beside it.
 fn top(curve: &[Followed], closed: &[f64], i: usize) -> (f64, f64) {
     let near = [i - 1, i, i + 1];
     let heights = near.map(|k| closed[k]);
@@ -172,24 +174,24 @@ pub struct Score {
     pub sweep: String,
     /// Points with a prediction.
     pub n: usize,
-    /// Points without.
+    /// Points without a prediction.
     pub without: usize,
-    /// Predicted points with nothing to compare: both amplitudes are below the noise floor.
+    /// Predicted points that are not compared: measured and predicted amplitude are below the noise floor.
     pub faint: usize,
     /// Median of |measured − predicted| over the larger of both, at points that are not faint; `None`
     /// without such points.
     pub median_relative: Option<f64>,
-    /// The largest of them.
+    /// Largest of these ratios.
     pub max_relative: Option<f64>,
-    /// Excitation frequency of the largest in Hz.
+    /// Excitation frequency in Hz of the largest ratio.
     pub max_at: Option<f64>,
     /// Root mean square of measured − predicted, in m.
     pub rms: Option<f64>,
 }
 
 impl Pair {
-    /// |measured − predicted| over the larger of both: twice or half as much as predicted is 50 %. `None`
-    /// without a prediction, and where both lie within the noise.
+    /// |measured − predicted| over the larger of both: 50 % for twice and for half the prediction. `None`
+    /// without a prediction, and where both are below the noise floor.
     fn deviation(&self) -> Option<f64> {
         let (predicted, residual) = (self.predicted?, self.residual?);
         let larger = predicted.max(self.measured.value);
@@ -216,13 +218,13 @@ pub(super) fn score(sweep: &str, pairs: &[Pair]) -> Score {
     }
 }
 
-/// A point is an outlier beyond this part of the larger amplitude: a sensor's calibration and its mounting
-/// stay below …
+/// Deviation over the larger amplitude beyond which a point may be an outlier: calibration and mounting of
+/// a sensor err by less.
 const FAR: f64 = 0.05;
-/// … where it is also beyond so many standard uncertainties: chance takes one point of 1.7 million there.
+/// Deviation in standard uncertainties beyond which it is one: by chance one point of 1.7 million.
 const SIGMAS: f64 = 5.0;
 
-/// Points far off the prediction, which a median hides.
+/// Caution about points far off the prediction, which a median hides.
 pub(super) fn outliers(sweep: &str, pairs: &[Pair]) -> Option<Finding> {
     let certain =
         |p: &&Pair| p.measured.std.is_none_or(|std| p.residual.is_some_and(|r| r.abs() > SIGMAS * std));

@@ -1,4 +1,4 @@
-//! Measured sweeps, how they are predicted, and which models of the ladder they need.
+//! Measured sweeps, their prediction, and the models of the ladder that they need.
 
 use super::forcing::Forcing;
 use super::prediction::{MotionKind, Prediction, in_order};
@@ -20,8 +20,8 @@ pub(super) struct Swept<'a> {
 }
 
 impl<'a> Swept<'a> {
-    /// All displacement responses that name their mass and direction, with findings of their force, of which
-    /// `stated` is in N.
+    /// All displacement responses that state mass and direction, with findings on their force. `stated` is
+    /// the force in N.
     ///
     /// # Errors
     /// If there is no such response, or no force is known.
@@ -49,7 +49,7 @@ impl<'a> Swept<'a> {
     }
 }
 
-/// How all sweeps are predicted.
+/// Rig, model and pace of the prediction of all sweeps.
 #[derive(Clone, Copy)]
 pub(super) struct Predictor<'a> {
     pub rig: &'a Rig,
@@ -58,9 +58,9 @@ pub(super) struct Predictor<'a> {
     pub pace: Pace,
 }
 
-/// Points of a simulated curve: their distance is far below the width of a resonance.
+/// Largest number of points of a simulated curve: their spacing is far below the width of a resonance.
 const FOLLOWED: usize = 400;
-/// Cycles at each: fewer than at a measured point, since the motion goes on from one to the next.
+/// Cycles at each of these: fewer than at a measured point, since the motion continues to the next point.
 const PASSING: Pace = Pace { settle: 100, measure: 16 };
 
 /// A point of a predicted curve as a sweep follows it.
@@ -73,8 +73,8 @@ pub(super) struct Followed {
 }
 
 impl Predictor<'_> {
-    /// The curve that a sweep follows, in order of rising frequency: of the closed form where impacts take no
-    /// time, else simulated.
+    /// The curve that a sweep follows, by rising frequency: by the closed form where impacts take no time,
+    /// else simulated.
     pub fn followed(&self, sweep: &Swept<'_>, curve: &Prediction) -> Vec<Followed> {
         let point = |frequency: f64, motion: Option<(MotionKind, [f64; 2])>| Followed {
             frequency,
@@ -96,12 +96,12 @@ impl Predictor<'_> {
     }
 }
 
-/// How predictions are made.
+/// Settings of predictions.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Predicting {
-    /// The model, what is tolerated, and the pace.
+    /// Model, tolerance of its choice, and pace.
     pub model: ModelEntry,
-    /// What is known of the contact.
+    /// Known properties of the contact.
     pub contact: Option<ContactKeys>,
 }
 
@@ -112,19 +112,19 @@ pub struct Rungs {
     pub force: f64,
     /// Direction of the sweep.
     pub direction: Direction,
-    /// Which rung is good enough where.
+    /// The adequate rung by frequency range.
     pub stretches: Vec<Stretch>,
-    /// What must be known where none can be chosen: keys of the scene.
+    /// Keys of the scene that must be stated where no model can be chosen.
     pub open: Option<String>,
-    /// The same, at the frequency where what is not known moves the answer most.
+    /// The finding on these keys, at the frequency where they change the answer most.
     #[serde(skip)]
     pub finding: Option<Finding>,
 }
 
-/// Frequencies at which the ladder is asked: two a Hz over both resonances of the thesis' rig.
+/// Frequencies at which the ladder is evaluated: two a Hz over both resonances of the thesis' rig.
 const ASKED: usize = 24;
 
-/// Asks the ladder at evenly spaced frequencies (Hz) of a sweep whether a model is good enough for the
+/// Evaluates the ladder at evenly spaced frequencies (Hz) of a sweep: whether a model is adequate for the
 /// fundamental of the displacement.
 ///
 /// # Errors
@@ -156,7 +156,7 @@ pub fn rungs(
 }
 
 impl Predicting {
-    /// How long the rig stays at each point.
+    /// Cycles of the simulated rig at each point.
     pub fn pace(&self) -> Pace {
         Pace { settle: self.model.settle, measure: self.model.measure }
     }
@@ -166,8 +166,8 @@ impl Predicting {
         Scene { rig: *rig, excitation, contact: self.contact, buffer: None }
     }
 
-    /// The model of all sweeps: the one named, else the highest one chosen for any stretch; rigid contacts
-    /// for the rungs below and where none can be chosen.
+    /// The model of all sweeps: the named one, else the highest chosen in any frequency range. Rigid
+    /// impacts replace lower rungs, and are assumed where none can be chosen.
     pub fn model(&self, choices: &[Rungs]) -> Model {
         if let Some(named) = self.model.name {
             return named.model();
@@ -178,7 +178,7 @@ impl Predicting {
         match highest {
             // Without a stated damping a curved contact has no restitution that holds for all speeds.
             Some(Model::HuntCrossley) if curved && contact.damping.is_some() => Model::HuntCrossley,
-            // The contact of spring and damper has in full what the correction has to first order.
+            // A contact of spring and damper includes in full what the soft correction has to first order.
             Some(Model::SoftCorrected | Model::KelvinVoigt | Model::HuntCrossley) if !curved => {
                 Model::KelvinVoigt
             }
@@ -216,9 +216,8 @@ mod tests {
 
     #[test]
     fn history_goes_past_a_stretch_where_the_impacting_motion_is_unstable() {
-        // Between 7.0 and 7.3 Hz the motion with one impact a cycle has lost its stability and the one
-        // without impacts is possible, but a sweep up goes on with impacts to the fold at 10.66 Hz; a
-        // sweep down comes without.
+        // Between 7.0 and 7.3 Hz the motion with one impact a cycle is unstable and the one without impacts
+        // exists. A sweep up keeps impacting to the fold at 10.66 Hz; a sweep down stays free.
         let rig = Rig { restitution: 0.98, ..Rig::thesis() };
         let contact = Some(ContactKeys { stiffness: Some(1e9), ..ContactKeys::default() });
         let predicting = Predicting { contact, ..Predicting::default() };
@@ -235,8 +234,8 @@ mod tests {
         let rig = Rig::thesis();
         let found = rungs(&rig, &Predicting::default(), 0.5, Direction::Up, (10.0, 10.6)).unwrap();
         assert_eq!(found.open.as_deref(), Some("contact.stiffness"));
-        // Between 1e4 N/m, in contact for 7 % of the cycle, and 1e9 N/m the answer moves by more than the 2 %
-        // that do not matter.
+        // Between 1e4 N/m (in contact for 7 % of the cycle) and 1e9 N/m the answer changes by more than the
+        // tolerated 2 %.
         assert!(found.finding.as_ref().is_some_and(|f| f.get("part").unwrap() > 0.02), "{found:?}");
         assert_eq!(Predicting::default().model(&[found]), Model::Restitution);
         let model = ModelEntry { name: Some(Follows::KelvinVoigt), ..ModelEntry::default() };

@@ -18,7 +18,7 @@ pub enum MotionKind {
     Free,
     /// Another pattern of impacts.
     Pattern,
-    /// No pattern.
+    /// No repeating pattern.
     Irregular,
 }
 
@@ -41,25 +41,25 @@ pub struct Motion {
     pub kind: MotionKind,
     /// Observed amplitudes of x₁ and x₂ in m.
     pub amplitude: [f64; 2],
-    /// Whether it can be seen, and if not, why.
+    /// Whether it can be observed, and if not, why.
     pub verdict: Verdict,
 }
 
-/// Whether a motion can be seen.
+/// Whether a motion can be observed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Verdict {
-    /// Admissible and stable, or clear of the other mass.
+    /// Admissible and stable; a free motion clear of the other mass.
     Seen,
     /// Admissible, but rounding cannot tell whether a disturbance dies away.
     Neutral,
-    /// Admissible, but the least disturbance grows.
+    /// Admissible, but the smallest disturbance grows.
     Unstable,
     /// The masses would pass through each other.
     Impossible,
 }
 
 impl Motion {
-    /// Whether it can be seen.
+    /// Whether it can be observed.
     pub(crate) fn is_seen(&self) -> bool {
         self.verdict == Verdict::Seen
     }
@@ -110,7 +110,7 @@ impl Prediction {
     }
 }
 
-/// What rises with frequency in the order of a sweep, and back.
+/// Values by rising frequency in the order of a sweep; a second call reverts this.
 pub(super) fn in_order<T>(direction: Direction, mut rising: Vec<T>) -> Vec<T> {
     if direction == Direction::Down {
         rising.reverse();
@@ -123,7 +123,8 @@ pub(super) fn all_motions(rig: &Rig, points: &[(f64, f64)]) -> Result<Vec<Vec<Mo
     points.par_iter().map(|(frequency, force)| motions(rig, *force, *frequency)).collect()
 }
 
-/// Impacting motions with the larger impulse first, then the free one, by their fundamentals.
+/// Motions at a force in N and a frequency in Hz: impacting ones with the larger impulse first, then the
+/// free one, each with its fundamentals.
 pub(super) fn motions(rig: &Rig, force: f64, frequency: f64) -> Result<Vec<Motion>> {
     let (found, observable) = (orbits(rig, force, frequency)?, Observable::Fundamental);
     let impacting = found.orbits.iter().filter(|o| o.validity.exists).map(|o| Motion {

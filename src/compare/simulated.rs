@@ -1,4 +1,4 @@
-//! The motion of a rig that is led through the points of a sweep one after another, as the measured one was.
+//! Simulates a rig through the points of a sweep one after another, as in the measurement.
 
 use crate::error::{Error, Result};
 use crate::model::regime::Watch;
@@ -6,7 +6,7 @@ use crate::model::sweep::{Gauge, Observable};
 use crate::model::{Compliant, Event, Excitation, Law, Motion, Regime, Rig, Simulation, Sine, State};
 use std::f64::consts::TAU;
 
-/// How long the rig stays at a point.
+/// Duration at each point, in excitation cycles.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Pace {
     /// Cycles before reading.
@@ -15,23 +15,24 @@ pub struct Pace {
     pub measure: u32,
 }
 
-/// What the rig does at a point.
+/// Simulated motion at a point.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Simulated {
-    /// Peak amplitudes of the lines of x₁ and x₂ at the excitation frequency in m, over all cycles read.
+    /// Peak amplitudes in m of the fundamentals of x₁ and x₂, over all cycles read.
     pub amplitude: [f64; 2],
-    /// Standard deviations of the same from cycle to cycle in m.
+    /// Standard deviations of these from cycle to cycle in m.
     pub scatter: [f64; 2],
     /// Impacts and cycles of its pattern.
     pub regime: Regime,
 }
 
-/// A rig through `points` (frequency in Hz, force amplitude in N) in this order, from rest at the first;
-/// state and phase of the force go on from point to point. Its contact follows `law`, or is rigid with the
-/// rig's restitution.
+/// Simulates a rig through `points` (frequency in Hz, force amplitude in N) in this order, from rest at the
+/// first. State and phase of the force continue from point to point. The contact follows `law`, or is rigid
+/// with the rig's restitution.
 ///
-/// Each point has its own answer: an error where a parameter is impossible or the motion needs more events
-/// than can be followed, behind which the rig starts from rest again.
+/// Each point has its own answer: an error where a parameter is impossible or the motion has too many
+/// events to follow. The sweep then continues from the state reached, or from rest where the motion could
+/// not start or its state is not finite.
 pub fn simulated(rig: &Rig, law: Option<Law>, points: &[(f64, f64)], pace: Pace) -> Vec<Result<Simulated>> {
     let rigid = |sine: Sine, state, phase| Simulation::from_state(rig, &sine, state, phase);
     let Some(law) = law else { return swept(rig, points, |motion| read(motion, pace), rigid) };
@@ -39,16 +40,16 @@ pub fn simulated(rig: &Rig, law: Option<Law>, points: &[(f64, f64)], pace: Pace)
     swept(rig, points, |motion| read(motion, pace), soft)
 }
 
-/// As [`simulated`] with rigid contacts, but a point with more impacts than a plain pattern has is given up:
-/// a rig of wrong parameters could take minutes.
+/// As [`simulated`] with rigid contacts, but gives up a point with more impacts than a plain pattern: a rig
+/// of wrong parameters could take minutes.
 pub(super) fn simulated_briefly(rig: &Rig, points: &[(f64, f64)], pace: Pace) -> Vec<Result<Simulated>> {
     let rigid = |sine: Sine, state, phase| Simulation::from_state(rig, &sine, state, phase);
     swept(rig, points, |motion| plain(motion).and_then(|()| read(motion, pace)), rigid)
 }
 
-/// Cycles that are checked for many impacts, twice: at first, and when the transient may have died away.
+/// Cycles checked for too many impacts, twice: at first, and when the transient may have decayed.
 const CHECKED: u32 = 8;
-/// Flights a cycle that no plain pattern has: more is chatter, or the rig of wrong parameters.
+/// Flights a cycle from which a motion is given up: it is chatter, or the rig of wrong parameters.
 const BUSY: u32 = 100;
 
 /// Refuses a motion with more flights than a plain pattern.
@@ -78,7 +79,7 @@ fn swept<M: Motion>(
         let (state, phase) = std::mem::replace(&mut now, rest);
         let mut motion = make(Sine { force, frequency }, state, phase)?;
         let found = read(&mut motion);
-        // A sweep goes on behind a point without an answer.
+        // A sweep continues after a point without an answer.
         let state = motion.state();
         if [state.x1, state.v1, state.x2, state.v2].iter().all(|v| v.is_finite()) {
             now = (state, motion.phase());
@@ -125,7 +126,7 @@ mod tests {
             let Some(orbit) = real else { continue };
             assert_eq!(at.regime, Regime::Periodic { impacts: 1, cycles: 1 }, "{point:?}");
             for mass in 0..2 {
-                // After 300 cycles what is left of the start is below 0.95^300 = 2e-7 (multipliers up to 0.97
+                // After 300 cycles the rest of the start is below 0.95^300 = 2e-7 (multipliers up to 0.97
                 // near a flip leave 1e-4); the gauge errs by 3e-6.
                 let radius = orbit.spectral_radius().unwrap();
                 let left = radius.powi(300) + 2e-5;
@@ -143,8 +144,8 @@ mod tests {
         let law = Law::kelvin_voigt(1e9, rig.restitution, rig.reduced_mass()).unwrap();
         let [hard, stiff] = [None, Some(law)].map(|law| simulated(&rig, law, &points, PACE));
         for (a, b) in hard.iter().flatten().zip(stiff.iter().flatten()) {
-            // The contact lasts π√(M/k) = 2.3e-5 s, 2.5e-4 of the cycle; near the clapping resonance that
-            // counts some thirty times over (0.74 % of the cycle moves the impact speed by 21 %).
+            // The contact lasts π√(M/k) = 2.3e-5 s, 2.5e-4 of the cycle. Near the clapping resonance its
+            // effect is some thirty times that (0.74 % of the cycle changes the impact speed by 21 %).
             assert!((a.amplitude[0] / b.amplitude[0] - 1.0).abs() < 30.0 * 2.5e-4, "{a:?} {b:?}");
         }
     }

@@ -309,7 +309,7 @@ fn digits_at(name: &str, at: usize) -> bool {
     name.as_bytes()[at].is_ascii_digit()
 }
 
-/// How many of the names have a number between the same two texts.
+/// Number of names that have a number between the same two texts.
 type Numbers = HashMap<[String; 2], usize>;
 
 fn numbers(names: &[String]) -> Numbers {

@@ -184,8 +184,8 @@ mod tests {
             let found = crate::read::Reader::new().from_reader("x.uff", bytes).unwrap();
             found.records[0].axis().values()
         };
-        // The first file is text with six digits, the second binary in single precision (half a unit in the
-        // last place is 4.9e-4 there).
+        // The first file is text with six digits, the second binary in single precision, where half a unit
+        // in the last place is 4.9e-4 Hz.
         for (step, off) in [(10.0, 0.05), (0.01, 5e-4)] {
             let (files, finding) = records("x", &gaps(step)).unwrap();
             assert_eq!(finding, None);

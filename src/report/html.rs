@@ -110,7 +110,7 @@ impl Page {
         let width = picture.width.round();
         let inside = match (data, files.first()) {
             (None, _) => svg.clone(),
-            // Without scripts a map is only named: its picture would make up half of the page.
+            // Without scripts a map is only named, by its file: its picture would be half of the page.
             (Some(data), Some(file)) if figure.has_map() => {
                 self.place(data, &format!("<p>The map is in {}.</p>\n", escaped(file)))
             }
@@ -207,7 +207,7 @@ const MODEL: &[u8] = include_bytes!("assets/page/whatif.wasm.gz");
 const STYLE: &str = include_str!("assets/page.css");
 const PLOTS: &str = include_str!("assets/page/uplot.css");
 
-/// The scripts of the page: uPlot 1.6.32 (MIT, `assets/page/LICENSE-uPlot.txt`), and ours.
+/// The scripts of the page: uPlot 1.6.32 (MIT, `assets/page/LICENSE-uPlot.txt`), and those of this project.
 const SCRIPTS: [&str; 6] = [
     include_str!("assets/page/uplot.js"),
     include_str!("assets/page/decode.js"),

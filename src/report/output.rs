@@ -1,5 +1,5 @@
-//! The only writer of files: all files of a folder appear together or not at all, and files of a person are
-//! not replaced.
+//! The only writer of files: all files of a folder appear together or not at all. Files that a person wrote
+//! are not replaced.
 
 use super::Medium;
 use crate::error::{Error, Place, Result};
@@ -41,7 +41,7 @@ struct StagedFile {
     staged: Staged,
 }
 
-/// What exists under the name of a file to be written.
+/// State of the place where a file is to be written.
 #[derive(Debug, PartialEq, Eq)]
 enum Present {
     /// A file with the same bytes.
@@ -158,7 +158,7 @@ impl Output {
         self.write(name, before.to_owned() + addition)
     }
 
-    /// What exists under a name. A folder there is an error.
+    /// Kind of entry under a name. A folder there is an error.
     fn occupant(&self, name: &str) -> Result<Occupant> {
         match self.folder.occupant(&self.at(name)) {
             Occupant::Folder => {

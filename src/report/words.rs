@@ -1,7 +1,7 @@
 //! The only place where findings become sentences.
 //!
-//! One sentence a code, in the tables of `docs/findings.md`. A sentence is a template; in braces stands a
-//! fact of the finding:
+//! One sentence per code, from the tables of `docs/findings.md`. A sentence is a template; each pair of
+//! braces is replaced by a fact of the finding:
 //!
 //! | written | shown |
 //! |---|---|
@@ -9,7 +9,7 @@
 //! | `{gap.6 m}` | six digits |
 //! | `{rho ± std}` | the number `rho` with its uncertainty `std`, as tables show them |
 //! | `{level @unit}` | with the unit that the fact `unit` names |
-//! | `{part %}` | a part of one as a percentage |
+//! | `{part %}` | a ratio as a percentage |
 //! | `{n}` | the number, whole or with three digits; a name as it is; several numbers between commas |
 //! | `{n:impact}`, `{n:entry/entries}` | a count with its noun: `1 impact`, `3 impacts` |
 //! | `{n?is/are}` | the first word for one, the second for several |
@@ -34,7 +34,7 @@ static SENTENCES: LazyLock<HashMap<&str, &str>> = LazyLock::new(|| {
     rows.filter_map(cells).collect()
 });
 
-/// Who reads the sentence, and so how settings are named.
+/// Reader of the sentence, which decides how settings are named.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Voice {
     /// A person at the command line: `--low-pass`.
@@ -65,29 +65,29 @@ impl Voice {
     }
 }
 
-/// Settings that a campaign has no key for: they are typed behind its name.
+/// Settings without a key in a campaign: options of the command line only.
 const OPTIONS: [&str; 3] = ["allow_outside", "max_memory", "replace"];
 
-/// The sentence of a finding. A code without a sentence shows itself.
+/// The sentence of a finding. A code without a sentence is shown itself.
 pub fn sentence(finding: &Finding, voice: Voice) -> String {
     SENTENCES
         .get(finding.code.as_ref())
         .map_or_else(|| finding.code.to_string(), |text| filled(text, finding, voice))
 }
 
-/// A finding, and the record that it is about: empty for all of them.
+/// Name of a record, empty for all records, and a finding about it.
 pub type About = (String, Finding);
 
-/// The sentences of findings about records, doubts first. One that holds for several records stands once,
-/// behind their names.
+/// The sentences of findings about records, doubts first. A sentence that holds for several records appears
+/// once, after their names.
 pub fn sentences(findings: &[About], voice: Voice, notes: bool) -> Vec<String> {
     let all =
         graded(findings, voice).into_iter().filter(|(severity, _)| notes || *severity != Severity::Note);
     all.map(|(_, sentence)| sentence).collect()
 }
 
-/// As [`sentences`], each behind its severity. Of one severity those come first that move an answer most, by
-/// the largest percentage that the sentence shows; the others stay in the order in which they were found.
+/// As [`sentences`], each with its severity. Within a severity, sentences with the largest percentage come
+/// first, since they affect an answer most; the others keep their order.
 pub fn graded(findings: &[About], voice: Voice) -> Vec<(Severity, String)> {
     let mut groups: Vec<(&Finding, Vec<&str>)> = Vec::new();
     for (record, finding) in findings {
@@ -115,18 +115,18 @@ pub fn graded(findings: &[About], voice: Voice) -> Vec<(Severity, String)> {
     all
 }
 
-/// Findings that a person reads first, at the command line and at the head of a report.
+/// Number of findings shown first, at the command line and at the head of a report.
 const FOREMOST: usize = 3;
 
-/// How many of these, as [`graded`] sorts them, a person reads first: three, or all doubts where there are
-/// more. A single one behind these is read with them, since the line that counts it would be as long.
+/// Number of findings, sorted by [`graded`], to show first: three, or all doubts if more. A single further
+/// one is shown too: a line that counts it would be as long.
 pub fn foremost(findings: &[(Severity, String)]) -> usize {
     let doubts = findings.iter().filter(|(severity, _)| *severity == Severity::Doubt).count();
     let first = doubts.max(FOREMOST);
     if findings.len() <= first + 1 { findings.len() } else { first }
 }
 
-/// A sentence with the records that it is about, and those of which it holds with other numbers.
+/// A sentence with its records, and the records for which it holds with other numbers.
 struct Sentence<'a> {
     finding: &'a Finding,
     text: String,
@@ -135,8 +135,8 @@ struct Sentence<'a> {
 }
 
 impl Sentence<'_> {
-    /// Whether another sentence of the same code can stand with this one: it is the same, or differs in
-    /// numbers and is about other records. A doubt stands for itself.
+    /// Whether another sentence of the same code is joined to this one: it is the same, or it differs only
+    /// in numbers and is about other records. Doubts with other numbers stay separate.
     fn takes(&self, other: &Sentence<'_>) -> bool {
         let (a, b) = (self.finding, other.finding);
         let about = |record: &&str| record.is_empty() || self.of.contains(record);
@@ -146,7 +146,7 @@ impl Sentence<'_> {
         a.code == b.code && (self.text == other.text || alike && apart)
     }
 
-    /// The largest part of one that it shows as a percentage, 0 without any.
+    /// Largest ratio that it shows as a percentage, 0 without any.
     fn share(&self) -> f64 {
         let all = std::iter::once(self.finding).chain(self.like.iter().map(|(finding, _)| *finding));
         all.flat_map(shares).fold(0.0, f64::max)
@@ -168,7 +168,7 @@ impl Sentence<'_> {
     }
 }
 
-/// Records by their names; many by the first and the last.
+/// Names of records; of more than four, their number with the first and the last.
 fn names(records: &[&str]) -> String {
     match records {
         [first, .., last] if records.len() > 4 => format!("{} records, {first} to {last}", records.len()),
@@ -185,13 +185,13 @@ fn differing(from: &Finding, finding: &Finding) -> Vec<String> {
     shown.collect()
 }
 
-/// What stands in each pair of braces of the sentence of a finding.
+/// Contents of each pair of braces in the sentence of a finding.
 fn places(finding: &Finding) -> impl Iterator<Item = &'static str> {
     let template = SENTENCES.get(finding.code.as_ref()).copied().unwrap_or_default();
     template.split('{').skip(1).filter_map(|part| part.split('}').next())
 }
 
-/// The numbers of a finding that its sentence shows as percentages.
+/// Ratios of a finding that its sentence shows as percentages.
 fn shares(finding: &Finding) -> impl Iterator<Item = f64> {
     let names = places(finding).filter_map(|place| place.strip_suffix(" %")?.split('.').next());
     names
@@ -227,7 +227,7 @@ fn filled(template: &str, finding: &Finding, voice: Voice) -> String {
         };
         let Some(end) = inner.find(close) else { return out + &rest[at..] };
         let inside = &inner[..end];
-        // An optional part is there where all of its facts are.
+        // An optional part is shown where all of its facts are present.
         let mut facts = inside.split('{').skip(1).filter_map(|part| part.split('}').next());
         match close {
             '}' => out.push_str(&shown(inside, finding).unwrap_or_else(|| UNKNOWN.to_owned())),
@@ -242,10 +242,10 @@ fn filled(template: &str, finding: &Finding, voice: Voice) -> String {
     out + rest
 }
 
-/// What stands for a number that could not be computed (NaN), and for a fact that is missing.
+/// Text for a number that could not be computed (NaN), and for a missing fact.
 const UNKNOWN: &str = "unknown";
 
-/// What stands for a pair of braces; `None` where the fact is missing, or holds no number.
+/// Text that replaces a pair of braces; `None` where the fact is missing or no number.
 fn shown(inside: &str, finding: &Finding) -> Option<String> {
     let (name, how) = inside.split_at(inside.find([' ', '.', ':', '?']).unwrap_or(inside.len()));
     if name == "subject" {
@@ -294,7 +294,7 @@ fn shown(inside: &str, finding: &Finding) -> Option<String> {
     Some(all.iter().map(show).collect::<Vec<String>>().join(", "))
 }
 
-/// A number without the noughts that end its decimals: how well it is known stands elsewhere.
+/// The number without trailing zeros of its decimals: its uncertainty is given elsewhere.
 fn trimmed(number: &str) -> String {
     let end = number.find([' ', '×']).unwrap_or(number.len());
     let (value, rest) = number.split_at(end);
@@ -372,7 +372,7 @@ mod tests {
             foremost(&all.collect::<Vec<_>>())
         };
         assert_eq!([first(0, 0), first(0, 2), first(1, 9), first(5, 9), first(9, 0)], [0, 2, 3, 5, 9]);
-        // One line that says "one more" is no shorter than that one.
+        // The line "one more" would be as long as the finding itself.
         assert_eq!([first(0, 4), first(0, 5), first(4, 1)], [4, 3, 5]);
     }
 
@@ -398,7 +398,7 @@ mod tests {
             [of("a", "impacts-doubled", 1), of("b", "impacts-doubled", 2), of("c", "impacts-doubled", 1)];
         let first = "a; c: 1 impact follows another too soon: left out of the mean interval.";
         assert_eq!(said(&all), [format!("{first} Also: b (2 impacts).")]);
-        // Two of one record are two facts.
+        // Different numbers about one record stay two sentences.
         assert_eq!(said(&[of("a", "impacts-doubled", 1), of("a", "impacts-doubled", 2)]).len(), 2);
     }
 

@@ -6,10 +6,10 @@ use crate::report::layout::{capital, lettered};
 use crate::report::{AxisSpec, Figure, Ink, Legend, Marker, Plot, Series, Stroke};
 use std::fmt::Write as _;
 
-/// Points that a line keeps: more than a print can show.
+/// Samples of a line: more than print can show.
 const SHOWN: usize = 4000;
 
-/// The part that was used with the sum of its modes, what they leave, and the strongest mode's damping ratio
+/// The fitted part with the sum of its modes, the residuals, and the damping ratio of the strongest mode
 /// over its amplitude.
 pub fn decay(title: &str, meta: &Meta, found: &DecayResult) -> Figure {
     let [times, record, modes] = &found.curves;

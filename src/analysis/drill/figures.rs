@@ -6,10 +6,10 @@ use crate::report::layout::lettered;
 use crate::report::{AxisSpec, Figure, Ink, Marker, Plot, Series, Stroke};
 use crate::units::notation::significant;
 
-/// Most points of a line: more are not seen in print.
+/// Most points of a line: more are not visible in print.
 const POINTS: usize = 4000;
 
-/// Turns whose mean is drawn where each is a whole number of samples.
+/// Turns averaged for a point of the speed, where each turn is a whole number of samples.
 const TOGETHER: usize = 10;
 
 /// Most markers over a line: more hide it.
@@ -34,7 +34,7 @@ pub fn drill(name: &str, drill: &Drill) -> Vec<(String, Figure)> {
 
 fn average(name: &str, drill: &Drill) -> Figure {
     let a = &drill.average;
-    // The turn ends where it begins: so does the curve.
+    // The curve is closed, since the turn ends where it begins.
     let closed = |values: Vec<f64>| -> Vec<f64> {
         let first = values.first().copied();
         values.into_iter().chain(first).collect()
@@ -84,7 +84,7 @@ fn marks(
             drill.impacts.iter().filter(|i| i.group == number && shown(i)).copied().collect();
         let own = thin(&own, MARKERS);
         let of = if drill.groups.len() > 1 { format!(", group {number}") } else { String::new() };
-        // Refused velocities have no place.
+        // Refused velocities are not drawn.
         let refused = drill.groups.get(number).is_some_and(|group| group.before.value.is_nan());
         if own.is_empty() || refused {
             continue;
@@ -126,7 +126,7 @@ fn trace(name: &str, drill: &Drill) -> Figure {
 fn speed(name: &str, drill: &Drill) -> Figure {
     let plot = Plot::new(AxisSpec::new("Time", "s"), AxisSpec::new("Speed", "Hz"));
     let sharp = drill.findings.iter().any(|found| found.code == code::DRILL_EDGES_SHARP);
-    // A turn is a whole number of samples then: a line through each would show steps of one sample alone.
+    // Each turn is then a whole number of samples: single turns would only show steps of one sample.
     let (name_of, turns) = if sharp && drill.speeds.len() > TOGETHER * TOGETHER {
         (format!("mean of {TOGETHER} turns"), TOGETHER)
     } else {
@@ -157,7 +157,7 @@ fn floor(name: &str, drill: &Drill) -> Option<Figure> {
                 .stroke(Stroke::Thin)
                 .ink(Ink::Grey),
         );
-    // The end of the widest band is the one that is asked for.
+    // The widest band is the one of interest: its upper end is marked.
     let widest = floor.bands.iter().max_by(|a, b| (a[1] - a[0]).total_cmp(&(b[1] - b[0])));
     if let Some(band) = widest {
         plot = plot.with(Series::vertical(format!("{} dB margin ends", floor.margin), band[1]));
@@ -170,7 +170,7 @@ fn floor(name: &str, drill: &Drill) -> Option<Figure> {
     )))
 }
 
-/// Every so many points, at most `most`.
+/// Every n-th value, with n such that at most `most` remain.
 fn thin<T: Copy>(values: &[T], most: usize) -> Vec<T> {
     values.iter().step_by(values.len().div_ceil(most).max(1)).copied().collect()
 }

@@ -11,13 +11,13 @@ pub(super) struct Channels {
     pub rate: f64,
     pub values: Vec<Vec<f64>>,
     metas: Vec<Meta>,
-    /// What the file says of itself. Sensitivities are stated: that it knows none is no finding.
+    /// Findings on the file. Missing sensitivities are no finding, since they are stated.
     pub findings: Vec<Finding>,
 }
 
 impl Channels {
-    /// Reads channels; missing values are taken, they are drop-outs. `progress` hears after every block how
-    /// many samples were read, of how many.
+    /// Reads channels; missing values are accepted as drop-outs. `progress` receives the number of samples
+    /// read, and of all, after every block.
     ///
     /// # Errors
     /// If the file cannot be read, a channel does not exist or is named twice, or has another rate.
@@ -41,7 +41,7 @@ impl Channels {
         Ok(Channels { rate: traces.rate(), metas: traces.channels().to_vec(), values, findings })
     }
 
-    /// Whether the file says that a channel is this quantity.
+    /// Whether the file states this quantity for a channel.
     pub fn is(&self, channel: usize, quantity: Quantity) -> bool {
         self.metas.get(channel).is_some_and(|meta| meta.quantity == quantity)
     }
@@ -51,7 +51,7 @@ impl Channels {
         self.metas.iter().fold(0.0, |most, meta| meta.clock.max(most))
     }
 
-    /// Multiplies the channels from this one on.
+    /// Multiplies the channels from index `from` on.
     pub fn scale(&mut self, from: usize, factor: f64) {
         self.values.iter_mut().skip(from).flatten().for_each(|v| *v *= factor);
     }

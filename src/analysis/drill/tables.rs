@@ -5,7 +5,7 @@ use crate::measure::drill::{Corner, Drill, Group};
 use crate::report::layout::{headed, pair};
 use crate::report::{Cell, Table};
 
-/// What was found, one row a number.
+/// Results of a drill, one row a number.
 pub fn drill(name: &str, d: &Drill) -> Table {
     let columns = [("record", ""), ("quantity", ""), ("value", ""), ("unit", ""), ("n", "")];
     let mut table = headed("Hammer drill", &columns);

@@ -9,16 +9,16 @@ use crate::record::{Finding, Meta, Record, upper_median};
 use crate::units::{Quantity, Unit};
 use num_complex::Complex64;
 
-/// A function as it is searched for modes.
+/// A frequency response function, ready for the search for modes.
 #[derive(Debug, Clone)]
 pub struct Function {
     /// Its name, unit and history.
     pub meta: Meta,
     /// Its lines.
     pub measured: Measured,
-    /// Its lines and their coherence, where it was computed.
+    /// Records of its lines and their coherence, where it was computed.
     pub(super) records: Vec<Record>,
-    /// What was left out.
+    /// Cautions on points left out.
     pub(super) findings: Vec<Finding>,
 }
 
@@ -27,7 +27,7 @@ impl Function {
         Function { meta, measured, records: Vec::new(), findings: Vec::new() }
     }
 
-    /// The receptance of a sweep of a campaign; of its only one where none is named.
+    /// The receptance of a sweep of a campaign; of its only sweep where `name` is `None`.
     ///
     /// # Errors
     /// If there is no such sweep, it cannot be read, or has no receptance.
@@ -38,9 +38,8 @@ impl Function {
         Function::of_response(&response)
     }
 
-    /// The receptance of a response, its points in the order of frequency, those on both sides of a jump and
-    /// those without an uncertainty left out; a magnitude where its phase is not
-    /// known.
+    /// The receptance of a response, by rising frequency; without phases, its magnitude. Left out are
+    /// points on both sides of a jump, and points of a complex receptance without an uncertainty.
     ///
     /// # Errors
     /// If the response is no displacement, or the force is not known.
@@ -89,8 +88,8 @@ impl Function {
     }
 }
 
-/// Uncertainties none of which lies below the median of the five around it: each comes from a few blocks, and
-/// one that is small by chance would carry the fit.
+/// Raises each uncertainty to at least the median of the five around it: each comes from a few blocks, and
+/// one that is small by chance would dominate the fit.
 fn pooled(std: &[f64]) -> Vec<f64> {
     let around = |i: usize| upper_median(&mut std[i.saturating_sub(2)..(i + 3).min(std.len())].to_vec());
     (0..std.len()).map(|i| std[i].max(around(i))).collect()

@@ -6,7 +6,7 @@ use crate::record::Trace;
 use crate::report::layout::lettered;
 use crate::report::{AxisSpec, Figure, Ink, Legend, Marker, Plot, Series, Stroke};
 
-/// Samples that a line keeps: more than a print can show.
+/// Samples of a line: more than print can show.
 const SHOWN: usize = 4000;
 
 /// Trace, histogram of intervals and return map.
@@ -23,7 +23,7 @@ pub fn impacts(title: &str, trace: &Trace, found: &Impacts) -> Figure {
         .with(Series::line("", [low, high], [low, high]).ink(Ink::Grey).stroke(Stroke::Thin))
         .with(Series::points("", before, after).marker(Marker::Circle).ink(Ink::Nth(0)))
         .legend(Legend::Hidden);
-    // The record at large, and a stretch of it in which single impacts can be seen.
+    // The whole record, and a stretch of it in which single impacts are visible.
     let all = (
         trace.axis.start(),
         trace.axis.start() + trace.axis.step().unwrap_or(1.0) * trace.values.len() as f64,
@@ -42,7 +42,7 @@ pub fn impacts(title: &str, trace: &Trace, found: &Impacts) -> Figure {
     lettered(figure)
 }
 
-/// A series of drops, each as [`drop`] has it.
+/// The traces of a series of drops, each by [`drop`].
 pub fn drops(name: &str, drops: Vec<Plot>) -> Figure {
     let columns = drops.len().clamp(1, 2);
     let rows = drops.len().div_ceil(columns) as f64;
@@ -82,7 +82,7 @@ fn marked(trace: &Trace, times: &[f64], (from, to): (f64, f64)) -> Plot {
     .legend(Legend::Above)
 }
 
-/// A line that keeps the extremes of each stretch, where there are more samples than can be seen.
+/// A line with the extremes of each stretch, where there are more samples than print can show.
 fn outline(trace: &Trace, from: f64, to: f64) -> (Vec<f64>, Vec<f64>) {
     let inside: Vec<usize> =
         (0..trace.values.len()).filter(|i| (from..=to).contains(&trace.axis.at(*i))).collect();
@@ -97,7 +97,7 @@ fn outline(trace: &Trace, from: f64, to: f64) -> (Vec<f64>, Vec<f64>) {
     kept.map(|i| (trace.axis.at(i), trace.values[i])).unzip()
 }
 
-/// Both axes of the return map from the same to the same.
+/// Equal limits for both axes of the return map.
 fn limits(values: &[f64]) -> (f64, f64) {
     let (low, high) =
         values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)));

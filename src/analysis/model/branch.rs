@@ -1,4 +1,5 @@
-//! Motions followed over a value through folds, flips and grazing: `vibro model continue`.
+//! Branches of periodic motions, followed over a parameter through folds, flips and grazing: `vibro model
+//! continue`.
 
 use super::{Driven, SceneKeys, figures, pattern};
 use crate::analysis::answer::Answer;
@@ -67,16 +68,16 @@ impl From<BranchParameter> for Parameter {
 }
 
 impl Keys {
-    /// Names of the files that its answer has.
+    /// Names of the files in its answer.
     pub const FILES: Names = Names::Numbered(&["branches", "marks", "points"]);
 
     /// The branches, with their marks and ends.
     ///
     /// # Errors
-    /// If the scene or a key cannot be, nothing drives the rig, or no motion is found to start from.
+    /// If the scene or a key is impossible, nothing drives the rig, or no motion is found to start from.
     pub fn answer(&self) -> Result<Answer> {
         let over = Parameter::from(self.over);
-        // The ends first: the middle between them is a start.
+        // Checks the ends first, since the start is the middle between them.
         check_range(over, self.from, self.to, self.from)?;
         let middle =
             Some(f64::midpoint(self.from, self.to)).filter(|_| self.over == BranchParameter::Frequency);
@@ -110,7 +111,7 @@ impl Keys {
         Ok(answer)
     }
 
-    /// There is no motion to start from at this value.
+    /// The error that there is no motion to start from at this value.
     fn none_at(&self, value: f64) -> Error {
         let over = Parameter::from(self.over);
         let found = format!(
@@ -132,7 +133,7 @@ impl Keys {
         Error::refused(found.trim_end()).hint(format!("{where_from}; {shown}")).setting(setting)
     }
 
-    /// The branches of these motions, each once.
+    /// The branches through these motions, each once.
     fn branches(&self, starts: &[PeriodicOrbit]) -> Result<Vec<Branch>> {
         let over = Parameter::from(self.over);
         let mut found: Vec<Branch> = Vec::new();
@@ -163,7 +164,7 @@ fn ones(rig: &Rig, sine: &Sine) -> Result<Vec<PeriodicOrbit>> {
     Ok(real.filter_map(|o| PeriodicOrbit::near(rig, sine, 1, &[(o.force_phase, o.impulse)]).ok()).collect())
 }
 
-/// A point of a branch, and the value over which that is followed.
+/// A point of a branch, with the value of the varied parameter.
 #[derive(Serialize)]
 struct BranchPoint {
     #[serde(flatten)]

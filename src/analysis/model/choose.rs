@@ -55,13 +55,13 @@ pub struct Keys {
 }
 
 impl Keys {
-    /// Names of the files that its answer has.
+    /// Names of the files in its answer.
     pub const FILES: Names = Names::Numbered(&["rungs", "sensitivity", "stretches", "points", "ladder"]);
 
-    /// The rung that is chosen, at one frequency or along an axis, and why.
+    /// The chosen rung, at one frequency or over a range of frequencies, with its reasons.
     ///
     /// # Errors
-    /// If the scene or a key cannot be, or nothing drives the rig.
+    /// If the scene or a key is impossible, or nothing drives the rig.
     pub fn answer(&self) -> Result<Answer> {
         let question = Question {
             observable: self.observable,
@@ -120,7 +120,7 @@ fn along(survey: &Survey, question: &Question, answer: &mut Answer) -> Result<()
         "chosen": survey.chosen, "rungs": rungs, "stretches": survey.stretches, "points": worded,
     });
     answer.result.extend(Answer::of(&found)?.result);
-    // Of each code the first, and at how many points it was found.
+    // Each code once: with its first frequency and its number of frequencies.
     let all = || survey.points.iter().flat_map(|c| c.findings.iter().map(move |f| (c.frequency, f)));
     let mut seen: Vec<&str> = Vec::new();
     for (first, finding) in all().filter(|(_, f)| f.severity != Severity::Note) {
@@ -145,14 +145,14 @@ fn along(survey: &Survey, question: &Question, answer: &mut Answer) -> Result<()
     Ok(())
 }
 
-/// Why a rung answers for its scene, or does not.
+/// Reasons why a rung is valid for its scene, or not.
 fn why(rung: &Rung) -> String {
     let refused = rung.refused.as_ref().map(|why| format!("Not computed: {why}."));
     let reasons = rung.reasons.iter().map(|reason| sentence(reason, Voice::Command));
     refused.into_iter().chain(reasons).collect::<Vec<String>>().join(" ")
 }
 
-/// Names of rungs that share a fate up to the chosen one, with the fate and why.
+/// Rungs up to the chosen one, grouped by equal result and reason: names, result, reason.
 fn fates(choice: &Choice) -> Vec<(String, &'static str, String)> {
     let top = choice.chosen.map_or(choice.rungs.len(), |model| model as usize + 1);
     let alike = choice.rungs[..top].chunk_by(|a, b| (a.valid, why(a)) == (b.valid, why(b)));
@@ -169,7 +169,7 @@ fn fates(choice: &Choice) -> Vec<(String, &'static str, String)> {
         .collect()
 }
 
-/// A rung, and in words why it answers or does not.
+/// A rung with the reasons why it is valid or not, in words.
 #[derive(Serialize)]
 struct RungReason<'a, T> {
     #[serde(flatten)]
@@ -177,7 +177,7 @@ struct RungReason<'a, T> {
     why: String,
 }
 
-/// A choice with its reasons in words. Its rungs stand in place of those of the choice, which have no words.
+/// A choice with its reasons in words. Its `rungs` replace those of `choice`, which have no words.
 #[derive(Serialize)]
 struct WordedChoice<'a> {
     #[serde(flatten)]
@@ -202,8 +202,7 @@ fn percent(part: Option<f64>) -> Cell {
     part.map(|p| 100.0 * p).into()
 }
 
-/// Adds the columns of an answer to a table that has a row for each of these: one for both masses, or one for
-/// each.
+/// Adds columns with the answer of each row: one column for both masses, or one for each.
 fn answered(mut table: Table, question: &Question, answers: impl Iterator<Item = Option<[f64; 2]>>) -> Table {
     let heads: &[&str] =
         if question.observable.is_of_impacts() { &["answer"] } else { &["answer, x1", "answer, x2"] };
@@ -216,7 +215,7 @@ fn answered(mut table: Table, question: &Question, answers: impl Iterator<Item =
     table
 }
 
-/// What was found of each rung.
+/// Comparison of the rungs.
 fn rungs(choice: &Choice, question: &Question) -> Table {
     let worst = |r: &Rung| r.changes.iter().copied().max_by(|a, b| a.change.abs().total_cmp(&b.change.abs()));
     let found = table(
@@ -234,7 +233,7 @@ fn rungs(choice: &Choice, question: &Question) -> Table {
     answered(found, question, choice.rungs.iter().map(|r| r.answer))
 }
 
-/// The answer over an unknown stiffness of the contact.
+/// The answer as a function of an unknown contact stiffness.
 fn sensitivity(rows: &[Sensitivity], question: &Question) -> Table {
     let found = table(
         "Answer over the contact stiffness",
@@ -253,7 +252,7 @@ fn needed(needs: &[Need]) -> Cell {
     (!needs.is_empty()).then(|| Need::names(needs)).into()
 }
 
-/// Which rung is chosen where.
+/// Chosen rung by frequency range.
 fn stretches(stretches: &[Stretch]) -> Table {
     table(
         "Simplest adequate model, by frequency range",
@@ -271,10 +270,10 @@ fn stretches(stretches: &[Stretch]) -> Table {
     )
 }
 
-/// What the columns of a campaign's table mean.
+/// Explanation of the table of a campaign.
 const TRIED: &str = "The models are compared at evenly spaced frequencies, not at the measured points. No model (–): state what it needs.";
 
-/// Which model is good enough where along the sweeps of a campaign.
+/// Adequate model by frequency range along the sweeps of a campaign.
 pub(crate) fn climbed(overlay: &Overlay) -> Table {
     let mut all = stretches(&[]).column("force", "N").column("direction", "");
     for rungs in &overlay.rungs {
@@ -286,7 +285,7 @@ pub(crate) fn climbed(overlay: &Overlay) -> Table {
     all.note(TRIED)
 }
 
-/// Each rung over the whole axis.
+/// Each rung over the whole range of frequencies.
 fn summaries(survey: &Survey) -> Table {
     table(
         "Models compared",

@@ -21,23 +21,24 @@ pub enum Contact {
     LooseMass,
 }
 
-/// What the option that chooses one says.
+/// Help of the option for the contact law.
 pub(super) const HELP: &str = "Contact law: restitution, kelvin-voigt, hertz, hunt-crossley, loose-mass";
 
-/// A motion, whatever its law.
+/// A motion with any contact law.
 pub(super) type Moving = Box<dyn Motion>;
 
-/// The law by which the masses of a scene meet, `None` for impacts. A spring and a damper without a stated
+/// The contact law of a scene, `None` for instantaneous impacts. A spring and a damper without a stated
 /// damping rebound with the rig's restitution.
 fn meeting(scene: &Scene, wanted: Contact) -> Result<Option<Law>> {
     let keys = scene.contact.unwrap_or_default();
-    // Keys of `[contact]` that the law has a place for, and the exponent that it has by itself.
+    // Keys of `[contact]` that the law uses, and the exponent that it implies.
     let (takes, own): (&[&str], _) = match wanted {
         Contact::Restitution | Contact::HuntCrossley => (&["stiffness", "exponent", "damping"], None),
         Contact::KelvinVoigt | Contact::LooseMass => (&["stiffness", "damping"], Some(1.0)),
         Contact::Hertz => (&["stiffness"], Some(1.5)),
     };
-    // A key that the law has no place for is no detail: N/m and N/m^1.5 are different things.
+    // A key that the law does not use is an error: the law decides whether a stiffness is in N/m or
+    // N/m^1.5.
     let exponent = keys.exponent.filter(|n| Some(*n) != own);
     let given = [("stiffness", keys.stiffness), ("exponent", exponent), ("damping", keys.damping)];
     if let Some((key, value)) =
@@ -70,11 +71,11 @@ fn meeting(scene: &Scene, wanted: Contact) -> Result<Option<Law>> {
     })
 }
 
-/// Makes motions of a scene from an excitation, a state and a phase (rad). Impacts below `grazing` (m/s)
-/// count as such, where they are at once.
+/// Returns a function that starts motions of a scene from an excitation, a state and a phase (rad). Where
+/// impacts are instantaneous, those slower than `grazing` (m/s) count as grazing.
 ///
 /// # Errors
-/// If a number of the contact is missing that nothing else gives, or is impossible.
+/// If a number that the contact law needs is missing, or one is impossible.
 pub(super) fn motions(
     scene: &Scene,
     wanted: Contact,
@@ -93,7 +94,7 @@ pub(super) fn motions(
     })
 }
 
-/// The finding that the scene's `[buffer]` and the model do not belong together.
+/// Caution where a stated `[buffer]` is not used, or a model assumes one that is not stated.
 pub(super) fn buffer(scene: &Scene, wanted: Contact) -> Option<Finding> {
     match scene.buffer {
         Some(_) if wanted == Contact::LooseMass => None,

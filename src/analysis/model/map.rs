@@ -32,16 +32,16 @@ pub struct Keys {
 }
 
 impl Keys {
-    /// Names of the files that its answer has.
+    /// Names of the files in its answer.
     pub const FILES: Names = Names::Numbered(&["map"]);
 
     /// The map.
     ///
     /// # Errors
-    /// If the scene or a key cannot be, or nothing drives the rig.
+    /// If the scene or a key is impossible, or nothing drives the rig.
     pub fn answer(&self, progress: &dyn Progress) -> Result<Answer> {
         let (x, y): (MapAxis, MapAxis) = (self.x.parse()?, self.y.parse()?);
-        // What is varied needs not be given: the excitation then begins at its low end.
+        // A varied parameter need not be stated: the excitation then has its lowest value.
         let or_varied = |given: Option<f64>, name: &str| {
             given.or_else(|| [&x, &y].into_iter().find(|a| a.key.name() == name).map(|a| a.low))
         };

@@ -33,13 +33,13 @@ pub struct Keys {
 }
 
 impl Keys {
-    /// Names of the files that its answer has.
+    /// Names of the files in its answer.
     pub const FILES: Names = Names::Numbered(&["orbits", "verdicts", "impacts", "orbit"]);
 
     /// The motions, each with its verdicts and figure.
     ///
     /// # Errors
-    /// If the scene or a key cannot be, or nothing drives the rig.
+    /// If the scene or a key is impossible, or nothing drives the rig.
     pub fn answer(&self) -> Result<Answer> {
         above_zero("frequency", self.frequency)?;
         check_gap_std(self.gap_std)?;
@@ -112,8 +112,7 @@ impl Keys {
     }
 }
 
-/// The contact and what it changes in each orbit; a finding where that is not known.
-/// An orbit, and what it becomes where its contacts take time.
+/// An orbit, with its correction for contacts that take time.
 #[derive(Serialize)]
 struct SoftenedOrbit<'a> {
     #[serde(flatten)]
@@ -121,6 +120,7 @@ struct SoftenedOrbit<'a> {
     soft: &'a Option<Softened>,
 }
 
+/// The contact, and the correction for it of each orbit; with a finding where there is none.
 fn soften(
     driven: &Driven,
     found: &Orbits,
@@ -150,7 +150,7 @@ fn soften(
     Ok((Some(contact), soft))
 }
 
-/// What each motion does.
+/// Quantities of each motion.
 fn orbits(orbits: &[Orbit]) -> Table {
     let unit = orbits.first().map_or("rad", Orbit::timing_unit);
     table(
@@ -170,7 +170,7 @@ fn orbits(orbits: &[Orbit]) -> Table {
     .note("Timing: of the impact, in rad after the crest of x1 without impacts, not of the force; or in s after the impulse or the onset of the pulse.")
 }
 
-/// What each motion is worth; `gap_std` is the standard uncertainty of the gap in m.
+/// Validity and stability of each motion; `gap_std` is the standard uncertainty of the gap in m.
 fn verdicts(orbits: &[Orbit], gap_std: Option<f64>) -> Table {
     table(
         "Verdicts",
@@ -204,7 +204,7 @@ fn no_impact(motion: &NoImpact) -> Table {
         .row([motion.possible.into(), motion.amplitude.into(), motion.largest.into()])
 }
 
-/// What the duration of the contact changes in each motion.
+/// Effect of the contact duration on each motion.
 fn soft(all: &[Option<Softened>]) -> Table {
     table(
         "Corrected for the contact duration",

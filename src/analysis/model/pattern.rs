@@ -1,4 +1,4 @@
-//! Motions with several impacts a period as they are told: keys, rows.
+//! Motions with several impacts a period, as JSON and as rows of tables.
 
 use crate::error::{Error, Result};
 use crate::model::{Excitation, PeriodicOrbit, Sine};
@@ -7,7 +7,7 @@ use crate::report::{Cell, Table};
 use num_complex::Complex64;
 use serde_json::{Value, json};
 
-/// The sine force that such motions are known for.
+/// The sine force: for other excitations, motions with several impacts a period are not solved.
 ///
 /// # Errors
 /// If it is another excitation.
@@ -22,8 +22,8 @@ pub(super) fn sine(excitation: &Excitation) -> Result<Sine> {
     }
 }
 
-/// The keys of a motion: those of one impact a period, and its impacts; `gap_std` is the standard uncertainty
-/// of the gap in m.
+/// A motion as JSON: the keys of one with a single impact a period, and its impacts. `gap_std` is the
+/// standard uncertainty of the gap in m.
 pub(super) fn told(orbit: &PeriodicOrbit, gap_std: Option<f64>) -> Value {
     let v = &orbit.validity;
     let mut told = json!({
@@ -45,7 +45,7 @@ pub(super) fn told(orbit: &PeriodicOrbit, gap_std: Option<f64>) -> Value {
     told
 }
 
-/// What each motion does and is worth.
+/// Quantities, validity and stability of each motion.
 pub(super) fn motions(orbits: &[PeriodicOrbit], gap_std: Option<f64>) -> Table {
     table(
         "Motions with several impacts a period",

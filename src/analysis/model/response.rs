@@ -34,13 +34,13 @@ pub struct Keys {
 }
 
 impl Keys {
-    /// Names of the files that its answer has.
+    /// Names of the files in its answer.
     pub const FILES: Names = Names::Numbered(&["response", "changes"]);
 
     /// The motions at each frequency, with the places where they appear, vanish and change.
     ///
     /// # Errors
-    /// If the scene or a key cannot be, or nothing drives the rig.
+    /// If the scene or a key is impossible, or nothing drives the rig.
     pub fn answer(&self) -> Result<Answer> {
         above_zero("from", Some(self.from))?;
         above_zero("to", Some(self.to))?;
@@ -108,7 +108,7 @@ fn branches(response: &Response) -> Table {
     )
 }
 
-/// Where motions change.
+/// Places where motions appear, vanish or change.
 fn changes(response: &Response) -> Table {
     table(
         "Changes",

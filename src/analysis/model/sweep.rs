@@ -80,16 +80,16 @@ pub enum Directions {
 }
 
 impl Keys {
-    /// Names of the files that its answer has.
+    /// Names of the files in its answer.
     pub const FILES: Names = Names::Numbered(&["sweep", "reaction"]);
 
     /// The sweep with its resonances and jumps.
     ///
     /// # Errors
-    /// If the scene or a key cannot be, nothing drives the rig, or a motion cannot be followed.
+    /// If the scene or a key is impossible, nothing drives the rig, or a motion cannot be followed.
     pub fn answer(&self) -> Result<Answer> {
         let over_force = self.over == SweptParameter::Force;
-        // A frequency for the scene where it is swept: any within.
+        // The scene needs a frequency even where it is swept: any in the range.
         let frequency = if over_force { self.frequency } else { Some(self.from) };
         let Driven { scene, excitation, finding } = self.scene.driven(frequency)?;
         let pace = match self.sweep_rate {
@@ -119,7 +119,7 @@ impl Keys {
         Ok(answer)
     }
 
-    /// The sweep of the motions that `make` makes of an excitation, a state and a phase.
+    /// Sweeps a motion that `make` creates from an excitation, a state and a phase.
     fn swept(
         &self,
         make: impl Fn(&Excitation, State, f64) -> Result<Moving> + Sync,
@@ -149,7 +149,7 @@ impl Keys {
     }
 }
 
-/// A point whose amplitude scatters by more than this share from cycle to cycle does not repeat every cycle.
+/// Scatter from cycle to cycle, over the amplitude, above which a motion does not repeat every cycle.
 const SCATTER: f64 = 0.05;
 
 fn scattered(swept: &Swept) -> Option<Finding> {

@@ -6,17 +6,17 @@ use crate::report::layout::capital;
 use crate::report::{AxisSpec, Figure, Ink, Legend, Marker, Plot, Series, Stroke};
 use crate::units::notation::typeset;
 
-/// Markers in turn.
+/// Markers of methods, in turn.
 const MARKERS: [Marker; 6] = {
     use Marker::{Circle, Diamond, FilledSquare, OpenCircle, Square, Triangle};
     [Circle, Square, Triangle, Diamond, FilledSquare, OpenCircle]
 };
 
-/// Crosses of what failed, in turn.
+/// Crosses of failed methods, in turn.
 const CROSSES: [Marker; 3] = [Marker::Cross, Marker::Saltire, Marker::Star];
 
-/// Methods of other kinds that stand in several charts, those last that only some builds have: each has one
-/// colour and form in all of them.
+/// Methods not of this library that appear in several charts, with the same colour and marker in all. The
+/// last ones exist only in some builds.
 const OFTEN: [&str; 10] = [
     "Euler loop",
     "RK4 loop",
@@ -30,10 +30,10 @@ const OFTEN: [&str; 10] = [
     "diffsol BDF, sign test",
 ];
 
-/// Whose code methods are, over their names in the legend.
+/// Groups of methods by whose code they are: headings in the legend.
 const GROUPS: [&str; 3] = ["Methods of vibro", "Common methods, coded in vibro", "Other programs"];
 
-/// Whose code it is: its place in [`GROUPS`].
+/// Index of the group of a method in [`GROUPS`].
 pub fn group(m: &MeasuredMethod) -> usize {
     match m {
         MeasuredMethod { ours: true, .. } => 0,
@@ -42,13 +42,13 @@ pub fn group(m: &MeasuredMethod) -> usize {
     }
 }
 
-/// Room of a row of crosses in parts of the decades of the errors.
+/// Height of a row of crosses, over the decades of the errors.
 const ROW: f64 = 0.05;
 
-/// Distance within which points of a line share their letters, in parts of the width and of the height.
+/// Distance within which points of a line share their letters, over the width and the height of the chart.
 const SHARED: [f64; 2] = [0.025, 0.03];
 
-/// What of the plane is seen: decades of time in s, and of the error, and over it rows of crosses, one for
+/// Visible part of the plane: decades of time in s and of the error, and above them a row of crosses for
 /// each method that failed.
 struct View {
     times: [f64; 2],
@@ -81,9 +81,9 @@ impl View {
     }
 }
 
-/// Error over time of every method of a scene, one line a method; what failed stands as crosses at the upper
-/// edge, each method in a row of its own. Points of models are their settings; those of estimators are kinds
-/// of records, which letters name.
+/// Error over time of every method of a scene, one line a method. Failed answers are crosses at the upper
+/// edge, each method in a row of its own. The points of models are settings; those of estimators are kinds
+/// of records, named by letters.
 pub fn chart(scene: &BenchmarkScene) -> Figure {
     let mut lines: Vec<&[MeasuredMethod]> = scene.methods.chunk_by(|a, b| a.method == b.method).collect();
     lines.sort_by_key(|line| group(&line[0]));
@@ -103,8 +103,8 @@ pub fn chart(scene: &BenchmarkScene) -> Figure {
         let (x, y) = stairs(scene, power(view.edge), last);
         plot = plot.with(Series::line("Pareto front", x, y).ink(Ink::Grey).stroke(Stroke::Dotted));
     }
-    // This library's methods are black, the others coloured, other programs dashed: six colours, and another
-    // form when they come round.
+    // Methods of this library are black, others coloured, other programs dashed. After six colours the
+    // marker changes.
     let (mut own, mut others) = (0, OFTEN.len());
     let (mut crosses, mut named) = (Vec::new(), Vec::new());
     let mut last_group = None;
@@ -145,7 +145,7 @@ pub fn chart(scene: &BenchmarkScene) -> Figure {
         plot =
             plot.with(Series::horizontal("above: failed", power(view.top))).with(Series::heading("Failed"));
     }
-    // The legend names them from above as they stand.
+    // The legend lists the rows of crosses from the top.
     plot = crosses.into_iter().rev().fold(plot, Plot::with);
     let (points, front) = match scene.family {
         Family::Models => {
@@ -174,19 +174,19 @@ pub fn chart(scene: &BenchmarkScene) -> Figure {
     ))
 }
 
-/// The tolerance of another program's answer, where it has one.
+/// Tolerance of another program, if it has one and gave an answer.
 fn tolerance(m: &MeasuredMethod) -> Option<&str> {
     let number = m.setting.strip_prefix("tolerance ")?;
     (m.other_program && error(m).is_some() && number.parse::<f64>().is_ok()).then_some(number)
 }
 
-/// Writes their tolerance beside the points of other programs.
+/// Writes the tolerance beside the points of other programs.
 fn toleranced(plot: Plot, lines: Vec<Vec<((f64, f64), &MeasuredMethod)>>) -> Plot {
     let told = lines.into_iter().flatten().filter_map(|(at, m)| Some((at, tolerance(m)?)));
     told.fold(plot, |plot, ((x, y), number)| plot.note(typeset(number), x, y))
 }
 
-/// Names the record of each point by a letter, a capital on the front of that record.
+/// Names the record of each point by a letter, a capital on the Pareto front of that record.
 fn lettered(
     mut plot: Plot,
     scene: &BenchmarkScene,
@@ -228,13 +228,13 @@ fn seconds(m: &MeasuredMethod) -> f64 {
     1e-9 * m.time_ns
 }
 
-/// Error that can be drawn: an answer without any counts as rounding.
+/// Error as drawn: at least 1e-17, since an exact answer has no place on a logarithmic axis.
 fn error(m: &MeasuredMethod) -> Option<f64> {
     m.error.filter(|e| e.is_finite()).map(|e| e.abs().max(1e-17))
 }
 
-/// The border of what has been reached: down from the upper edge at the fastest, along to the most accurate,
-/// and on.
+/// Pareto front as steps: down from the upper edge at the fastest, along to the most accurate, and on to
+/// the right edge.
 fn stairs(scene: &BenchmarkScene, edge: f64, last: f64) -> (Vec<f64>, Vec<f64>) {
     let on = scene.methods.iter().filter(|m| m.front);
     let mut front: Vec<(f64, f64)> = on.filter_map(|m| Some((seconds(m), error(m)?))).collect();
@@ -347,7 +347,7 @@ mod tests {
         assert_eq!(names, list);
         let dashed = |s: &&Series| s.stroke == Some(Stroke::Dashed);
         assert_eq!(plot.series.iter().filter(dashed).count(), 2);
-        // Of what other programs reached, each tolerance.
+        // A tolerance is written only where another program gave an answer.
         let notes: Vec<&str> = plot.notes.iter().map(|n| n.text.as_str()).collect();
         assert_eq!(notes, ["10⁻⁶"]);
     }
@@ -359,7 +359,7 @@ mod tests {
         assert!(plot.series.iter().any(|s| s.name == "Pareto front"));
     }
 
-    /// Colour and form of the crosses of each method that failed.
+    /// Colour and marker of each method that failed.
     fn crosses(methods: &[(&str, bool)]) -> Vec<(Ink, Option<Marker>)> {
         let failing =
             |&(name, ours): &(&str, bool)| MeasuredMethod { ours, ..measured(name, "", None, false) };
@@ -371,8 +371,8 @@ mod tests {
         plot.series.iter().filter_map(form).collect()
     }
 
-    /// As many as a chart may have: all that stand in several charts, four of its own, two added, two of
-    /// ours.
+    /// The largest number of methods in a chart: all that appear in several charts, four of its own, two
+    /// added, two of this library.
     #[test]
     fn what_failed_is_told_apart() {
         let own = [("exact", true), ("closed form", true)];

@@ -1,11 +1,11 @@
-//! Where methods break.
+//! Failure maps: the limits of methods.
 
 use crate::precision::{FailureMap, Family, Outcome};
 use crate::report::colour::{BLACK, Rgb, SERIES, WHITE};
 use crate::report::{Class, Figure, Grid};
 use crate::units::notation::typeset;
 
-/// Outcomes with their letters, colours and how much white is in them; the letters tell them apart without
+/// Outcomes with their letters, colours and the share of white in these; letters tell them apart without
 /// colour.
 pub const OUTCOMES: [(Outcome, &str, Rgb, f64); 6] = [
     (Outcome::Right, "+", SERIES[2], 0.45),
@@ -16,7 +16,8 @@ pub const OUTCOMES: [(Outcome, &str, Rgb, f64); 6] = [
     (Outcome::NotAsked, "·", WHITE, 0.0),
 ];
 
-/// A picture of each quantity of a family (of all where borders name none), with a name for its file.
+/// One map for each quantity of a family, or a single one where borders name none, with names for the
+/// files.
 pub fn maps(family: Family, map: &FailureMap) -> Vec<(String, Figure)> {
     let name = family.name();
     let one = |(quantity, part): (&str, FailureMap)| match quantity {
@@ -26,7 +27,7 @@ pub fn maps(family: Family, map: &FailureMap) -> Vec<(String, Figure)> {
     map.parts().into_iter().map(one).collect()
 }
 
-/// Methods across, scenes of each border down, what came in each cell.
+/// Methods across, scenes of each border down, with the outcome in each cell.
 fn grid(map: &FailureMap, title: String) -> Figure {
     let kind = |(outcome, letter, colour, white): (Outcome, &str, Rgb, f64)| Class {
         name: outcome.name().to_owned(),

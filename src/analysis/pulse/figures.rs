@@ -1,4 +1,4 @@
-//! Contact pulses: samples and models, and what the models leave.
+//! Contact pulses: samples, fitted models and residuals.
 
 use crate::measure::pulse::{ContactModel, PulseResult};
 use crate::report::layout::{capital, lettered};
@@ -16,7 +16,7 @@ pub(super) fn called(model: ContactModel) -> &'static str {
     }
 }
 
-/// Samples from which on single markers would hide the models.
+/// Number of samples from which single markers would hide the models.
 const DENSE: usize = 120;
 
 /// The pulse with the models fitted to it, and their residuals below; `None` where no record was fitted.

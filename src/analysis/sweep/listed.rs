@@ -10,18 +10,18 @@ use crate::read::{Steps, SweepList, SweepReader};
 use crate::record::{Axis, Finding, Sweep};
 use std::path::{Path, PathBuf};
 
-/// A sweep that can be read.
+/// The files of a sweep, with the reader for them.
 #[derive(Debug, Clone)]
 pub struct Listed {
     /// Its files.
     pub files: Files,
-    /// How they are read.
+    /// Reader with the settings of the sweep.
     pub reader: SweepReader,
-    /// What is known of it before it is read.
+    /// Findings from before the files are read.
     pub findings: Vec<Finding>,
 }
 
-/// What the files of a sweep hold.
+/// Content of the files of a sweep.
 #[derive(Debug, Clone)]
 pub enum Files {
     /// A spectrum each.
@@ -69,7 +69,7 @@ impl Listed {
     /// The spectra of the sweep.
     ///
     /// # Errors
-    /// If one cannot be read; of traces, which are none.
+    /// If one cannot be read, or the sweep consists of time traces.
     pub fn spectra(&self) -> Result<(&SweepList, Sweep)> {
         match &self.files {
             Files::Spectra(list) => Ok((list, self.reader.read(list)?)),
@@ -92,7 +92,7 @@ impl Listed {
             }
             Files::Traces(steps) => {
                 let (mut sweep, mut response) = self.stepped(steps, options)?;
-                // Channels of one file are in the order in which they are named.
+                // Channels of a single file stay in the order in which they are named.
                 let sorted = order::sorted(&sweep, &response, &steps.files).filter(|_| steps.files.len() > 1);
                 if let Some(files) = sorted {
                     let found = Finding::caution("sweep-sorted").count("n", response.points.len());

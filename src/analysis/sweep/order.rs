@@ -8,8 +8,8 @@ use crate::units::notation::significant;
 use std::collections::BTreeSet;
 use std::path::PathBuf;
 
-/// Part of a frequency by which two steps at one setting of the generator differ at most: twice the 50 ppm of
-/// a quartz.
+/// Relative difference in frequency up to which two steps have the same setting of the generator: twice the
+/// 50 ppm of a quartz.
 const SAME: f64 = 1e-4;
 
 /// Whether two frequencies are one setting of the generator.
@@ -17,12 +17,11 @@ pub(crate) fn same(a: f64, b: f64) -> bool {
     (a - b).abs() <= SAME * a.abs().max(b.abs())
 }
 
-/// Steps a turn, where the order of names is lost: drawn at random they turn at two steps of three, and a
-/// sweep that goes up and down several times has branches of many steps.
+/// Steps per change of direction below which the order of names is not that of the sweep. A random order
+/// turns at two steps of three; a sweep that goes up and down several times has branches of many steps.
 const STEPS_A_TURN: usize = 4;
 
-/// The files in the order of their frequencies, where the order of their names turns at more than one step of
-/// four.
+/// The files by rising frequency, where the order of their names turns at more than one step of four.
 pub(super) fn sorted(sweep: &Sweep, response: &Response, files: &[PathBuf]) -> Option<Vec<PathBuf>> {
     let frequency = |k: usize| response.points[k].excitation;
     let mut order: Vec<usize> = (0..response.points.len()).collect();
@@ -37,14 +36,14 @@ pub(super) fn sorted(sweep: &Sweep, response: &Response, files: &[PathBuf]) -> O
         order.reverse();
     }
     let mut sorted: Vec<PathBuf> = order.iter().map(|k| sweep.points[*k].response_path.clone()).collect();
-    // Steps that were left out have no frequency.
+    // Steps left out of the response have no frequency.
     let known: BTreeSet<&PathBuf> = sorted.iter().collect();
     let rest: Vec<PathBuf> = files.iter().filter(|file| !known.contains(file)).cloned().collect();
     sorted.extend(rest);
     Some(sorted)
 }
 
-/// Steps at the frequency of the step before them.
+/// Finding on steps at the frequency of the step before them.
 pub(super) fn repeated(sweep: &Sweep, response: &Response) -> Option<Finding> {
     let at = |k: usize| response.points[k].excitation;
     let file = |k: usize| file_name(&sweep.points[k].response_path);

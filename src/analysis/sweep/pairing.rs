@@ -9,7 +9,7 @@ use crate::report::words::About;
 use serde::Serialize;
 use std::mem::take;
 
-/// Where the curves of both masses cross.
+/// A crossing of the curves of both masses.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Crossing {
     /// Direction of the two sweeps.
@@ -38,7 +38,7 @@ fn by_level<'a>(responses: impl Iterator<Item = &'a Response>) -> Vec<Vec<usize>
     levels(&responses.map(forced).collect::<Vec<_>>())
 }
 
-/// Names the resonances of sweeps, each level of force on its own.
+/// Names the resonances of sweeps, each level of force by itself.
 pub(super) fn name(responses: &mut [&mut Response]) {
     for level in by_level(responses.iter().map(|r| &**r)) {
         let members = responses.iter_mut().enumerate().filter(|(i, _)| level.contains(i));
@@ -70,7 +70,7 @@ pub(super) fn antiresonances(responses: &[Response]) -> [Option<f64>; 2] {
         .map(|direction| first(&all, 1, direction).and_then(|r| deepest(&r.resonances)))
 }
 
-/// Where both masses cross, in each direction at each level of force.
+/// Crossings of both masses, in each direction at each level of force.
 pub(super) fn all_crossings(responses: &[Response]) -> Vec<Crossing> {
     let levels = by_level(responses.iter());
     let mut found = Vec::new();
@@ -93,7 +93,8 @@ pub(super) fn all_crossings(responses: &[Response]) -> Vec<Crossing> {
     found
 }
 
-/// Sweeps of one mass, direction and level of force, of which naming and crossings know only the first.
+/// Cautions on further sweeps of one mass, direction and level of force: naming and crossings use the first
+/// only.
 pub(super) fn twice(responses: &[Response]) -> Vec<About> {
     let mut found = Vec::new();
     for level in by_level(responses.iter()) {

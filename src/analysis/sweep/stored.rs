@@ -1,4 +1,4 @@
-//! What an analyser stored, where its files do not say.
+//! Settings with which an analyser stored spectra, where its files do not state them.
 
 use crate::campaign::above_zero;
 use crate::error::{Error, Result};
@@ -6,7 +6,7 @@ use crate::read::SweepReader;
 use crate::record::{Kind, Scaling, Window};
 use crate::units::{Quantity, Unit};
 
-/// Quantities that an analyser stores of a response.
+/// Quantities of a response that an analyser stores.
 pub(crate) const MOTION: [Quantity; 3] = [Quantity::Displacement, Quantity::Velocity, Quantity::Acceleration];
 
 /// What is stated of stored responses.
@@ -37,11 +37,10 @@ fn stored_scaling(name: &str) -> std::result::Result<Scaling, Kind> {
 }
 
 impl StoredResponseKeys {
-    /// Tells a reader.
+    /// Applies these settings to a reader.
     ///
     /// # Errors
-    /// If a name is not known, a number is impossible, or the unit is one of another quantity than what was
-    /// stored.
+    /// If a name is unknown, a number is impossible, or the unit does not fit the stored quantity.
     pub fn apply(&self, reader: &mut SweepReader) -> Result<()> {
         if let Some(text) = &self.unit {
             let unit = Unit::parse_or_opaque(text);

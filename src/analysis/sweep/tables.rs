@@ -6,10 +6,11 @@ use crate::measure::response::{Response, ResponsePoint};
 use crate::report::layout::{pair, table};
 use crate::report::{Cell, Column, Table};
 
-/// Place of the limit among the columns of a curve.
+/// Index of the column with upper limits in a curve.
 const LIMIT: usize = 6;
 
-/// Point by point, what fits a page: excitation, force, response, and a limit where an amplitude is faint.
+/// Points of a response, with columns that fit a page: excitation, force, response, and the upper limit of
+/// an amplitude below the noise floor.
 pub fn curve(response: &Response) -> Table {
     let shown = table(
         format!("Response, {}", response.name),
@@ -29,10 +30,10 @@ pub fn curve(response: &Response) -> Table {
     if response.points.iter().any(|p| p.largest_elsewhere) { shown.note(STRONGEST) } else { shown }
 }
 
-/// What the column of that name means.
+/// Explanation of the column "strongest line at".
 const STRONGEST: &str = "Strongest line at: this line of the spectrum is stronger than that of the excitation, as of a resonance, a harmonic or hum.";
 
-/// Point by point with receptance, harmonics and sub-harmonics, for files.
+/// Points of a response with receptance, harmonics and sub-harmonics, for files.
 pub fn response(response: &Response) -> Table {
     let mut table = curve(response);
     for (name, part) in [("receptance re", 0), ("receptance im", 1)] {
@@ -50,7 +51,7 @@ pub fn response(response: &Response) -> Table {
     drop(table.columns.splice(before..before, heads));
     for (row, point) in table.rows.iter_mut().zip(&response.points) {
         let cells = orders(point).into_iter().flat_map(|h| match h.upper_limit {
-            // Noise is no amplitude.
+            // Below the noise floor only the upper limit is given.
             Some(limit) => [Cell::Missing, Cell::Number(limit)],
             None => [Cell::from(&h.amplitude), Cell::Missing],
         });
@@ -59,7 +60,7 @@ pub fn response(response: &Response) -> Table {
     table
 }
 
-/// What the kinds of resonances mean, a line each.
+/// Explanation of the kinds of resonances, a line each.
 const KINDS: &str = "Resonance: a peak of the amplitude, from the points around it. For modes fitted to all points with their phase, add a table [[frf]].\nGrazing: both masses move in phase and touch lightly.\nClapping: both masses move in antiphase and strike head on.\nAntiresonance: the minimum of the excited mass between resonances, or a deep one of another mass.\nMinimum: an antiresonance if the phase rises there by 180°; the amplitude alone does not show it.";
 
 /// Resonances and antiresonances.
@@ -82,7 +83,7 @@ pub fn resonances(responses: &[Response]) -> Table {
     .note(words.join(" "))
 }
 
-/// The resonances of one sweep, which a report begins with.
+/// The resonances of one sweep, for the head of a report.
 pub fn named_peaks(response: &Response) -> Table {
     remarked(
         "Resonances",
@@ -96,7 +97,7 @@ pub fn named_peaks(response: &Response) -> Table {
     )
 }
 
-/// The jumps of one sweep, which a report begins with.
+/// The jumps of one sweep, for the head of a report.
 pub fn jumped(response: &Response) -> Table {
     headline(
         "Jumps",
@@ -108,7 +109,7 @@ pub fn jumped(response: &Response) -> Table {
     )
 }
 
-/// Agreement with the model, sweep by sweep, which a report begins with.
+/// Agreement with the model, sweep by sweep, for the head of a report.
 pub fn agreement(overlay: &Overlay) -> Table {
     let percent = |part: Option<f64>| Cell::from(part.map(|part| 100.0 * part));
     table(
@@ -169,7 +170,7 @@ pub fn pairs(overlay: &Overlay) -> Table {
     )
 }
 
-/// Measured against predicted resonances; a difference is as uncertain as what was measured.
+/// Measured against predicted resonances; a difference has the uncertainty of the measured value.
 pub fn peaks(overlay: &Overlay) -> Table {
     let difference = |value: Option<f64>, std| Cell::from(value.map(|v| pair(v, std)));
     table(
@@ -191,7 +192,7 @@ pub fn peaks(overlay: &Overlay) -> Table {
     )
 }
 
-/// How well each sweep is predicted.
+/// Agreement of each sweep with the model.
 pub fn scores(overlay: &Overlay) -> Table {
     table(
         "Agreement with the model",
@@ -209,9 +210,9 @@ pub fn scores(overlay: &Overlay) -> Table {
     )
 }
 
-/// Parameters found; each with its own unit, so in SI units as they are.
+/// Fitted parameters in SI units without prefixes, since each row has its own unit.
 pub fn fitted(fit: &Fit) -> Table {
-    // Each row has its own unit, so no common number of decimals would do.
+    // Six significant digits: rows of different units have no common number of decimals.
     let six = |value: f64| format!("{value:.5e}").parse::<f64>().unwrap_or(value).to_string();
     let end = |interval: Option<[f64; 2]>, side: usize| Cell::from(interval.map(|i| six(i[side])));
     table(
@@ -236,7 +237,7 @@ pub fn fitted(fit: &Fit) -> Table {
     )
 }
 
-/// Point by point.
+/// Points of the fit.
 pub fn fit_points(fit: &Fit) -> Table {
     table(
         "Points of the fit",
@@ -252,7 +253,7 @@ pub fn fit_points(fit: &Fit) -> Table {
     )
 }
 
-/// Models by what they predict of points held out.
+/// Models with their errors at points held out.
 pub fn fit_rungs(fit: &Fit) -> Table {
     let percent = |value: Option<f64>| Cell::from(value.map(|v| 100.0 * v));
     table(

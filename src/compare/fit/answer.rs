@@ -1,4 +1,4 @@
-//! What a fit says of the rig, and what a person must know of it.
+//! Result of a fit: parameters with their uncertainties, and findings on them.
 
 use super::{
     Converged, GUESS, MotionKind, NORMAL, Profile, Rung, Setting, SweepStep, Uncertainty, Unidentified,
@@ -13,24 +13,24 @@ use crate::record::{Direction, Finding};
 use serde::Serialize;
 use std::borrow::Cow;
 
-/// A parameter as it was found.
+/// A fitted parameter.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct FittedParameter {
     /// Parameter.
     pub parameter: Parameter,
     /// Value with its standard uncertainty, `None` where it is not identifiable.
     pub estimate: Estimate,
-    /// Where it started.
+    /// Stated value, in the unit of the estimate.
     pub start: f64,
     /// 95 % confidence interval, all other parameters free; `None` where it is not identifiable.
     pub interval: Option<[f64; 2]>,
     /// Whether the points determine it.
     pub identifiable: bool,
-    /// Why not.
+    /// Reason where it is not identifiable.
     pub reason: Option<Unidentified>,
-    /// What was known of it: value and standard uncertainty.
+    /// Prior value and its standard uncertainty, if stated.
     pub prior: Option<[f64; 2]>,
-    /// Whether that says more of it than the points.
+    /// Whether the prior determines it more than the points: its variance is above half of the prior's.
     pub rests_on_prior: bool,
 }
 
@@ -45,47 +45,47 @@ pub struct FitPoint {
     pub direction: Direction,
     /// Excitation frequency in Hz.
     pub frequency: f64,
-    /// Motion it was taken for.
+    /// Motion assigned to the point.
     pub motion: MotionKind,
     /// Measured amplitude in m.
     pub measured: f64,
-    /// Amplitude in m by the parameters found.
+    /// Amplitude in m predicted with the fitted parameters.
     pub fitted: f64,
-    /// Residual in stated standard deviations; in those of the residuals themselves, where none are stated.
+    /// Residual in stated standard deviations; without these, in standard deviations estimated from the
+    /// residuals.
     pub residual: f64,
 }
 
-/// Amplitudes that took no part.
+/// Numbers of amplitudes left out of the fit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
 pub struct LeftOut {
     /// Below the noise floor.
     pub faint: usize,
     /// The simulated sweep shows another pattern than one impact a cycle or none.
     pub other_motion: usize,
-    /// Outliers: five standard deviations, and five times the median scatter, from the motion of the
-    /// simulated sweep.
+    /// Outliers: more than five standard deviations, and five times the median scatter, from their motion.
     pub far: usize,
-    /// Their motion changed with the parameters from round to round.
+    /// The motion assigned to them changed from round to round.
     pub wavering: usize,
-    /// The contact lasts too long there for the correction of its compliance.
+    /// Impacts last too long there for the correction of the contact's compliance.
     pub soft: usize,
 }
 
 impl LeftOut {
-    /// All that lie above the noise floor.
+    /// Number of left out amplitudes above the noise floor.
     pub fn clear(&self) -> usize {
         self.other_motion + self.far + self.wavering + self.soft
     }
 }
 
-/// What the responses say of the rig.
+/// Result of a fit of the rig to measured responses.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Fit {
-    /// Parameters in the order they were asked for.
+    /// Parameters in the order of the campaign's `parameters`.
     pub parameters: Vec<FittedParameter>,
-    /// Correlations of the same, row by row.
+    /// Correlation matrix of these parameters, row by row.
     pub correlations: Vec<Vec<f64>>,
-    /// The rig found. The overlay and its scores are of the rig as it was stated.
+    /// Rig with the fitted parameters. The overlay and its scores use the rig as stated.
     pub rig: Rig,
     /// Force amplitude in N, found or fixed; the median where each point has its own.
     pub force: f64,
@@ -93,40 +93,40 @@ pub struct Fit {
     pub n: usize,
     /// Amplitudes left out.
     pub left_out: LeftOut,
-    /// Sum of squared residuals over degrees of freedom, by the stated uncertainties: about 1 where model
-    /// and uncertainties are right; NaN (null) without degrees of freedom.
+    /// χ²/ν, sum of squared residuals over degrees of freedom, by the stated uncertainties: about 1 where
+    /// model and uncertainties are right; NaN (null) without degrees of freedom.
     pub reduced_chi_squared: f64,
-    /// Factor on the standard deviations of the data, by which the residuals are larger than stated.
+    /// Factor on the standard deviations of the data, from χ²/ν and the correlation of the residuals.
     pub widened: f64,
     /// Probability that white noise shows as much correlation along frequency as the residuals.
     pub whiteness: Option<f64>,
     /// Starting points.
     pub starts: usize,
-    /// Of these, how many led to this answer.
+    /// Number of these whose search ended at this answer.
     pub agreeing: usize,
     /// Profile of the parameter with the largest relative uncertainty.
     pub profile: Option<Profile>,
-    /// Models of rising order, by what they predict of points that they were not fitted to.
+    /// Models of rising order, compared by their predictions of held-out points.
     pub rungs: Vec<Rung>,
     /// Points of the fit.
     pub points: Vec<FitPoint>,
-    /// Code of the first finding that takes the uncertainty of all parameters away, where there is one.
+    /// Code of the first doubt about the whole answer, if any: all uncertainties are then withdrawn.
     pub doubt: Option<Cow<'static, str>>,
-    /// What a person must know; doubts of the whole answer come first.
+    /// Findings; doubts about the whole answer come first.
     pub findings: Vec<Finding>,
 }
 
-/// A converged search with what its sum of squares says.
+/// A converged search with its uncertainties and the profile of the least certain parameter.
 pub struct AssessedFit<'a> {
     pub found: Converged<'a>,
     pub uncertainty: Uncertainty,
     pub profile: Option<Profile>,
-    /// Amplitudes for which the contact lasts too long; `None` with rigid impacts.
+    /// Number of amplitudes excluded because the contact lasts too long; `None` with rigid impacts.
     pub lost: Option<usize>,
 }
 
 impl<'a> AssessedFit<'a> {
-    /// Of a search in which `lost` amplitudes were no longer seen.
+    /// Assesses a search that excluded `lost` amplitudes because of a long contact.
     ///
     /// # Errors
     /// As [`Uncertainty::new`].
@@ -137,11 +137,11 @@ impl<'a> AssessedFit<'a> {
     }
 }
 
-/// How the parameters are found; all that is not fitted is taken as exact.
+/// Method named in each estimate. Parameters that are not fitted are taken as exact.
 const METHOD: &str = "least squares of both masses and directions by the closed form";
 
 impl AssessedFit<'_> {
-    /// The result, but for starts, rungs and cautions.
+    /// Result without starts, rungs and cautions.
     pub fn fit(&self, base: &Setting) -> Fit {
         let (least, setting) = (&self.found.least, self.found.setting());
         let (problem, n) = (&least.problem, least.minimum.parameters.len());
@@ -191,13 +191,13 @@ impl AssessedFit<'_> {
         }
     }
 
-    /// The parameter number `i`.
+    /// Result for parameter number `i`.
     pub fn fitted(&self, base: &Setting, i: usize, in_doubt: bool) -> FittedParameter {
         let (problem, u) = (&self.found.least.problem, self.found.least.minimum.parameters[i]);
         let Unknown { parameter, coordinate, prior } = problem.unknowns[i];
         let reason = if in_doubt { Some(Unidentified::InDoubt) } else { self.uncertainty.unidentified[i] };
         let (value, std, identifiable) = (self.found.setting().get(parameter), self.std(i), reason.is_none());
-        // The profile of its parameter is nearer to the truth than the slopes at the least.
+        // The interval of a profile is more accurate than that of the Jacobian at the minimum.
         let profile = self.profile.as_ref().filter(|p| p.parameter == parameter);
         let profiled = profile.and_then(|p| Some([p.interval[0]?, p.interval[1]?]));
         let sloped = || coordinate.interval(u, NORMAL * self.uncertainty.std(i));
@@ -210,8 +210,8 @@ impl AssessedFit<'_> {
             identifiable,
             reason,
             prior,
-            // A prior adds 1/s² to the reciprocal of the variance that all else leaves, exactly where the
-            // model is linear.
+            // A prior adds 1/s² to the reciprocal variance by the points, exactly in a linear model. It
+            // adds more than half where the variance is above s²/2.
             rests_on_prior: prior.is_some_and(|[_, s]| std.powi(2) > 0.5 * s * s),
         }
     }
@@ -224,27 +224,28 @@ impl AssessedFit<'_> {
     }
 }
 
-/// A prior and the points contradict each other by so many standard uncertainties of both: chance does so in
-/// one of 1.7 million cases.
+/// Difference between prior and points, over their combined standard uncertainty, beyond which they
+/// contradict each other: chance exceeds it in one of 1.7 million cases.
 const APART: f64 = 5.0;
-/// Smallest part of a prior's variance that the points can have taken away and be told from rounding.
+/// Lower limit of the variance of that difference, over the variance of the prior: keeps rounding out.
 const TAKEN: f64 = 0.01;
-/// Standard deviations by which the points must pull a parameter over a bound to contradict it: chance does
-/// so in one of 700 cases.
+/// Pull of the points beyond a bound, in standard deviations, that contradicts the bound: chance exceeds it
+/// in one of 700 cases.
 const PULLED: f64 = 3.0;
-/// One standard uncertainty raises the sum of squares by 1: a profile that falls by as much has found another
-/// answer.
+/// Fall of the sum of squares along a profile that reveals another, lower minimum: one standard uncertainty
+/// raises the sum by 1.
 const FALL: f64 = 1.0;
-/// Part of the amplitudes that may be outliers, or lost to a long contact, before the answer is in doubt.
+/// Fraction of amplitudes that are outliers, or lost to a long contact, beyond which the answer is in
+/// doubt.
 const LOST: f64 = 0.1;
-/// χ²/ν beyond which residuals say more of the model than of noise: what it lacks moves parameters by more
-/// than is left of it in the residuals, which the parameters take up as far as they can.
+/// χ²/ν beyond which a lack of fit is a doubt: the fitted parameters absorb most of a model's error, so
+/// they are off by more than the residuals show.
 const POOR: f64 = 1.25;
-/// A force that differs by more than this part is another one: a load cell is calibrated to 1 or 2 %.
+/// Relative difference of the fitted from the stated force that is a caution: load cells err by 1 or 2 %.
 const OTHER: f64 = 0.05;
 
 impl AssessedFit<'_> {
-    /// Why the answer as a whole may be wrong, and its uncertainties mean nothing.
+    /// Doubts about the whole answer: its uncertainties are then invalid.
     pub fn doubts(&self) -> Vec<Finding> {
         let (least, found, problem) = (&self.found.least, &self.found, &self.found.least.problem);
         let (n, freedom, guessed) = (problem.rows().0, problem.freedom(), problem.data.guessed);
@@ -266,7 +267,7 @@ impl AssessedFit<'_> {
         self.contradictions().into_iter().chain(of_all.into_iter().flatten()).collect()
     }
 
-    /// Priors and bounds that the points contradict, and a least sum of squares that lies elsewhere.
+    /// Priors and bounds that the points contradict, and a profile that falls below the minimum found.
     fn contradictions(&self) -> Vec<Finding> {
         let (problem, setting) = (&self.found.least.problem, self.found.setting());
         let mut found = Vec::new();
@@ -274,9 +275,9 @@ impl AssessedFit<'_> {
             let (name, unit) = (unknown.parameter.name(), unknown.parameter.unit());
             let pulled = |doubt: Finding, deviations| doubt.about(name).number("deviations", deviations);
             if let Some([known, std]) = unknown.prior {
-                // The answer lies (s² − p²)/s² of the way from the prior, of uncertainty s, to what the
-                // points alone say, p being its own: over √(s² − p²), that is the distance of
-                // both over their uncertainties.
+                // With s the uncertainty of the prior and p that of the answer, the answer lies (s² −
+                // p²)/s² of the way from the prior to the value by the points alone. Its shift over √(s² −
+                // p²) is therefore the difference of both over their combined uncertainty.
                 let taken = (std * std - self.std(i).powi(2)).max(TAKEN * std * std).sqrt();
                 let deviations = (setting.get(unknown.parameter) - known).abs() / taken;
                 if deviations > APART {
@@ -296,7 +297,7 @@ impl AssessedFit<'_> {
         found
     }
 
-    /// All findings but the doubts of the whole answer.
+    /// All findings except the doubts about the whole answer.
     pub fn cautions(&self, fit: &Fit, entry: &FitEntry) -> Vec<Finding> {
         let (least, data) = (&self.found.least, self.found.least.problem.data);
         let (whiteness, ratio, sound) =
@@ -351,7 +352,7 @@ impl AssessedFit<'_> {
         found
     }
 
-    /// Why the parameter number `i` is not identifiable; `None` where the whole answer is in doubt.
+    /// Doubt about parameter number `i`, not identifiable; `None` where the whole answer is in doubt.
     fn unidentified(&self, fit: &Fit, i: usize, reason: Unidentified) -> Option<Finding> {
         let parameter = fit.parameters[i].parameter;
         let finding = match reason {

@@ -1,4 +1,5 @@
-//! Motions by history and parameters by least squares, in turn until both stay.
+//! Assigns motions by simulated sweeps and fits parameters by least squares, in turn until both stay the
+//! same.
 
 use super::{
     Data, FINE, Motion, MotionKind, Pace, Problem, Setting, Simulated, StepAmplitude, SweepStep, distances,
@@ -12,29 +13,29 @@ use crate::record::median;
 use rayon::prelude::*;
 use std::collections::BTreeSet;
 
-/// Rounds before steps whose motion still changes are left out: near a fold each set of parameters has
-/// another motion there.
+/// Rounds after which steps with a still changing motion are left out: near a fold each new set of
+/// parameters has another motion there.
 const ROUNDS: usize = 3;
-/// Rounds in all.
+/// Largest number of rounds.
 const MOST: usize = 6;
-/// Pace of simulated sweeps on the way: parameters that are wrong by more than a disturbance leaves need no
-/// long wait for it.
+/// Cycles of simulated sweeps during the search: shorter than at the end, since the parameters are still
+/// further off than a residual transient.
 const BRIEF: Pace = Pace { settle: 60, measure: 36 };
-/// Chance that residuals of the stated uncertainties have no larger χ².
+/// Probability of a χ² below its limit where model and stated uncertainties are right.
 const CHANCE: f64 = 0.999;
 
-/// The least sum of squares with given motions.
+/// Minimum of the sum of squares with given motions.
 #[derive(Debug, Clone)]
 pub struct LeastSquares<'a> {
     pub problem: Problem<'a>,
     pub minimum: Minimum,
     /// χ²/ν of data and priors by their stated uncertainties; NaN without degrees of freedom.
     pub reduced: f64,
-    /// Of the residuals along frequency, sweep by sweep.
+    /// Whiteness of the residuals along frequency, sweep by sweep.
     pub whiteness: Whiteness,
 }
 
-/// Parameters at the least sum of squares, with the motions that belong to them.
+/// Parameters at the minimum of the sum of squares, with the motions assigned for them.
 #[derive(Debug, Clone)]
 pub struct Converged<'a> {
     pub least: LeastSquares<'a>,
@@ -44,8 +45,8 @@ pub struct Converged<'a> {
     pub far: usize,
     /// Whether the motions stayed the same in the last round.
     pub agreed: bool,
-    /// How far all points lie from a simulated sweep, or from the motion they are taken for, and the
-    /// parameters from their priors: the less the better.
+    /// Distance of all points from the simulated sweep, or from their assigned motion where that is nearer,
+    /// and of the parameters from their priors: smaller is better.
     pub unexplained: f64,
 }
 
@@ -56,10 +57,10 @@ impl Converged<'_> {
 }
 
 impl<'a> Problem<'a> {
-    /// Settles from the coordinates `start` on.
+    /// Searches from the coordinates `start` until motions and parameters agree.
     ///
-    /// At first outliers pull little ([`super::search`]), since the motions of wrong parameters are wrong,
-    /// too; in the end all count as stated.
+    /// At first outliers have little weight ([`super::search`]), since wrong parameters give wrong motions.
+    /// In the end all points have their stated weights.
     ///
     /// # Errors
     /// If a round leaves fewer points than parameters.
@@ -103,8 +104,8 @@ impl<'a> Problem<'a> {
         }
     }
 
-    /// The least sum of squares with its motions, from `start` on; weights and scale from the parameters
-    /// found, twice.
+    /// Minimises the sum of squares with the assigned motions from `start`. Weights and scale are updated
+    /// twice from the parameters found.
     ///
     /// # Errors
     /// If there are fewer points than parameters.
@@ -120,15 +121,15 @@ impl<'a> Problem<'a> {
                 return Ok(LeastSquares { problem: self, minimum, reduced, whiteness });
             }
             let least = if self.data.guessed && self.freedom() > 0 { f64::MIN_POSITIVE } else { 1.0 };
-            // A scale that the residuals had to tell is itself uncertain.
+            // A scale estimated from the residuals is itself uncertain: Student's factor widens it.
             let widened = if reduced > least { student(self.freedom()).unwrap_or(1.0) } else { 1.0 };
             self.scale = reduced.max(least) * (widened * whiteness.inflation).powi(2);
             (u, rescaled) = (minimum.parameters, rescaled + 1);
         }
     }
 
-    /// How far all points lie from what was simulated, or nearer from the motion they are taken for: Σ min
-    /// (z², 1) over all κ.
+    /// Distance of all points from the simulated sweep, or from their assigned motion where nearer: Σ min
+    /// (z², 1) over all κ of [`FINE`].
     fn left_over(&self, u: &[f64], motions: &Motions) -> f64 {
         let (data, setting) = (self.data, self.setting(u));
         let one = |((step, kind), simulated): ((&SweepStep, &Option<MotionKind>), &Option<[f64; 2]>)| {
@@ -143,7 +144,7 @@ impl<'a> Problem<'a> {
         points + FINE.len() as f64 * self.prior_cost(&setting)
     }
 
-    /// χ²/ν by the stated uncertainties, priors counted in, and whether the residuals of the data are noise.
+    /// χ²/ν by the stated uncertainties with priors, and the whiteness of the residuals of the data.
     pub fn goodness(&self, residuals: &[f64]) -> (f64, Whiteness) {
         let (data, priors) = residuals.split_at(self.rows().0.min(residuals.len()));
         let sum = |r: &[f64]| r.iter().map(|r| r * r).sum::<f64>();
@@ -162,7 +163,7 @@ fn leave_out(kinds: &mut [Option<MotionKind>], steps: &BTreeSet<usize>) {
 }
 
 impl LeastSquares<'_> {
-    /// Whether χ²/ν is larger than chance makes it.
+    /// Whether χ² is larger than chance explains.
     pub(crate) fn beyond_chance(&self) -> bool {
         let free = self.problem.freedom();
         self.reduced * free as f64 > chi_squared_at(CHANCE, free)
@@ -172,17 +173,17 @@ impl LeastSquares<'_> {
 /// Motions of all steps.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Motions {
-    /// `None` where it is none of the closed form.
+    /// Assigned motion; `None` where it is none of the closed form.
     pub kinds: Vec<Option<MotionKind>>,
-    /// The same by the simulated sweep alone, whatever was measured.
+    /// Motion of the simulated sweep, whatever was measured.
     pub history: Vec<Option<MotionKind>>,
     /// Amplitudes of both masses in m of the simulated sweep; `None` where it has no answer.
     pub simulated: Vec<Option<[f64; 2]>>,
 }
 
-/// The motion of each step, as a sweep simulated through all steps of its sequence reaches it; `None` where
-/// that is none of the closed form. Where the measured amplitudes lie nearer to another stable motion, it is
-/// that one: on which of several a sweep settles may hang on less than can be known.
+/// Assigns each step the motion that a sweep simulated through all steps of its sequence reaches; `None`
+/// where the closed form does not have it. Where the measured amplitudes are nearer to another stable
+/// motion, that one is assigned: which one a sweep reaches may depend on unknown details.
 ///
 /// # Errors
 /// If the rig is impossible.
@@ -197,8 +198,8 @@ pub fn assigned(data: &Data, setting: &Setting, pace: Pace) -> Result<Motions> {
             let history = simulated.as_ref().and_then(|simulated| reached(simulated, &motions));
             let seen = motions.iter().filter(|m| m.is_seen());
             let nearest = seen.min_by(|a, b| away(step, a).total_cmp(&away(step, b)));
-            // A mass that moves is not free; of two impacting motions the closed form of a fit is the upper
-            // one.
+            // Free motion is excluded where mass 2 is seen to move. Of two impacting motions a fit uses the
+            // upper one.
             let upper = motions.first().filter(|m| m.kind == MotionKind::Impacting);
             let kind = history.and(nearest).map(|m| m.kind).filter(|kind| match kind {
                 MotionKind::Free => step.readings[1].as_ref().is_none_or(|r| r.upper_limit.is_some()),
@@ -217,25 +218,26 @@ pub fn assigned(data: &Data, setting: &Setting, pace: Pace) -> Result<Motions> {
     Ok(motions)
 }
 
-/// Sum of |ln (measured/predicted)|; a mass that rests where it was seen to move is as far as can be.
+/// Distance of the amplitudes from a motion: Σ |ln (measured/predicted)|. A mass predicted at rest that was
+/// seen to move is as far as possible.
 fn away(step: &SweepStep, motion: &Motion) -> f64 {
     let above = |(mass, limit): (usize, f64)| (motion.amplitude[mass] / limit).ln().max(0.0);
     let moves = |(mass, reading): (usize, &StepAmplitude)| reading.log_ratio(motion.amplitude[mass]).abs();
     step.clear().map(moves).sum::<f64>() + step.faint().map(above).sum::<f64>()
 }
 
-/// A step farther from its motion than so many standard deviations is an outlier: noise alone takes one of a
-/// million there.
+/// Distance in standard deviations beyond which a step is an outlier from its motion: noise alone exceeds
+/// it in one step of a million.
 const FAR: f64 = 5.0;
 /// Median of the larger of two absolute normal deviates: erf² (x/√2) = 1/2.
 const MEDIAN: f64 = 1.052;
-/// At most this part of the steps is looked at as outliers: with a tenth the answer is doubted.
+/// Largest fraction of steps left out as outliers; from a tenth on, the answer is in doubt.
 const OUTLIERS: f64 = 0.25;
 
-/// Motions without those of outliers: a point of another motion, or of a sweep that had not settled.
+/// Motions without outliers: points of another motion, or of a sweep that had not settled.
 ///
-/// They are left out one after the other, the farthest first, since it moves what the points share. Where the
-/// points scatter more than they should, by the median, that counts for a standard deviation.
+/// Outliers are left out one by one, the farthest first, since each also shifts the shared errors of the
+/// other points. Where the median scatter exceeds the standard deviation, it takes its place.
 pub fn without_outliers(
     data: &Data,
     setting: &Setting,

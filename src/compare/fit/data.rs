@@ -1,4 +1,4 @@
-//! The measured points of a fit, both masses of one step together.
+//! Measured points of a fit, with both masses of a step together.
 
 use super::{MotionKind, Pace, Setting, Swept};
 use crate::error::Result;
@@ -16,14 +16,13 @@ pub struct StepAmplitude {
     pub std: f64,
     /// Upper limit of an amplitude below the noise floor, in m.
     pub upper_limit: Option<f64>,
-    /// Factor by which the contact's compliance changed the amplitude; amplitude and uncertainty are those
+    /// Factor by which the contact's compliance changed the amplitude. Amplitude and uncertainty are
     /// divided by it.
     pub compliance: f64,
 }
 
 impl StepAmplitude {
-    /// ln (measured/predicted), e^20 at most: a motion that shows nothing, or does not exist, is as far as
-    /// can be.
+    /// ln (measured/predicted), limited to ±20: 20 for a motion that has no amplitude or does not exist.
     pub fn log_ratio(&self, predicted: f64) -> f64 {
         const FARTHEST: f64 = 20.0;
         let ratio = (self.amplitude / predicted).ln();
@@ -31,18 +30,18 @@ impl StepAmplitude {
     }
 }
 
-/// One step of a sweep: both masses where they were measured under the very same force.
+/// One step of a sweep, with both masses where they were measured at exactly the same force.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SweepStep {
     /// Excitation frequency in Hz.
     pub frequency: f64,
     /// Its standard uncertainty in Hz; 0 where it is not known.
     pub frequency_std: f64,
-    /// Force in N at the reference of [`Data::force`].
+    /// Force in N, where the force of the setting equals [`Data::force`].
     pub force: f64,
     /// Its standard uncertainty in N; 0 where it is not known.
     pub force_std: f64,
-    /// Mass 1 and mass 2.
+    /// Amplitudes of mass 1 and mass 2.
     pub readings: [Option<StepAmplitude>; 2],
 }
 
@@ -53,13 +52,13 @@ impl SweepStep {
         readings.filter(|(_, reading)| reading.upper_limit.is_none())
     }
 
-    /// Upper limits of those below it, with the index of their mass.
+    /// Upper limits in m of amplitudes below the noise floor, with the index of their mass.
     pub fn faint(&self) -> impl Iterator<Item = (usize, f64)> {
         (0..2).filter_map(|mass| Some((mass, self.readings[mass].as_ref()?.upper_limit?)))
     }
 }
 
-/// All points.
+/// All measured points of a fit.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Data {
     /// Names and directions of the sweeps.
@@ -70,28 +69,27 @@ pub struct Data {
     pub sequences: Vec<Vec<usize>>,
     /// Reference of the forces in N: the stated one, or the median of the measured ones.
     pub force: f64,
-    /// Relative standard uncertainty that all amplitudes of a mass share.
+    /// Relative standard uncertainty of the calibration that all amplitudes of a mass share.
     pub calibration: f64,
-    /// Amplitudes without a standard uncertainty of their own.
+    /// Number of amplitudes without a standard uncertainty of their own.
     pub without_std: usize,
-    /// Whether none has one: the residuals then tell its size.
+    /// Whether no amplitude has one: it is then estimated from the residuals.
     pub guessed: bool,
-    /// How long the simulated rig stays at each step.
+    /// Cycles of the simulated rig at each step.
     pub pace: Pace,
 }
 
-/// Part of an amplitude that stands for its standard uncertainty where none is known. It is only a weight:
-/// the residuals scale it.
+/// Relative standard uncertainty where none is known. It is only a weight: the residuals scale it.
 pub(crate) const GUESS: f64 = 1e-2;
 
 impl Data {
-    /// The points of displacement responses that name their mass and direction, their calibration exact.
-    /// `force` in N is the stated one.
+    /// Points of displacement responses that state mass and direction; their calibration is taken as exact.
+    /// `force` is the stated one in N.
     ///
     /// # Errors
     /// If there is no such response, or no force is known.
     pub fn new(force: Option<f64>, responses: &[Response], pace: Pace) -> Result<Data> {
-        // The overlay of the same responses has the findings of their force.
+        // Findings on the force are already those of the overlay of the same responses.
         let (swept, _) = Swept::all(force, responses)?;
         let points = || swept.iter().flat_map(|s| &s.response.points);
         let clear = points().filter(|p| p.upper_limit.is_none() && p.amplitude.value > 0.0);
@@ -113,7 +111,8 @@ impl Data {
         Ok(data)
     }
 
-    /// Adds the relative standard uncertainty `part` to each amplitude; with it none is guessed.
+    /// Adds the relative standard uncertainty `part` to each amplitude; the uncertainties then count as
+    /// stated.
     pub fn scattered(&mut self, part: f64) {
         if part == 0.0 {
             return;
@@ -132,18 +131,18 @@ impl Data {
         step.force * setting.force / self.force
     }
 
-    /// What a spectrum shows of both masses in m at a step, of the motion of this kind.
+    /// Amplitudes of both masses in m that a spectrum shows at a step, in the motion of this kind.
     pub fn shows(&self, setting: &Setting, kind: MotionKind, step: &SweepStep) -> [f64; 2] {
         setting.shows(kind, self.force_at(setting, step), step.frequency)
     }
 
-    /// Amplitudes above the noise floor.
+    /// Number of amplitudes above the noise floor.
     pub fn clear(&self) -> usize {
         self.steps.iter().flat_map(SweepStep::clear).count()
     }
 
-    /// Adds a sweep: beside the other mass, where that passed the very same steps. `relative` is the standard
-    /// uncertainty of amplitudes without one.
+    /// Adds a sweep; it shares the steps of the other mass where both passed exactly the same steps.
+    /// `relative` is the relative standard uncertainty of amplitudes without one.
     fn add(&mut self, swept: &Swept<'_>, relative: f64) {
         let (sweep, mass, points) = (self.sweeps.len(), usize::from(swept.mass) - 1, swept.points());
         self.sweeps.push((swept.response.name.clone(), swept.direction));

@@ -1,4 +1,4 @@
-//! No more model than the points ask for: models of rising order, each judged by points that it was not
+//! Chooses the simplest adequate model: models of rising order are judged by points that they were not
 //! fitted to.
 
 use super::{Converged, Data, MotionKind, Problem, Setting, assigned};
@@ -9,34 +9,34 @@ use rayon::prelude::*;
 use serde::Serialize;
 use std::ops::RangeInclusive;
 
-/// Steps on both sides of a feature that are held out with it: neighbours tell its height.
+/// Steps on each side of a feature that are held out with it, since they would reveal its height.
 const BESIDE: usize = 2;
-/// Part of a frequency by which steps of two sweeps may differ and be the same.
+/// Relative difference in frequency up to which steps of two sweeps are the same.
 const SAME: f64 = 1e-3;
-/// No model is chosen where the best is off by half of what was held out.
+/// Mean error from which no model is chosen: even the best is off by half of the amplitudes.
 const NONSENSE: f64 = 0.5;
 
-/// A stretch of steps that was held out.
+/// Steps that were held out together, and the error of their prediction.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Block {
     /// Resonance, antiresonance, jump, or `amplitude` for steps away from all of these.
     pub feature: String,
     /// Its frequency in Hz.
     pub frequency: f64,
-    /// Mean of |ln (measured/predicted)| over all amplitudes of the steps held out, each 1 at most: about
-    /// the relative error.
+    /// Mean of |ln (measured/predicted)|, each at most 1, over all amplitudes held out: about the relative
+    /// error.
     pub error: f64,
 }
 
-/// A model, and how well it predicts what it was not shown.
+/// A model, and how well it predicts points held out.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Rung {
     /// Model: `linear`, without impacts; `closed form`, with rigid impacts; `soft-corrected closed form`,
-    /// with the compliance of the contact taken out to first order.
+    /// corrected to first order for the compliance of the contact.
     pub model: &'static str,
-    /// Parameters that it was fitted with.
+    /// Parameters fitted with this model.
     pub parameters: Vec<Parameter>,
-    /// Their values by this model.
+    /// Their values by this model, in SI units.
     pub values: Vec<f64>,
     /// Mean error of the blocks held out; `None` with fewer than two.
     pub held_out: Option<f64>,
@@ -47,19 +47,19 @@ pub struct Rung {
     pub aicc: Option<f64>,
     /// Probability that white noise shows as much correlation along frequency as its residuals.
     pub whiteness: Option<f64>,
-    /// Whether it is the simplest within one standard error of the best.
+    /// Whether it is the simplest model within one standard error of the best.
     pub chosen: bool,
-    /// Block by block.
+    /// Errors block by block.
     pub blocks: Vec<Block>,
 }
 
-/// Judges the models by the answer with rigid contacts and that with compliance, where it is known.
+/// Judges the models from the fit with rigid contacts and, where it exists, the one with compliance.
 ///
-/// Steps around each resonance, antiresonance and jump, and a stretch away from them, are held out in turn,
-/// in all sweeps; the rest is fitted, and what was held out predicted (blocked cross-validation: D. R.
-/// Roberts et al., *Ecography* 40 (2017) 913). Which motion such a step shows, the simulated sweep of the
-/// model's own rig decides. The simplest model within one standard error of the best is chosen (L. Breiman et
-/// al., *Classification and Regression Trees* (1984), 3.4.3).
+/// Steps around each resonance, antiresonance and jump, and stretches away from these, are held out in turn
+/// in all sweeps. The rest is fitted and predicts them (blocked cross-validation: D. R. Roberts et al.,
+/// *Ecography* 40 (2017) 913). The motion of a held-out step is that of a simulated sweep of the fitted
+/// rig. The simplest model within one standard error of the best is chosen (L. Breiman et al.,
+/// *Classification and Regression Trees* (1984), 3.4.3).
 pub fn rungs(rigid: &Converged<'_>, soft: Option<&Converged<'_>>, responses: &[Response]) -> Vec<Rung> {
     let full = &rigid.least.problem;
     let mut linear = full.clone();
@@ -96,15 +96,14 @@ fn rung(
 ) -> Option<Rung> {
     let (own, u) = fitted(problem.clone(), from)?;
     let setting = own.setting(&u);
-    // One set of weights, that of the answer, for all models: sums of squares over different ones cannot be
-    // compared.
+    // All models have the weights of the answer: sums of squares with different weights cannot be compared.
     let off = answer.off(|step, kind| {
         let kind = if impacts { kind } else { MotionKind::Free };
         let shows = answer.data.shows(&setting, kind, step);
         if std::ptr::eq(problem.data, answer.data) {
             return shows;
         }
-        // A rigid model is compared with what was measured.
+        // A rigid model is compared with the amplitudes as measured, not as corrected for compliance.
         [0, 1].map(|mass: usize| shows[mass] / step.readings[mass].as_ref().map_or(1.0, |r| r.compliance))
     });
     let sum = off.iter().map(|r| r * r).sum();
@@ -136,8 +135,8 @@ fn rung(
     })
 }
 
-/// A model at its least sum of squares over its steps, with weights of its own; it begins at the setting
-/// `from`.
+/// Fits a model over its steps, with weights of its own, from the setting `from`. Returns it with its
+/// coordinates.
 fn fitted<'a>(mut problem: Problem<'a>, from: &Setting) -> Option<(Problem<'a>, Vec<f64>)> {
     let mut u = problem.coordinates(from);
     for _ in 0..2 {
@@ -149,8 +148,8 @@ fn fitted<'a>(mut problem: Problem<'a>, from: &Setting) -> Option<(Problem<'a>, 
     Some((problem, u))
 }
 
-/// Mean of |ln (measured/predicted)|, 1 at most, of all amplitudes at these steps; `None` where there is
-/// none.
+/// Mean of |ln (measured/predicted)|, each at most 1, over all amplitudes at these steps; `None` without
+/// amplitudes.
 fn error(data: &Data, setting: &Setting, impacts: bool, steps: &[usize]) -> Option<f64> {
     let motions = if impacts { Some(assigned(data, setting, data.pace).ok()?) } else { None };
     let one = |i: &usize| {
@@ -173,8 +172,8 @@ struct HeldOut {
     steps: Vec<usize>,
 }
 
-/// Features with their frequency and the steps of all sweeps around them; between them pieces of as many
-/// steps.
+/// Features, each with its frequency and the steps of all sweeps around it. Between features: blocks of the
+/// same number of steps.
 fn blocks(data: &Data, responses: &[Response]) -> Vec<HeldOut> {
     let at = |i: &usize| data.steps[*i].frequency;
     let mut used: Vec<usize> = (0..data.steps.len()).filter(|i| data.steps[*i].clear().count() > 0).collect();

@@ -1,4 +1,4 @@
-//! Weighted residuals of the steps whose motion is known.
+//! Weighted residuals of the steps with a known motion.
 
 use super::{Data, MotionKind, Setting, StepAmplitude, SweepStep, Unknown, range};
 use crate::error::{Error, Result};
@@ -6,28 +6,28 @@ use crate::math::{Minimum, minimise};
 use crate::model::Parameter;
 use nalgebra::{DMatrix, SVD};
 
-/// A sum of squares to be minimised: data with weights, and priors.
+/// A sum of squares to be minimised: weighted residuals of the data, and of priors.
 ///
-/// Frequency and force of a step err for both masses alike, and calibrations for all points of a mass; each
-/// amplitude has its own uncertainty beside these. The residuals are whitened with what such errors make of
-/// them ([`SharedErrors`]): first step by step, then all together.
+/// Frequency and force of a step have errors common to both masses; a calibration has errors common to all
+/// points of a mass. Each amplitude has its own uncertainty as well. The residuals are whitened with the
+/// covariance of these errors ([`SharedErrors`]): first step by step, then all together.
 #[derive(Debug, Clone)]
 pub struct Problem<'a> {
     pub data: &'a Data,
     pub base: Setting,
     pub unknowns: Vec<Unknown>,
-    /// Motion of each step; `None` leaves it out.
+    /// Motion of each step; steps with `None` are left out.
     pub kinds: Vec<Option<MotionKind>>,
     /// Errors of frequency and force, by step.
     step_errors: Vec<SharedErrors>,
     /// Errors of the calibrations.
     calibrations: SharedErrors,
-    /// Variances of the data are so much larger than stated.
+    /// Factor on the stated variances of the data.
     pub scale: f64,
 }
 
 impl<'a> Problem<'a> {
-    /// Of points whose motions are not known yet.
+    /// Problem of points whose motions are not known yet.
     pub fn new(data: &'a Data, base: &Setting, unknowns: Vec<Unknown>) -> Problem<'a> {
         Problem {
             data,
@@ -40,12 +40,12 @@ impl<'a> Problem<'a> {
         }
     }
 
-    /// The same with these motions; weights are still to be taken.
+    /// The same problem with these motions. Its weights are not set yet: see [`Problem::weigh`].
     pub fn of(&self, kinds: Vec<Option<MotionKind>>) -> Problem<'a> {
         Problem { kinds, ..self.with(self.data) }
     }
 
-    /// The same of other points, whose motions are not known yet.
+    /// The same unknowns with other points, whose motions are not known yet.
     pub fn with<'b>(&self, data: &'b Data) -> Problem<'b> {
         Problem::new(data, &self.base, self.unknowns.clone())
     }
@@ -65,8 +65,8 @@ impl Problem<'_> {
         self.unknowns.iter().map(|k| k.coordinate.of(setting.get(k.parameter))).collect()
     }
 
-    /// The same minimum with coordinates of unknowns without an upper bound not below 0, where they have the
-    /// same values.
+    /// The same minimum with coordinates of at least 0 for unknowns without an upper bound: u and −u give
+    /// the same value.
     pub fn folded(&self, mut minimum: Minimum) -> Minimum {
         for (i, (unknown, u)) in self.unknowns.iter().zip(&mut minimum.parameters).enumerate() {
             if unknown.coordinate.high.is_infinite() && *u < 0.0 {
@@ -77,10 +77,10 @@ impl Problem<'_> {
         minimum
     }
 
-    /// Whether `n` amplitudes and the priors can determine the unknowns.
+    /// Checks that `n` amplitudes and the priors can determine the unknowns.
     ///
     /// # Errors
-    /// If not.
+    /// If they cannot.
     pub fn enough(&self, n: usize) -> Result<()> {
         let all = self.unknowns.len();
         if n + self.rows().1 >= all && n > 0 {
@@ -92,13 +92,13 @@ impl Problem<'_> {
         ))
     }
 
-    /// Amplitudes that take part, with the indices of step and mass.
+    /// Amplitudes in the fit, with the indices of step and mass.
     pub fn used(&self) -> impl Iterator<Item = (usize, usize, &StepAmplitude)> {
         let steps = self.data.steps.iter().zip(&self.kinds).enumerate();
         steps.flat_map(|(i, (step, kind))| shown(step, *kind).map(move |(mass, reading)| (i, mass, reading)))
     }
 
-    /// Number of residuals: data, and priors behind them.
+    /// Numbers of residuals of data and of priors; priors come last.
     pub fn rows(&self) -> (usize, usize) {
         (self.used().count(), self.unknowns.iter().filter(|u| u.prior.is_some()).count())
     }
@@ -109,8 +109,8 @@ impl Problem<'_> {
         (data + priors).saturating_sub(self.unknowns.len())
     }
 
-    /// Takes what errors of frequencies, forces and calibrations make of the residuals from the setting at
-    /// `u`.
+    /// Sets the covariance of the residuals by errors of frequencies, forces and calibrations, at the
+    /// setting at `u`.
     pub fn weigh(&mut self, u: &[f64]) {
         let setting = self.setting(u);
         let errors = |(step, kind): (&SweepStep, &Option<MotionKind>)| {
@@ -134,9 +134,9 @@ impl Problem<'_> {
         self.calibrations = SharedErrors::new(&self.calibration_columns(&setting));
     }
 
-    /// Change of each residual by one standard uncertainty of the calibrations: of each mass' factor, of its
-    /// slope, 1 at the ends of the frequencies, and of the force where it is not looked for. That moves
-    /// gap and amplitudes alike, and no amplitude tells it.
+    /// Change of each whitened residual by one standard uncertainty of the calibrations: of each mass'
+    /// factor, of its slope over frequency (−1 to 1), and of the force where it is not fitted. The
+    /// amplitudes do not reveal an error of the force: force, gap and amplitudes scale alike.
     fn calibration_columns(&self, setting: &Setting) -> Vec<Vec<f64>> {
         let (std, mut columns) = (self.data.calibration, Vec::new());
         if std == 0.0 {
@@ -161,7 +161,8 @@ impl Problem<'_> {
         columns
     }
 
-    /// What `of` makes of each step and its motion, in m for both masses, over their standard deviations.
+    /// Values of `of` for each step and its motion, in m for both masses, over their standard deviations
+    /// and whitened step by step.
     fn whitened(&self, of: impl Fn(&SweepStep, MotionKind) -> [f64; 2]) -> Vec<f64> {
         let mut all = Vec::new();
         for ((step, kind), errors) in self.data.steps.iter().zip(&self.kinds).zip(&self.step_errors) {
@@ -176,7 +177,7 @@ impl Problem<'_> {
         all
     }
 
-    /// Measured less what `shows` gives for each step and its motion, in standard deviations.
+    /// Whitened residuals, measured less `shows` for each step and its motion, in standard deviations.
     pub fn off(&self, shows: impl Fn(&SweepStep, MotionKind) -> [f64; 2]) -> Vec<f64> {
         let widened = self.scale.sqrt();
         let mut all = self.whitened(|step, kind| {
@@ -200,7 +201,7 @@ impl Problem<'_> {
         all
     }
 
-    /// The least sum of squares from `start` on.
+    /// Minimises the sum of squares from `start`.
     ///
     /// # Errors
     /// As [`minimise`].
@@ -211,7 +212,7 @@ impl Problem<'_> {
     }
 }
 
-/// Clear amplitudes that depend on the parameters in a motion of this kind: a mass at rest shows none.
+/// Amplitudes above the noise floor that depend on the parameters in this motion; a mass at rest has none.
 pub fn shown(step: &SweepStep, kind: Option<MotionKind>) -> impl Iterator<Item = (usize, &StepAmplitude)> {
     step.clear().filter(move |(mass, _)| match kind {
         Some(MotionKind::Impacting) => true,
@@ -220,23 +221,24 @@ pub fn shown(step: &SweepStep, kind: Option<MotionKind>) -> impl Iterator<Item =
     })
 }
 
-/// Change of both amplitudes by a relative change of what `shows` multiplies by its argument; 0 at the end of
-/// a motion, where there is none.
+/// Derivative of both amplitudes by the factor that `shows` applies to frequency or force, at 1; 0 at the
+/// end of a branch, where no difference exists.
 ///
-/// A central difference over h = 1e-6 errs by h²/6 of the third derivative and by ε/h = 2e-10 of the value.
+/// The central difference with h = 1e-6 errs by h²/6 times the third derivative, and by rounding of ε/h =
+/// 2e-10 of the value.
 fn slopes(shows: impl Fn(f64) -> [f64; 2]) -> [f64; 2] {
     const H: f64 = 1e-6;
     let [above, below] = [1.0 + H, 1.0 - H].map(shows);
     [0, 1].map(|mass| (above[mass] - below[mass]) / (2.0 * H)).map(|s| if s.is_finite() { s } else { 0.0 })
 }
 
-/// Errors that move several residuals at once: frequency and force of a step, the calibrations of all points
-/// of a mass.
+/// Errors that move several residuals at once: those of frequency and force of a step, or of the
+/// calibrations.
 ///
-/// With W the change of the residuals, in their standard deviations, by one standard uncertainty of each
-/// error, their covariance is `I + WWᵀ`. With `W = VSQᵀ` they are multiplied by its inverse square root `I −
-/// V (I − (I + S²)^(−1/2)) Vᵀ`: generalised least squares (A. C. Aitken 1935), as if each error were an
-/// unknown with a prior, found with the rest.
+/// W is the change of the residuals, in standard deviations, by one standard uncertainty of each error: the
+/// covariance is `I + WWᵀ`. With `W = VSQᵀ` the residuals are multiplied by its inverse square root, `I − V
+/// (I − (I + S²)^(−1/2)) Vᵀ`. This is generalised least squares (A. C. Aitken 1935), as if each error were
+/// fitted as an unknown with a prior.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct SharedErrors {
     /// Columns of V, each of length 1, and S.
@@ -244,7 +246,7 @@ pub struct SharedErrors {
 }
 
 impl SharedErrors {
-    /// From the columns of W; none where all are 0.
+    /// From the columns of W; no errors where all entries are 0 or one is not finite.
     pub fn new(columns: &[Vec<f64>]) -> SharedErrors {
         let rows = columns.first().map_or(0, Vec::len);
         let w = DMatrix::from_fn(rows, columns.len(), |i, j| columns[j][i]);
@@ -260,7 +262,7 @@ impl SharedErrors {
     /// Whitens residuals in units of standard deviations that are `widened` times as large as stated.
     pub(crate) fn whiten(&self, residuals: &mut [f64], widened: f64) {
         for (v, s) in &self.directions {
-            // V's columns are orthogonal: each takes off its own part.
+            // V's columns are orthogonal: each removes its own part.
             let along: f64 = v.iter().zip(residuals.iter()).map(|(v, r)| v * r).sum();
             let off = along * (1.0 - 1.0 / (s / widened).hypot(1.0));
             residuals.iter_mut().zip(v).for_each(|(r, v)| *r -= off * v);
@@ -272,8 +274,8 @@ impl SharedErrors {
 mod tests {
     use super::*;
 
-    /// Against the definition: rᵀ(I + WWᵀ)⁻¹r by a plain inverse, for columns that are neither at right
-    /// angles nor small.
+    /// Compares with the definition, rᵀ(I + WWᵀ)⁻¹r by a plain inverse, for columns that are neither
+    /// orthogonal nor small.
     #[test]
     fn squares_sum_to_the_definition() {
         let columns: [Vec<f64>; 3] =
@@ -287,7 +289,7 @@ mod tests {
             let mut white = r;
             SharedErrors::new(&columns).whiten(&mut white, widened);
             let sum: f64 = white.iter().map(|r| r * r).sum();
-            // The largest eigenvalue of the covariance, 900, times rounding.
+            // Rounding times the largest eigenvalue of the covariance, about 900, with a margin of 5.
             assert!((sum / expected - 1.0).abs() < 1e-12, "{sum} {expected}");
         }
     }
@@ -301,8 +303,8 @@ mod tests {
         }
     }
 
-    /// Against the definition for two residuals, C^(−1/2) C C^(−1/2) = I, for errors small and large, along
-    /// each other and not.
+    /// Compares with the definition for two residuals, C^(−1/2) C C^(−1/2) = I, for small and large errors,
+    /// parallel and not.
     #[test]
     fn the_covariance_of_white_residuals_is_one() {
         for errors in [
@@ -324,8 +326,8 @@ mod tests {
                 for (j, b) in columns.iter().enumerate() {
                     let pairs = (0..2).flat_map(|k| (0..2).map(move |l| (k, l)));
                     let sum: f64 = pairs.map(|(k, l)| a[k] * c(k, l) * b[l]).sum();
-                    // Sums of C that cancel down to 1: three roundings in each whitened entry, two in a
-                    // product, three in the sum.
+                    // Terms of the size of C cancel down to 1, with three roundings in each whitened entry,
+                    // two in a product and three in the sum.
                     let tolerance = 11.0 * f64::EPSILON * (c(0, 0) + c(1, 1));
                     assert!(
                         (sum - f64::from(u8::from(i == j))).abs() < tolerance,

@@ -8,29 +8,29 @@ use crate::measure::Estimate;
 use crate::model::Parameter;
 use crate::record::Direction;
 
-/// Generator's settings of the example campaign in Hz.
+/// Frequencies in Hz that were set at the generator in the example campaign.
 const FREQUENCIES: [f64; 40] = [
     4.013, 4.267, 4.518, 4.772, 4.981, 5.137, 5.262, 5.343, 5.417, 5.471, 5.508, 5.546, 5.592, 5.664, 5.758,
     5.883, 6.038, 6.287, 6.609, 6.941, 7.268, 7.572, 7.884, 8.189, 8.513, 8.827, 9.132, 9.436, 9.718, 9.967,
     10.183, 10.364, 10.478, 10.567, 10.622, 10.689, 10.861, 11.262, 11.918, 12.842,
 ];
 
-/// The example's rig.
+/// Rig and force of the example.
 fn example() -> Setting {
     Setting { rig: Rig { restitution: 0.98, ..Rig::thesis() }, force: 0.1 }
 }
 
-/// Amplitudes below so many times the noise do not stand out of it.
+/// Amplitude over noise from which it is above the noise floor: 2 µm at 0.3 µm.
 const FAINT: f64 = 20.0 / 3.0;
 
-/// Sweeps up and down of this rig with the noise of the example's points: 0.3 µm in x, faint below 2 µm, and
-/// 1.5e-4 Hz in frequency (0.05 Hz a line). Steps of another pattern have the amplitudes of the simulated
-/// sweep.
+/// Sweeps of this rig up and down, with the uncertainties of the example's points: 0.3 µm in x, below the
+/// noise floor under 2 µm, and 1.5e-4 Hz in frequency (0.05 Hz a line). Steps of another pattern have the
+/// amplitudes of the simulated sweep.
 fn truth(setting: &Setting, pace: Pace) -> (Data, Vec<Option<MotionKind>>) {
     swept(setting, pace, &FREQUENCIES, 0.3e-6)
 }
 
-/// The same at these frequencies, rising, with this noise in m.
+/// The same at these rising frequencies in Hz, with this noise in m.
 fn swept(setting: &Setting, pace: Pace, frequencies: &[f64], noise: f64) -> (Data, Vec<Option<MotionKind>>) {
     let mut data = Data {
         sweeps: ["mass 1, up", "mass 2, up", "mass 1, down", "mass 2, down"]
@@ -82,8 +82,8 @@ fn swept(setting: &Setting, pace: Pace, frequencies: &[f64], noise: f64) -> (Dat
     (data, kinds)
 }
 
-/// The same with noise: amplitudes of the closed form where it has the motion, at a frequency that is not
-/// quite the stated one.
+/// The same with noise: amplitudes of the closed form where it has the motion, at a frequency slightly off
+/// the stated one.
 fn noisy(truth: &Data, kinds: &[Option<MotionKind>], setting: &Setting, seed: u64) -> Data {
     let mut normal = Noise::new(seed);
     for _ in 0..16 {
@@ -114,13 +114,14 @@ fn unknowns(names: &[&str], from: &Setting) -> Vec<Unknown> {
 
 const ALL: [&str; 7] = ["force", "restitution", "c1", "c2", "gap", "k1", "k2"];
 
-/// χ² of 1 to 9 degrees of freedom that is exceeded in 5 % of cases (Abramowitz & Stegun, table 26.8).
+/// 95 % quantiles of χ² with 1 to 9 degrees of freedom (Abramowitz & Stegun, table 26.8).
 const JOINT: [f64; 9] = [3.841, 5.991, 7.815, 9.488, 11.070, 12.592, 14.067, 15.507, 16.919];
 
-/// Shorter than by default, so that tests are quick: noise and answer are the same.
+/// Fewer cycles than by default, for quick tests: noise and answer use the same.
 const PACE: Pace = Pace { settle: 150, measure: 36 };
 
-/// Errors of calibrations: one factor for each mass, and one slope.
+/// Adds calibration errors of relative standard deviation `std`: for each mass one factor and one slope
+/// over frequency.
 fn miscalibrated(mut data: Data, std: f64, seed: u64) -> Data {
     let mut normal = Noise::new(500 + seed);
     for _ in 0..16 {
@@ -140,14 +141,14 @@ fn miscalibrated(mut data: Data, std: f64, seed: u64) -> Data {
     data
 }
 
-/// Seeds of a coverage, and of its quick stand-in.
+/// Numbers of seeds of a coverage test, and of its quick version.
 const SEEDS: u64 = 500;
 const FEW: u64 = 8;
 
-/// The truth lies within the joint region of 95 % in 92 to 98 % of 500 seeds, three standard deviations of a
-/// binomial, within the interval of each parameter in 91 % or more, four of them, and within all intervals
-/// together in 92 to 98 %: neither too narrow nor too wide. `drawn` gives the points of a seed and what is to
-/// be found. The fits begin at the truth with its motions: how the search gets there is for other tests.
+/// Checks the coverage of 95 % in 500 seeds. The joint region must hold the truth in 92 to 98 % (three
+/// standard deviations of a binomial), the interval of each parameter in 91 % or more (four), and the mean
+/// of all intervals in 92 to 98 %. `drawn` gives points and unknowns of a seed. The fits begin at the truth
+/// with its motions: other tests cover the search.
 fn covered(
     seeds: u64,
     setting: &Setting,
@@ -169,7 +170,7 @@ fn covered(
             let found = Uncertainty::new(&least).unwrap();
             assert!(found.unidentified.iter().all(Option::is_none), "seed {seed}: {:?}", found.unidentified);
             let off = |i: usize| (minimum.parameters[i] - true_u[i]).abs() / found.std(i);
-            // Five standard deviations are passed by one of two million, in however few draws.
+            // Five standard deviations are exceeded in one of two million draws, at any number of seeds.
             assert!((0..n).all(|i| off(i) < 5.0), "seed {seed}");
             let own = (0..n).map(|i| off(i) <= NORMAL);
             (rise <= JOINT[n - 1], own.collect())
@@ -188,8 +189,8 @@ fn covered(
     assert!((0.92..=0.98).contains(&share), "{share}");
 }
 
-/// So with noise alone, with calibrations that err, too, by three times the noise of the largest points, and
-/// with the measured force of each step, by four times.
+/// Coverage with noise alone, with calibration errors of three times the noise of the largest points, and
+/// with errors of the measured force of each step of four times that noise.
 #[test]
 fn the_truth_lies_within_the_region_as_often_as_stated() {
     within_the_region(FEW);
@@ -218,8 +219,8 @@ fn within_the_region(seeds: u64) {
     }
 }
 
-/// So where both masses were weighed to half a hundredth only, which is then in the uncertainty of all that
-/// motion tells by its ratio to them.
+/// Coverage where both masses are weighed to 0.5 % only: that uncertainty enters all parameters that motion
+/// determines only relative to the masses.
 #[test]
 fn what_is_not_known_of_the_masses_is_in_the_uncertainties() {
     with_weighed_masses(FEW);
@@ -257,7 +258,7 @@ fn a_mass_is_fitted_only_where_it_was_weighed() {
     assert!(said.contains("m1 is fitted without a prior") && said.contains("prior.m1 = [kg"), "{said}");
 }
 
-/// The whole way, from starting values up to 30 % off in every corner.
+/// The whole search, from starting values up to 30 % off in each parameter.
 #[test]
 fn wrong_starts_come_back() {
     let setting = example();
@@ -269,7 +270,7 @@ fn wrong_starts_come_back() {
         let start =
             ALL.map(|n| FitEntry::parameter(n).unwrap()).iter().enumerate().fold(setting, |s, (i, p)| {
                 let value = setting.get(*p);
-                // A loss of 2 % may be taken for 5 %; R itself cannot be 30 % higher.
+                // A loss 1 − R of 2 % starts at 5 %: R itself cannot be 30 % higher.
                 let wrong = if *p == Parameter::Restitution { 0.95 } else { value * off(i) };
                 s.with(*p, wrong)
             });
@@ -277,14 +278,14 @@ fn wrong_starts_come_back() {
         let (settled, found) = identify(&Problem::new(&data, &start, unknowns), STARTS).unwrap();
         let points = settled.least.problem.rows().0;
         println!("{} of {STARTS} agree, {points} points", agreeing(&found, &settled).unwrap());
-        // Seven parameters, twice: four standard deviations are exceeded in one of a thousand cases.
+        // Seven parameters, twice: one of a thousand cases exceeds four standard deviations.
         let away = away(&settled, &setting);
         assert!(away.iter().all(|a| *a < 4.0), "{away:?}");
         assert!(settled.least.reduced < 1.6 && points > 100, "{}", settled.least.reduced);
     }
 }
 
-/// The least sum of squares from `setting` on with these motions, as it stands.
+/// Minimum of the sum of squares from `setting` with these motions, without a search.
 fn least_from<'a>(
     data: &'a Data,
     setting: &Setting,
@@ -297,7 +298,7 @@ fn least_from<'a>(
     Converged { least, wavering: 0, far: 0, agreed: true, unexplained: 0.0 }
 }
 
-/// How many of its standard deviations each parameter lies off `truth`.
+/// Distance of each parameter from `truth`, in its standard deviations.
 fn away(settled: &Converged<'_>, truth: &Setting) -> Vec<f64> {
     let found = Uncertainty::new(&settled.least).unwrap();
     let off = |(i, unknown): (usize, &Unknown)| {
@@ -307,7 +308,7 @@ fn away(settled: &Converged<'_>, truth: &Setting) -> Vec<f64> {
     settled.least.problem.unknowns.iter().enumerate().map(off).collect()
 }
 
-/// Why these parameters are not identifiable, with the steps and masses that `keep` lets through.
+/// Reasons why these parameters are not identifiable from the steps and masses that `keep` selects.
 fn unidentified(
     names: &[&str],
     keep: impl Fn(usize, &SweepStep, Option<MotionKind>) -> bool,
@@ -331,14 +332,14 @@ fn unidentified(
 
 #[test]
 fn what_the_points_do_not_determine_is_named() {
-    // Free motions of mass 1 say nothing of mass 2, of the gap, or of impacts.
+    // Free motions of mass 1 do not depend on mass 2, the gap or impacts.
     let free =
         |mass: usize, _: &SweepStep, kind: Option<MotionKind>| mass == 0 && kind == Some(MotionKind::Free);
     let found = unidentified(&["force", "c2", "k2", "restitution"], free);
     let needs = Some(Unidentified::NeedsImpacts);
     assert_eq!(found, [None, needs, needs, needs]);
-    // Far above resonance the amplitude is F₀/|k − mω²| but for (ωc/(k − mω²))²/2, 2e-4 of it, where the
-    // noise is 1e-3 of 20 points.
+    // Far above resonance the amplitude is F₀/|k − mω²| except for a relative (ωc/(k − mω²))²/2 = 2e-4,
+    // below the noise of 1e-3 of 20 points.
     let found =
         unidentified(&["force", "c1"], |mass, step, kind| free(mass, step, kind) && step.frequency > 9.5);
     assert!(found[0].is_none(), "{found:?}");
@@ -400,9 +401,10 @@ fn a_prior_is_used_and_named_where_it_determines_the_parameter() {
     assert_eq!(answer.doubts(), []);
     let [gap, c1] = [0, 1].map(|i| answer.fitted(&setting, i, false));
     assert!(!gap.rests_on_prior && gap.identifiable, "{gap:?}");
-    // The points know c1 to some 1e-5: all but the hundredth part squared is the prior's.
+    // By the points alone c1 is uncertain by about 1e-5, 100 times the prior: they add 1e-4 of the
+    // information.
     assert!(c1.rests_on_prior && (c1.estimate.std.unwrap() / 1e-7 - 1.0).abs() < 1e-3, "{c1:?}");
-    // The profile of one parameter of a straight problem is a parabola: its interval is ±1.96 standard
+    // In a linear problem the profile of one parameter is a parabola: its interval is ±1.96 standard
     // deviations.
     let profile = profile(&answer.found.least, &answer.uncertainty, 0).unwrap();
     let [low, high] = profile.interval.map(Option::unwrap);
@@ -429,9 +431,9 @@ fn the_simplest_model_that_predicts_what_it_has_not_seen_is_chosen() {
         let rungs = rungs(&settled, None, &[]);
         let chosen: Vec<&str> = rungs.iter().filter(|r| r.chosen).map(|r| r.model).collect();
         assert_eq!(chosen, [expected], "{rungs:?}");
-        // The noise is 0.3 µm of 0.15 mm or more, and the parameters are better known.
+        // The noise is 0.3 µm of 0.15 mm or more, 2e-3; the parameters are better known.
         let right = rungs.iter().find(|r| r.chosen).unwrap();
-        // A block beside the end of a motion is predicted worse, so the median of the blocks is asked.
+        // A block beside the end of a branch is predicted worse, so the median of the blocks is tested.
         let mut errors: Vec<f64> = right.blocks.iter().map(|b| b.error).collect();
         errors.sort_by(f64::total_cmp);
         assert!(errors[errors.len() / 2] < 2e-3 && right.held_out.unwrap() < 5e-3, "{rungs:?}");

@@ -1,4 +1,4 @@
-//! How well the points determine each parameter: by the slopes at the least sum of squares, and by its
+//! Uncertainty of each parameter: from the Jacobian at the minimum of the sum of squares, and from its
 //! profile.
 
 use super::{LeastSquares, MotionKind, Problem};
@@ -8,50 +8,51 @@ use nalgebra::{DMatrix, DVector, SVD};
 use rayon::prelude::*;
 use serde::Serialize;
 
-/// Normal deviate that is exceeded on both sides together in 5 % of cases (Abramowitz & Stegun, table 26.1).
+/// Normal deviate of a two-sided 95 % interval (Abramowitz & Stegun, table 26.1).
 pub const NORMAL: f64 = 1.959_964;
-/// Relative standard uncertainty beyond which a parameter is not identifiable: twice or half its value would
-/// do. Between two bounds the same part of what is between them, for its interval of 95 %.
+/// Relative standard uncertainty beyond which a parameter is not identifiable: half or twice its value
+/// would fit. Between two bounds: width of the 95 % interval over the distance of the bounds.
 const LOOSE: f64 = 0.5;
-/// Parameters of a larger correlation are known only together: 1/√(1 − r²) = 3 times better where one of them
-/// is known.
+/// Correlation beyond which two parameters are known only in combination: knowing one would reduce the
+/// uncertainty of the other by 1/√(1 − r²) = 3.
 const TIED: f64 = 0.95;
-/// Smallest singular value over the largest that a Jacobian by central differences can tell from 0, ε^(2/3).
+/// Smallest ratio of singular values that a Jacobian by central differences tells from 0, ε^(2/3).
 const RESOLVED: f64 = 4e-11;
-/// How near to its limit, in u, a parameter lies at it: far below what any point could tell.
+/// Distance in u, over 1 + |u|, up to which a parameter lies at its limit: far below what data resolve.
 const AT_LIMIT: f64 = 1e-6;
-/// Step inwards for the slopes at a limit, as a part of u.
+/// Step inwards for the derivatives at a limit, over u there: larger steps err by curvature, smaller by
+/// rounding.
 const INWARDS: f64 = 1e-2;
 
 /// Why a parameter is not identifiable.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Unidentified {
-    /// No point shows a motion with impacts, and the others do not depend on it.
+    /// No point shows a motion with impacts, and other motions do not depend on it.
     NeedsImpacts,
-    /// The points do not tell it from the limit at which it lies.
+    /// The points are consistent with the limit at which it lies.
     AtLimit,
-    /// The points determine only a combination with others.
+    /// The points determine only a combination with other parameters.
     Combination,
-    /// Half or twice its value, or most values between its bounds, would do.
+    /// Half or twice its value, or most values between its bounds, would fit as well.
     TooUncertain,
     /// The whole answer is in doubt.
     InDoubt,
 }
 
-/// A parameter at the end of where it may lie.
+/// A parameter at the end of its range.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Limit {
-    /// The bound itself.
+    /// Bound, in the unit of the parameter.
     pub value: f64,
-    /// Standard deviations by which the points would have it beyond.
+    /// Pull of the points beyond the bound, in standard deviations.
     pub pull: f64,
 }
 
-/// What the Jacobian at the least sum of squares says.
+/// Uncertainties by the Jacobian at the minimum of the sum of squares.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Uncertainty {
-    /// Covariance of the coordinates u; directions that are not determined have a large variance, not an
+    /// Covariance of the coordinates u. Directions that are not determined have a large variance, not an
     /// infinite one.
     pub covariance: DMatrix<f64>,
     /// Relative standard uncertainty of each parameter.
@@ -63,10 +64,10 @@ pub struct Uncertainty {
 }
 
 impl Uncertainty {
-    /// Of an answer.
+    /// Uncertainty of a minimum.
     ///
-    /// The columns of ∂r/∂u are taken for relative changes of the parameters, ∂r/∂ln θ, so that units do not
-    /// decide what is small. With singular values s and right vectors v the variance of ln θᵢ is Σ
+    /// The Jacobian is taken for relative changes of the parameters, ∂r/∂ln θ, so that units do not decide
+    /// what is small. With singular values s and right singular vectors v the variance of ln θᵢ is Σ
     /// vᵢ²/s².
     ///
     /// # Errors
@@ -98,7 +99,7 @@ impl Uncertainty {
             row /= s.max(floor);
         }
         let covariance = v.tr_mul(&v).component_div(&(&rates * rates.transpose()));
-        // A step of Gauss and Newton over its standard deviation.
+        // Gauss–Newton step: not 0 where a limit keeps a parameter from its optimum.
         let step = -(&covariance * jacobian.tr_mul(&DVector::from_column_slice(&least.minimum.residuals)));
         let limit = |i: usize| {
             let (outwards, value) = sides[i]?;
@@ -114,7 +115,7 @@ impl Uncertainty {
         Ok(found)
     }
 
-    /// Why the points do not determine the parameter number `i`.
+    /// Reason why parameter number `i` is not identifiable, if so.
     fn reason(&self, problem: &Problem<'_>, u: &[f64], i: usize) -> Option<Unidentified> {
         let parameter = problem.unknowns[i].parameter;
         let is_loose = |i: usize| {
@@ -160,8 +161,9 @@ impl Uncertainty {
     }
 }
 
-/// The way outwards, 1 or −1, and the bound where the parameter number `i` lies at a limit. Beyond it nothing
-/// changes any more, so its column of the Jacobian becomes that from the limit inwards.
+/// Direction outwards (1 or −1) and bound, if parameter number `i` lies at a limit. Beyond it residuals are
+/// constant, so the parameter's column of the Jacobian is replaced by the derivative from the limit
+/// inwards.
 fn side(problem: &Problem<'_>, u: &[f64], i: usize, jacobian: &mut DMatrix<f64>) -> Option<(f64, f64)> {
     let (unknown, span) = (&problem.unknowns[i], AT_LIMIT * (1.0 + u[i].abs()));
     let (coordinate, limits) = (unknown.coordinate, unknown.limits(&problem.base));
@@ -184,11 +186,11 @@ fn side(problem: &Problem<'_>, u: &[f64], i: usize, jacobian: &mut DMatrix<f64>)
     Some((outwards, bound))
 }
 
-/// χ² of one degree of freedom that is exceeded in 5 % of cases (Abramowitz & Stegun, table 26.8).
+/// 95 % quantile of χ² with one degree of freedom (Abramowitz & Stegun, table 26.8).
 const ONE: f64 = 3.841;
-/// Values on each side of the least.
+/// Values of a profile on each side of the minimum.
 const SIDE: i32 = 12;
-/// They reach so many standard uncertainties, twice what the interval needs.
+/// Reach of these values in standard uncertainties: twice what the 95 % interval needs.
 const REACH: f64 = 4.0;
 
 /// Profile of a parameter.
@@ -198,31 +200,30 @@ pub struct Profile {
     pub parameter: Parameter,
     /// Its SI unit.
     pub unit: &'static str,
-    /// Values, rising.
+    /// Values of the parameter in its unit, rising.
     pub value: Vec<f64>,
-    /// Least sum of squares at each value above the least of all.
+    /// Minimum of the sum of squares with the parameter fixed at each value, less the overall minimum.
     pub rise: Vec<f64>,
-    /// The rise that the true value stays below with 95 % confidence.
+    /// Rise at the ends of the 95 % confidence interval.
     pub limit: f64,
-    /// Values within which the rise stays below it. `None` for a side on which it is not reached in the
-    /// values.
+    /// 95 % confidence interval; `None` on a side where the rise stays below its limit at all values.
     pub interval: [Option<f64>; 2],
 }
 
 impl Profile {
-    /// How far it falls below the answer: 0 where that is the least sum of squares.
+    /// Depth of the profile below the minimum found; 0 where that is the lowest.
     pub fn fall(&self) -> f64 {
         -self.rise.iter().copied().fold(0.0, f64::min)
     }
 }
 
-/// Profile of the unknown number `which`, but not beyond a bound (D. J. Venzon & S. H. Moolgavkar 1988).
+/// Profile of unknown number `which`, within its bounds (D. J. Venzon & S. H. Moolgavkar 1988).
 pub fn profile(least: &LeastSquares<'_>, uncertainty: &Uncertainty, which: usize) -> Option<Profile> {
     let (problem, best) = (&least.problem, &least.minimum.parameters);
     let unknown = *problem.unknowns.get(which)?;
     let sum = |r: &[f64]| r.iter().map(|r| r * r).sum::<f64>();
     let lowest = sum(&least.minimum.residuals);
-    // Down to the lower bound, or a factor of ten in the odds between two.
+    // At most down to the lower bound; between two bounds, by a factor of ten in the odds.
     let most =
         if unknown.coordinate.high.is_infinite() { best[which].abs() } else { std::f64::consts::LN_10 };
     let reach = (REACH * uncertainty.std(which)).min(most);
@@ -234,7 +235,7 @@ pub fn profile(least: &LeastSquares<'_>, uncertainty: &Uncertainty, which: usize
         rest.base = rest.base.with(unknown.parameter, value);
         rest.unknowns.remove(which);
         let prior = unknown.prior.map_or(0.0, |[v, s]| ((value - v) / s).powi(2));
-        // Along the valley, as far as it is straight.
+        // Starts along the valley of the sum of squares, extended as a straight line.
         let valley = covariance.column(which) * (away / covariance[(which, which)]);
         let mut start: Vec<f64> = best.iter().zip(&valley).map(|(best, along)| best + along).collect();
         start.remove(which);
@@ -255,7 +256,7 @@ pub fn profile(least: &LeastSquares<'_>, uncertainty: &Uncertainty, which: usize
     })
 }
 
-/// Where the rise reaches [`ONE`]; its root is nearly straight.
+/// Value where the rise reaches [`ONE`], by interpolation of its square root, which is nearly linear.
 fn crossing<'a>(points: impl Iterator<Item = (&'a f64, &'a f64)>) -> Option<f64> {
     let points: Vec<(f64, f64)> = points.map(|(v, r)| (*v, r.max(0.0).sqrt())).collect();
     let (limit, above) = (ONE.sqrt(), points.iter().position(|p| p.1 > ONE.sqrt())?);

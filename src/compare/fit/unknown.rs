@@ -1,11 +1,11 @@
-//! The parameters that a fit looks for, their coordinates without bounds, and the rig that has them.
+//! Fitted parameters, their coordinates without bounds, and the rig with their values.
 
 use super::MotionKind;
 use crate::campaign::FitEntry;
 use crate::error::{Error, Result};
 use crate::model::{Parameter, Rig, Sine, Steady, shown};
 
-/// A parameter to be found.
+/// A fitted parameter.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Unknown {
     pub parameter: Parameter,
@@ -14,17 +14,16 @@ pub struct Unknown {
     pub prior: Option<[f64; 2]>,
 }
 
-/// A parameter without an upper bound goes no farther than this factor from where it started, ten times a
-/// mistaken milli: beyond, nothing pulls it back, and a rig without dampers or gap takes for ever to
-/// simulate.
+/// Factor on the starting value within which a parameter without an upper bound stays: ten times a mistaken
+/// milli. Beyond, nothing pulls it back, and a rig without dampers or gap takes for ever to simulate.
 const FARTHEST: f64 = 1e4;
 
 impl Unknown {
-    /// All that an entry asks for, from these values on.
+    /// All parameters of an entry, with these starting values.
     ///
     /// # Errors
-    /// If nothing is asked for, a parameter twice, a starting value lies outside its bounds, or a prior or
-    /// bounds cannot be.
+    /// If no parameter is listed or one is listed twice, a starting value lies outside its bounds, or a
+    /// prior or bounds are impossible.
     pub fn all(entry: &FitEntry, from: &Setting) -> Result<Vec<Unknown>> {
         entry.usable()?;
         if entry.parameters.is_empty() {
@@ -55,7 +54,7 @@ impl Unknown {
         entry.parameters.iter().map(one).collect()
     }
 
-    /// Lowest and highest value that it takes.
+    /// Lowest and highest value in a fit, in the unit of the parameter.
     pub fn limits(&self, base: &Setting) -> [f64; 2] {
         let Coordinate { low, high } = self.coordinate;
         if high.is_finite() {
@@ -67,11 +66,11 @@ impl Unknown {
     }
 }
 
-/// A parameter θ from `low` to `high` by a coordinate u from −∞ to ∞: √(θ − low) without an upper bound, else
-/// the logit of its place between both.
+/// Coordinate u, from −∞ to ∞, of a parameter θ from `low` to `high`: √(θ − low) without an upper bound,
+/// else the logit of its relative position between both bounds.
 ///
-/// A logarithm instead of the root would never come back from θ = low, where all slopes vanish: a damper may
-/// be 0.
+/// A damper may be 0. With a logarithm instead of the root a fit could not leave θ = low, where all slopes
+/// vanish.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Coordinate {
     pub low: f64,
@@ -79,8 +78,8 @@ pub struct Coordinate {
     pub high: f64,
 }
 
-/// A parameter between two bounds comes no nearer to either than this part of the way: a loss 1 − R of 1e-6
-/// is below what any sweep shows.
+/// Smallest distance of a parameter from each of two bounds, over their distance: a loss 1 − R of 1e-6 is
+/// below what any sweep shows.
 const NEAREST: f64 = 1e-6;
 
 impl Coordinate {
@@ -101,7 +100,7 @@ impl Coordinate {
         self.low + (self.high - self.low) / (1.0 + (-u).exp())
     }
 
-    /// Least and largest θ from u − `away` to u + `away`.
+    /// Smallest and largest θ between u − `away` and u + `away`.
     pub fn interval(self, u: f64, away: f64) -> [f64; 2] {
         let [a, b] = [u - away, u + away].map(|u| self.value(u));
         let low = if self.high.is_infinite() && u.abs() < away { self.low } else { a.min(b) };
@@ -122,13 +121,13 @@ impl Coordinate {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Setting {
     pub rig: Rig,
-    /// In N.
+    /// Force amplitude in N.
     pub force: f64,
 }
 
 impl Setting {
     fn place(&mut self, parameter: Parameter) -> &mut f64 {
-        // What is no value of the rig is its force.
+        // The force is the only parameter outside the rig.
         parameter.place(&mut self.rig).unwrap_or(&mut self.force)
     }
 
@@ -141,8 +140,8 @@ impl Setting {
         self
     }
 
-    /// What a spectrum shows of both masses in m, of the motion of this kind at this force and frequency; NaN
-    /// where it cannot be.
+    /// Amplitudes of both masses in m that a spectrum shows of this motion, at a force in N and a frequency
+    /// in Hz; NaN where the motion does not exist.
     pub fn shows(&self, kind: MotionKind, force: f64, frequency: f64) -> [f64; 2] {
         let sine = Sine { force, frequency };
         match kind {
@@ -169,7 +168,7 @@ mod tests {
             let c = Coordinate { low, high };
             let u = c.of(value);
             assert!((c.value(u) / value - 1.0).abs() < 1e-12);
-            // A central difference errs by h²/6 of the third derivative, and by ε/h.
+            // A central difference errs by h²/6 times the third derivative, and by ε/h.
             let slope = (c.value(u + 1e-5) - c.value(u - 1e-5)) / 2e-5;
             assert!((c.slope(u) / slope - 1.0).abs() < 1e-6, "{c:?}");
             for u in [-1e9, 1e9] {

@@ -13,7 +13,7 @@ fn results(folder: impl AsRef<Path>) -> Output {
     Output::new(folder.as_ref(), Owner::Results).unwrap()
 }
 
-/// Writes these files as one set; gives the complaint.
+/// Writes these files as one set; returns the error.
 fn written(mut output: Output, files: &[(&str, &str)]) -> Result<()> {
     files.iter().try_for_each(|(name, text)| output.write(name, text))?;
     output.commit().map(drop)
@@ -40,7 +40,7 @@ fn names_that_lead_outside_are_refused() {
         let error = out.write(name, "x").unwrap_err();
         assert_eq!(error.exit_code(), 2, "{name:?}");
     }
-    // The folder is made for the first file only.
+    // The folder is created with the first file only.
     assert!(names(dir.path()).is_empty() && out.written().next().is_none());
 }
 
@@ -52,7 +52,7 @@ fn a_failure_leaves_the_old_content_and_no_temporary() {
     fs::write(dir.path().join("x/old"), "old").unwrap();
     assert!(out.write("x", "new").is_err());
     assert!(out.written().next().is_none());
-    // A name that no file can have: the set stands half, and the folder says so.
+    // A name too long for any file: half of the set is written, and the marker says so.
     let long = "n".repeat(300);
     out.write("a", "new").unwrap();
     out.write(&long, "new").unwrap();
@@ -85,9 +85,9 @@ fn leftovers_of_killed_programs_are_removed_by_who_holds_the_lock() {
     let mut first = results(dir.path());
     first.write("a.csv", "x").unwrap();
     let parts = || names(dir.path()).iter().filter(|name| name.ends_with(".vibro.part")).count();
-    // Its own file has no name yet; that without a dot is not vibro's.
+    // Left are the temporary file of `first`, and the file without a leading dot, which is not vibro's.
     assert_eq!(parts(), 2);
-    // A second writer waits for the first, and does not take its files for leftovers.
+    // A second writer waits for the first and does not remove its files as leftovers.
     let path = dir.path().to_owned();
     let second = std::thread::spawn(move || written(results(path), &[("b.csv", "y")]));
     std::thread::sleep(std::time::Duration::from_millis(100));
@@ -105,7 +105,7 @@ fn a_file_in_the_place_of_a_folder_is_an_error() {
     assert_eq!(fs::read_to_string(dir.path().join("f")).unwrap(), "x");
 }
 
-/// What holds of every folder: on disk, and in memory.
+/// Runs a check on a folder on disk, and on one in memory.
 fn each_side(check: impl Fn(&Folder)) {
     let dir = tempfile::tempdir().unwrap();
     fs::write(dir.path().join("mine.csv"), "mine").unwrap();
@@ -126,16 +126,16 @@ fn nothing_of_a_person_is_replaced() {
         };
         refused(Owner::Results, "mine.csv");
         assert_eq!(content("mine.csv"), "mine");
-        // The same bytes are in nobody's way, and stay a person's.
+        // An equal file is no obstacle, and still belongs to the person.
         written(out(Owner::Results), &[("mine.csv", "mine"), ("ours.csv", "1")]).unwrap();
         refused(Owner::Results, "mine.csv");
-        // What vibro wrote it may write again; what was converted is a recording, and no result replaces it.
+        // vibro may replace what it wrote; but results and converted recordings do not replace each other.
         written(out(Owner::Results), &[("ours.csv", "2")]).unwrap();
         written(out(Owner::Recordings), &[("drop.csv", "2")]).unwrap();
         refused(Owner::Results, "drop.csv");
         refused(Owner::Recordings, "ours.csv");
         written(out(Owner::Recordings), &[("drop.csv", "3")]).unwrap();
-        // Changed since, it is a person's; on purpose it is replaced.
+        // A result that was changed belongs to the person and is replaced only on purpose.
         written(out(Owner::Person).replace(true), &[("ours.csv", "changed")]).unwrap();
         refused(Owner::Results, "ours.csv");
         written(out(Owner::Results).replace(true), &[("ours.csv", "3")]).unwrap();
@@ -168,7 +168,7 @@ fn a_run_removes_what_it_does_not_write_again() {
         written(out(Owner::Person).replace(true), &[("c.csv", "changed")]).unwrap();
         written(out(Owner::Run), &[("a.csv", "1")]).unwrap();
         let names: Vec<_> = folder.names().into_iter().filter(|name| !name.starts_with('.')).collect();
-        // What a person changed stays, and so does what another command wrote.
+        // Files that a person changed or another command wrote stay.
         assert_eq!(names, ["a.csv", "c.csv", "mine.csv", "spectrum.csv"]);
     });
 }
@@ -179,7 +179,7 @@ fn a_folder_stays_marked_until_the_same_kind_of_command_completes_it() {
         let out = |owner| Output::new(folder.clone(), owner).unwrap();
         let (mark, set) = (folder.root().join(Output::INCOMPLETE), [("a.csv", "1"), ("b.csv", "1")]);
         written(out(Owner::Run), &set).unwrap();
-        // As a run leaves it that is killed after its last file.
+        // The state after a run that was killed after its last file.
         written(out(Owner::Person), &[(Output::INCOMPLETE, MARKS[1])]).unwrap();
         written(out(Owner::Results), &[("c.csv", "1"), ("d.csv", "1")]).unwrap();
         assert!(folder.is_file(&mark));
@@ -201,8 +201,7 @@ fn a_text_is_extended_unless_it_changed_meanwhile() {
     });
 }
 
-/// A link in the place of each file by which the folder is kept in order, or of a result: what it points to
-/// stays.
+/// A link in place of each bookkeeping file, or of a result: its target stays unchanged.
 #[cfg(unix)]
 #[test]
 fn links_are_not_written_through() {

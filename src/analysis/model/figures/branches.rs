@@ -23,14 +23,14 @@ fn look(v: &Validity) -> Option<MotionLook> {
     }
 }
 
-/// Lines that grow side by side, each from where it ended.
+/// Lines that grow piece by piece.
 #[derive(Default)]
 struct Pieces {
     lines: Vec<Vec<(f64, f64)>>,
 }
 
 impl Pieces {
-    /// Goes on with the line that ends at `from`; begins one where none does.
+    /// Continues the line that ends at `from`, or begins one.
     fn join(&mut self, from: (f64, f64), to: (f64, f64)) {
         match self.lines.iter_mut().rev().find(|line| line.last() == Some(&from)) {
             Some(line) => line.push(to),
@@ -38,7 +38,7 @@ impl Pieces {
         }
     }
 
-    /// All of them as one line, broken by missing values: each line whole, so that dashes run along it.
+    /// All lines as one, separated by missing values: within each line the dashes run on.
     fn places(self) -> Vec<(f64, f64)> {
         self.lines.join(&(f64::NAN, f64::NAN))
     }
@@ -67,7 +67,7 @@ fn panel(response: &Response, mass: usize) -> Plot {
     let ends = [response.points.first(), response.points.last()];
     let ends = ends.map(|p| p.map_or(f64::NAN, |p| p.frequency));
     let y = AxisSpec::new(label, "mm");
-    // Three decades are shown.
+    // From a thousandth to twice the largest amplitude.
     let y = if top > 0.0 { y.log().limits(1.0 * top, 2.0e3 * top) } else { y };
     let mut plot = Plot::new(AxisSpec::frequency().limits(ends[0], ends[1]), y).title(title);
     let mut lines: [Pieces; 3] = Default::default();
@@ -87,7 +87,7 @@ fn panel(response: &Response, mass: usize) -> Plot {
             free.join((a.frequency, height(n)), (b.frequency, height(m)));
         }
         if let (Some(n), Some(m)) = (&a.backbone, &b.backbone) {
-            // Poles are no lines.
+            // Near poles the backbone is too steep to be drawn.
             let (n, m) = (place(n), place(m));
             if n.1.max(m.1) < 2.0e3 * top && n.1 < 3.0 * m.1 && m.1 < 3.0 * n.1 {
                 back.join(n, m);
@@ -118,8 +118,8 @@ fn panel(response: &Response, mass: usize) -> Plot {
     plot
 }
 
-/// Half the peak-to-peak values of both masses along branches over a value, those with one impact a cycle
-/// `beside` them.
+/// Half the peak-to-peak values of both masses along branches over a parameter, with branches of one impact
+/// a cycle in `beside`.
 pub fn continued(over: Parameter, branches: &[Branch], beside: &[Branch]) -> Figure {
     let mut figure = Figure::double("Branches").height(150.0).shared_x();
     for (mass, label) in ["Amplitude of x₁", "Amplitude of x₂"].into_iter().enumerate() {

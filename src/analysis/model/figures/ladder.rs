@@ -7,7 +7,7 @@ use crate::report::layout::lettered;
 use crate::report::{AxisSpec, Figure, Heatmap, Ink, Legend, Plot, Series};
 use ndarray::Array2;
 
-/// What became of a rung.
+/// Result of a rung at one frequency.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum RungFate {
     NotValid,
@@ -30,14 +30,14 @@ impl RungFate {
     }
 }
 
-/// Over frequency: what became of each rung, and the answer with the rung that gives it.
+/// Over frequency: the result of each rung, and the answer of the chosen one.
 ///
 /// # Errors
 /// As [`Heatmap::classes`].
 pub fn ladder(survey: &Survey, question: &Question) -> Result<Figure> {
     let all = &survey.points;
     let x: Vec<f64> = all.iter().map(|c| c.frequency).collect();
-    // Rungs that are nowhere valid stand for nothing here, if they are above all that are.
+    // Rungs above the highest one that is valid anywhere are left out.
     let tried = |model: &Model| all.iter().any(|c| c.rung(*model).valid);
     let rows = 1 + Model::ALL.iter().rposition(tried).unwrap_or(0);
     let y: Vec<f64> = (1..=rows).map(|n| n as f64).collect();

@@ -75,8 +75,8 @@ fn whole(portrait: &Portrait) -> Vec<State> {
     all
 }
 
-/// An axis over these values with a tenth of room at both ends, and not finer than a hundredth of the
-/// largest: what repeats is a point, not its roundings.
+/// An axis over these values with 10 % of room at both ends, no finer than 1 % of the largest value:
+/// rounding errors of a repeating motion then appear as one point.
 fn roomy(axis: AxisSpec, values: &[f64]) -> AxisSpec {
     let (low, high) =
         values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), v| (a.min(*v), b.max(*v)));
@@ -128,7 +128,7 @@ pub fn poincare(title: &str, portrait: &Portrait) -> Figure {
     )
 }
 
-/// Samples of a period.
+/// Number of samples of a period.
 const POINTS: usize = 800;
 
 /// Both masses over two periods, x₂ counted from the rest of x₁'s contact face, so that the curves meet at

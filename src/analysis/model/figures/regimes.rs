@@ -7,7 +7,7 @@ use crate::report::layout::{capital, lettered};
 use crate::report::{AxisSpec, Figure, Heatmap, Legend, Plot};
 use ndarray::Array2;
 
-/// Patterns that have a colour of their own: the most frequent ones.
+/// Number of patterns with a colour of their own, the most frequent ones.
 const OWN: usize = 3;
 
 /// Regimes by colour, and the spectral radius, beside each other.
@@ -33,7 +33,7 @@ pub fn regimes(plan: &Plan, rows: &[Vec<Cell>]) -> Result<Figure> {
     let radius = cells(&|c| c.spectral_radius.unwrap_or(f64::NAN));
     let axis = |axis: &MapAxis| {
         let (name, unit) = (axis.key.name(), axis.key.unit());
-        // A letter with a number is a symbol.
+        // A name of two characters, such as k1, is a symbol and stays as it is.
         AxisSpec::new(if name.len() == 2 { name.to_owned() } else { capital(name) }, unit)
     };
     let plot = |title: &str| Plot::new(axis(&plan.x), axis(&plan.y)).title(title);
@@ -66,7 +66,7 @@ pub(in crate::analysis::model) fn counted<'a>(cells: impl Iterator<Item = &'a Ce
     counts
 }
 
-/// The class of a regime, where these patterns have their own.
+/// Index of the colour of a regime, where the patterns `own` have colours of their own.
 fn class(own: &[Regime], regime: Regime) -> usize {
     own.iter().position(|r| *r == regime).unwrap_or(match regime {
         Regime::Periodic { .. } => own.len(),

@@ -11,9 +11,9 @@ use crate::units::notation::significant;
 /// Height of a panel in mm.
 const PANEL: f64 = 85.0;
 
-/// One panel a mass and level of force: branches that can be seen solid, unstable ones dashed, neutral ones
-/// dash-dotted, the motion without impacts thin; measured points on top. Branches on which the masses would
-/// pass through each other are left out.
+/// One panel for each mass and level of force. Observable branches are solid, unstable ones dashed, neutral
+/// ones dash-dotted, the motion without impacts thin; measured points are on top. Branches on which the
+/// masses would pass through each other are left out.
 pub fn overlay(title: &str, overlay: &Overlay, responses: &[Response]) -> Figure {
     let force = match overlay.force {
         Some(force) => format!("a force of {force:.4} N"),
@@ -46,7 +46,7 @@ pub fn overlay(title: &str, overlay: &Overlay, responses: &[Response]) -> Figure
 fn panel(mass: u8, curve: &Prediction, pairs: &[Pair], measured: &[(usize, &Response)]) -> Plot {
     let (factor, unit) = shown("m");
     let y = AxisSpec::new(format!("Displacement of mass {mass}"), unit).log();
-    // The branches may run out of the picture: what is measured decides its size.
+    // The measured points set the limits: branches may run out of the picture.
     let limits = log_limits(measured.iter().map(|m| m.1)).map(|(low, high)| (factor * low, factor * high));
     let y = limits.map_or(y.clone(), |(low, high)| y.limits(low, high));
     let mut plot = Plot::new(AxisSpec::new("Excitation frequency", "Hz"), y);
@@ -86,7 +86,7 @@ fn panel(mass: u8, curve: &Prediction, pairs: &[Pair], measured: &[(usize, &Resp
     points(plot, other, places, Ink::Black, Marker::Cross)
 }
 
-/// Whether anything of a line is seen between these limits.
+/// Whether a part of a line is visible between these limits.
 fn is_within(y: &[f64], limits: Option<(f64, f64)>) -> bool {
     let (low, high) = limits.unwrap_or((f64::MIN, f64::MAX));
     y.windows(2).any(|part| {
@@ -99,8 +99,8 @@ fn free(motions: &[Motion]) -> f64 {
     motions.iter().find(|m| m.kind == MotionKind::Free && m.is_seen()).map_or(f64::NAN, |m| m.amplitude[0])
 }
 
-/// Amplitudes of the impacting motion of this rank where this is its verdict, and NaN elsewhere. Parts that
-/// cannot be seen reach one point into those that can, so that no gap opens between them.
+/// Amplitudes in m of the impacting motion of this rank where it has this verdict, NaN elsewhere.
+/// Unobservable parts extend one point into observable ones, so that no gap opens between them.
 fn branch(curve: &Prediction, mass: u8, rank: usize, verdict: Verdict) -> Vec<f64> {
     let motion = |i: usize| curve.motions[i].iter().filter(|m| m.kind == MotionKind::Impacting).nth(rank);
     let is = |i: usize| i < curve.motions.len() && motion(i).is_some_and(|m| m.verdict == verdict);
@@ -124,9 +124,9 @@ mod tests {
             (&[0.1, 0.5, 0.2][..], false),
             (&[20.0, 50.0], false),
             (&[0.5, 2.0], true),
-            // It crosses them between two points.
+            // The line crosses the range between two points.
             (&[0.5, 20.0], true),
-            // No line leads to a single point.
+            // A single point gives no line.
             (&[f64::NAN, 2.0, f64::NAN], false),
             (&[2.0], false),
         ] {

@@ -6,7 +6,7 @@ use crate::report::layout::lettered;
 use crate::report::{AxisSpec, Figure, Plot, Series, Stroke};
 use num_complex::Complex64;
 
-/// Points of a receptance in the order of frequency; one that is not a number breaks the line at a jump.
+/// Points of a receptance by rising frequency; a missing value breaks the line at a jump.
 fn points(response: &Response) -> Vec<(f64, Receptance)> {
     let known = response.points.iter().filter_map(|p| Some((p.excitation, p.receptance?)));
     let mut known: Vec<(f64, Receptance)> = known.collect();
@@ -22,12 +22,12 @@ fn points(response: &Response) -> Vec<(f64, Receptance)> {
     broken
 }
 
-/// Receptances in the plane are shown in µm/N on both axes.
+/// Factor from m/N to µm/N, the unit of both axes of the plane.
 const MICRO: f64 = 1e6;
 /// Width of a panel over its height.
 const WIDE: f64 = 2.9;
 
-/// Limits of a plane that holds all points, a unit as long along both axes.
+/// Limits of a plane that holds all points, with the same scale on both axes.
 fn level(points: &[(f64, f64)]) -> [(f64, f64); 2] {
     let around = |of: fn(&(f64, f64)) -> f64| {
         let ends =

@@ -50,12 +50,12 @@ fn plot(responses: &[Response], log: bool) -> Plot {
     plot
 }
 
-/// What stands below figures of measured points.
+/// Caption below figures of measured points.
 pub(super) const MARKS: &str = "Bars: one standard uncertainty, where larger than the marker. \
     Downward triangles: upper limits of amplitudes below the noise; at the lower edge, the limit is off the scale.";
 
-/// Limits of a logarithmic axis that shows all points that stand out of the noise, with their uncertainties
-/// but for those that reach down to nothing; of upper limits where there are no others.
+/// Limits of a logarithmic axis that shows all points above the noise floor with their uncertainties, the
+/// lower ends down to a quarter of the amplitude. Without such points, limits that show the upper limits.
 pub(super) fn log_limits<'a>(responses: impl Iterator<Item = &'a Response>) -> Option<(f64, f64)> {
     let (mut clear, mut faint) = (Vec::new(), Vec::new());
     for point in responses.flat_map(|r| &r.points) {
@@ -72,17 +72,16 @@ pub(super) fn log_limits<'a>(responses: impl Iterator<Item = &'a Response>) -> O
     (low <= high).then_some((low / 2.0, high * 2.0))
 }
 
-/// How many earlier sweeps are of the same mass and direction: the level of force, usually.
+/// Number of earlier sweeps of the same mass and direction: usually the index of the level of force.
 pub(super) fn rank(responses: &[Response], i: usize) -> usize {
     let of = |r: &Response| (r.mass, r.direction);
     let earlier = responses.iter().take(i);
     responses.get(i).map_or(0, |own| earlier.filter(|r| of(r) == of(own)).count())
 }
 
-/// Measured points and upper limits of one curve, in the ink of its mass and `rank` and the marker of its
-/// mass (circles or squares) and direction (filled or open). A line through the points is broken at these
-/// jumps of either mass, and at faint points. Upper limits below a logarithmic axis with these limits stand
-/// at its lower edge.
+/// Measured points and upper limits of one curve. Its colour is by mass and `rank`, its marker by mass
+/// (circles or squares) and direction (filled or open). The line is broken at `jumps` of either mass and at
+/// points below the noise floor. Upper limits below a logarithmic `axis` are drawn at its lower edge.
 pub(super) fn series(
     response: &Response,
     rank: usize,
@@ -92,7 +91,7 @@ pub(super) fn series(
     let (mut x, mut y, mut std) = (Vec::new(), Vec::new(), Vec::new());
     let (mut at, mut limits) = (Vec::new(), Vec::new());
     let (factor, _) = shown(response.unit);
-    // The middle of a triangle that stands on the edge, as a part of the axis.
+    // Centre of a triangle that stands on the lower edge, 2 % up the axis.
     let edge = axis.map_or(0.0, |(low, high)| low * (high / low).powf(0.02));
     for (i, point) in response.points.iter().enumerate() {
         let limit = point.upper_limit;
@@ -117,8 +116,8 @@ pub(super) fn series(
     [measured, limits].map(|series| series.ink(ink))
 }
 
-/// Marker and ink of a sweep, the same in all figures; the marker is that of the ink where the mass is not
-/// known.
+/// Marker and colour of a sweep, the same in all figures; without a known mass the marker goes with the
+/// colour.
 pub(super) fn look(response: &Response, rank: usize) -> (Option<Marker>, Ink) {
     let down = response.direction == Some(Direction::Down);
     let marker = match (response.mass, down) {
@@ -140,7 +139,7 @@ pub(super) fn shown(unit: &str) -> (f64, &str) {
     }
 }
 
-/// Names of resonances at the larger of the curves that show them; one name where both directions agree.
+/// Names of resonances, each at its largest amplitude; one name where both directions agree.
 fn names(responses: &[Response]) -> Vec<(String, f64, f64)> {
     let mut found: Vec<(String, Vec<&str>, f64, f64)> = Vec::new();
     for response in responses {

@@ -1,4 +1,4 @@
-//! Spectra of a sweep behind each other, and as a map.
+//! Spectra of a sweep as a waterfall, and as a map.
 
 use crate::error::{Error, Result};
 use crate::measure::waterfall::Waterfall as Matrix;
@@ -9,13 +9,13 @@ use ndarray::Axis;
 
 /// Reference of levels in SI units: 1 µm, 1 µm/s, …
 const REFERENCE: f64 = 1e-6;
-/// Range of a map in dB: that of a 16-bit analyser.
+/// Range of a map in dB, that of a 16-bit analyser.
 const RANGE: f64 = 90.0;
 
-/// Waterfall from the cut-off to `fmax` (Hz; to the last line that is to be seen where it is `None`).
+/// Waterfall from the cut-off to `fmax` in Hz; with `None`, to the last visible line.
 ///
 /// # Errors
-/// If the matrix and its axes do not fit.
+/// If the matrix and its axes do not fit, or `fmax` is not above the cut-off.
 pub fn waterfall(matrix: &Matrix, fmax: Option<f64>) -> Result<Figure> {
     let height = AxisSpec::new(format!("{} amplitude", capital(matrix.quantity.name())), matrix.unit.clone());
     let ShownRange { low, high, left_out } = shown(matrix, fmax, SEEN)?;
@@ -25,10 +25,10 @@ pub fn waterfall(matrix: &Matrix, fmax: Option<f64>) -> Result<Figure> {
     Ok(Figure::double(format!("Waterfall, {}", matrix.name)).height(120.0).panel(scene).caption(left_out))
 }
 
-/// Level over frequency and excitation in dB, from the largest line down to the noise.
+/// Map of the level in dB over frequency and excitation.
 ///
 /// # Errors
-/// If the matrix and its axes do not fit.
+/// If the matrix and its axes do not fit, or `fmax` is not above the cut-off.
 pub fn map(matrix: &Matrix, fmax: Option<f64>) -> Result<Figure> {
     let mut order: Vec<usize> = (0..matrix.excitation.len()).collect();
     order.sort_by(|a, b| matrix.excitation[*a].total_cmp(&matrix.excitation[*b]));
@@ -55,14 +55,14 @@ pub fn map(matrix: &Matrix, fmax: Option<f64>) -> Result<Figure> {
     Ok(Figure::double(format!("Map, {}", matrix.name)).height(100.0).panel(plot).caption(caption))
 }
 
-/// The range in Hz that a picture shows, and what it leaves out.
+/// Range of a picture in Hz, and a sentence on what it leaves out.
 struct ShownRange {
     low: f64,
     high: f64,
     left_out: String,
 }
 
-/// Up to `fmax`, or to the last line of which a spectrum has this part of the largest.
+/// Range up to `fmax`, else to the last line at which a spectrum reaches `part` of the largest.
 fn shown(matrix: &Matrix, fmax: Option<f64>, part: f64) -> Result<ShownRange> {
     let last = matrix.frequency.last().copied().unwrap_or(1.0);
     let high = fmax.unwrap_or_else(|| highest(matrix, part)).min(last);
@@ -85,17 +85,17 @@ fn shown(matrix: &Matrix, fmax: Option<f64>, part: f64) -> Result<ShownRange> {
     Ok(ShownRange { low: matrix.fmin, high, left_out: words.join(" ") })
 }
 
-/// Lines beyond which none reaches this part of the largest are not shown, where no other end is asked for.
+/// Part of the largest line that lines at the upper end must reach to be shown, unless `fmax` is stated.
 const SEEN: f64 = 0.01;
-/// The same for a map, whose colours show less.
+/// The same for a map, whose colours in dB show weaker lines.
 const SEEN_IN_COLOUR: f64 = 1e-3;
-/// Part of the highest excitation that is always shown: its second harmonic is among it.
+/// Factor on the highest excitation up to which lines are always shown: includes its second harmonic.
 const HARMONICS: f64 = 2.5;
 
-/// The end of what is to be seen, in Hz.
+/// Upper end of the visible lines, in Hz.
 fn highest(matrix: &Matrix, part: f64) -> f64 {
     let finite = |v: &&f64| v.is_finite();
-    // The line of the mean is no motion.
+    // The line at 0 Hz is the mean, not a motion.
     let lines = || (0..matrix.frequency.len()).filter(|k| matrix.frequency[*k] > 0.0);
     let top = |k: usize| matrix.magnitude.column(k).iter().filter(finite).copied().fold(0.0, f64::max);
     let largest = lines().map(top).fold(0.0, f64::max);

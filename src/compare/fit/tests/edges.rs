@@ -1,9 +1,9 @@
-//! Parameters at the ends of where they may lie, and answers that are no answers.
+//! Parameters at their limits, and answers in doubt.
 
 use super::*;
 use crate::record::Finding;
 
-/// The answer of a campaign's entry from the example's noisy points.
+/// Fit of a campaign's entry to the example's noisy points, after `change`.
 fn answered(entry: &str, seed: u64, change: impl Fn(&mut Data)) -> Result<Fit> {
     println!("seed {seed}");
     let setting = example();
@@ -11,7 +11,7 @@ fn answered(entry: &str, seed: u64, change: impl Fn(&mut Data)) -> Result<Fit> {
     let mut data = noisy(&clean, &kinds, &setting, seed);
     change(&mut data);
     let entry: FitEntry = toml::from_str(entry).unwrap();
-    // How the search gets to the answer is for other tests: two starts do.
+    // Other tests cover the search: two starts suffice.
     let entry = FitEntry { starts: entry.starts.or(Some(2)), ..entry };
     let start = Setting { rig: Rig { restitution: 0.95, ..setting.rig }, ..setting };
     found(&data, &start, None, &[], &entry)
@@ -38,7 +38,7 @@ fn bounds_that_the_points_contradict_leave_no_uncertainty() {
     assert_eq!((doubt.subject.as_deref(), doubt.get("bound")), (Some("restitution"), Some(0.97)));
 }
 
-/// Without damper 2 the points pull nothing below 0; what c1 is known by does not rest on that.
+/// Without damper 2 the points do not pull c2 below 0; c1 is determined all the same.
 #[test]
 fn a_damper_that_is_not_there_is_told_from_nothing() {
     let setting = example().with(Parameter::C2, 1e-9);
@@ -50,7 +50,7 @@ fn a_damper_that_is_not_there_is_told_from_nothing() {
     let fit = found(&data, &start, None, &[], &entry).unwrap();
     let [c1, c2] = [Parameter::C1, Parameter::C2].map(|p| of(&fit, p));
     assert!(matches!(c2.reason, Some(Unidentified::AtLimit | Unidentified::TooUncertain)), "{c2:?}");
-    // Four standard deviations are left in one of 16 000 cases.
+    // Four standard deviations are exceeded in one of 16 000 cases.
     assert!((c1.estimate.value - 0.1).abs() < 4.0 * c1.estimate.std.unwrap(), "{c1:?}");
 }
 
@@ -70,7 +70,8 @@ fn as_many_points_as_parameters_tell_nothing_of_the_model() {
     assert!(finding(&fit, "no-degrees-of-freedom").is_some(), "{:?}", fit.findings);
 }
 
-/// A calibration of 1 % that is not stated: ten times the noise, in a slope along frequency.
+/// Calibration errors that are not stated, drawn with 2 % for factor and slope of each mass: ten times the
+/// noise or more.
 #[test]
 fn residuals_that_are_no_noise_leave_no_uncertainty() {
     no_noise(&[34]);
@@ -107,7 +108,7 @@ fn unused_priors_and_bounds_are_named() {
     assert_eq!(unused.map(|f| f.subject.as_deref().unwrap()).collect::<Vec<_>>(), ["k1", "k2"]);
 }
 
-/// All amplitudes larger by this factor.
+/// Multiplies all amplitudes and their uncertainties by this factor.
 fn larger(data: &mut Data, factor: f64) {
     for seen in data.steps.iter_mut().flat_map(|s| s.readings.iter_mut().flatten()) {
         seen.amplitude *= factor;
@@ -116,8 +117,8 @@ fn larger(data: &mut Data, factor: f64) {
     }
 }
 
-/// Only the calibration tells one factor on lengths and forces, or on lengths and, where the force is held,
-/// masses and stiffnesses.
+/// Only the calibration determines a common factor on lengths and forces or, with a fixed force, on
+/// lengths, masses and stiffnesses.
 #[test]
 fn a_scale_is_as_uncertain_as_the_calibration() {
     let both = "parameters = [\"force\", \"restitution\", \"c1\", \"gap\"]";
@@ -135,12 +136,12 @@ fn a_scale_is_as_uncertain_as_the_calibration() {
             let Estimate { value, std, .. } = found.estimate;
             let off = (value - setting.get(found.parameter)).abs();
             println!("{found:?}");
-            // The factor is one standard uncertainty of each mass' calibration, √2 of both together; 2.5 more
-            // are chance of one in 80.
+            // The factor is one standard uncertainty of each mass' calibration, √2 of both together; 2.5
+            // more have a chance of one in 80.
             assert!(off < 3.9 * std.unwrap_or(0.0), "{names}: {found:?}");
         }
         let Estimate { value, std, .. } = of(&fit, scale).estimate;
-        // Two calibrations together: 1 %/√2; a little more with their slopes.
+        // Two calibrations together: 1 %/√2, slightly more with their slopes.
         assert!((0.006..0.012).contains(&(std.unwrap() / value)), "{names}: {std:?}");
         assert_eq!(finding(&fit, "calibration-assumed").unwrap().get("part"), Some(0.01));
     }
@@ -149,14 +150,13 @@ fn a_scale_is_as_uncertain_as_the_calibration() {
         data.calibration = 0.2;
     })
     .unwrap();
-    // 0.8 times the force within the noise of some hundred points.
+    // 0.8 times the force, within the noise of some hundred points.
     let ratio = finding(&far, "force-differs-from-stated").unwrap().get("ratio").unwrap();
     assert!((ratio - 0.8).abs() < 0.01, "{ratio}");
     assert!(finding(&far, "calibration-assumed").is_none(), "{:?}", far.findings);
 }
 
-/// A load cell that reads 1 % too much: nothing tells the gap from one that is 1 % larger, unless the force
-/// is looked for.
+/// A load cell that reads 1 % too much looks like a gap that is 1 % larger, unless the force is fitted.
 #[test]
 fn the_gap_is_as_uncertain_as_a_fixed_force() {
     let rest = "\"restitution\", \"c1\", \"c2\", \"gap\"]";
@@ -174,18 +174,18 @@ fn the_gap_is_as_uncertain_as_a_fixed_force() {
             let Estimate { value, std, .. } = found.estimate;
             let off = (value - setting.get(found.parameter)).abs();
             println!("{found:?}");
-            // The force is one of its standard uncertainties off; 2.5 more are chance of one in 80.
+            // The force is off by one of its standard uncertainties; 2.5 more have a chance of one in 80.
             assert!(off < 3.5 * std.unwrap_or(0.0), "{names}: {found:?}");
         }
         let Estimate { value, std, .. } = of(&fit, Parameter::Gap).estimate;
-        // 1 % of the force together with two masses' 1 %, which tell it as well: 1 %/√3, a little more with
-        // their slopes. With the force fitted, 1 %/√2.
+        // The force is known to 1 %, and so are the two calibrations, which determine it as well: 1 %/√3,
+        // slightly more with their slopes. With the force fitted, 1 %/√2.
         assert!((0.005..0.012).contains(&(std.unwrap() / value)), "{names}: {std:?}");
     }
 }
 
-/// Amplitudes 1 % too large that are said to be exact, and a force that is held: the masses cannot be what
-/// they weigh.
+/// Amplitudes 1 % too large that are stated as exact, with a fixed force: the masses contradict their
+/// priors.
 #[test]
 fn masses_far_from_what_they_weigh_are_named() {
     let weighed = "parameters = [\"restitution\", \"c1\", \"c2\", \"gap\", \"k1\", \"k2\", \"m1\", \"m2\"]\n\
@@ -195,8 +195,8 @@ fn masses_far_from_what_they_weigh_are_named() {
     assert_eq!(finding(&fit, "prior-contradicted").unwrap().subject.as_deref(), Some("m1"));
 }
 
-/// Amplitudes that stray by a thousandth, up to sixteen times what the noise in their spectra shows: doubted,
-/// and right where it is stated.
+/// Amplitudes that scatter by 0.1 %, up to sixteen times the noise in their spectra: in doubt unless the
+/// scatter is stated.
 #[test]
 fn amplitudes_that_stray_need_their_scatter() {
     let names = "parameters = [\"restitution\", \"c1\", \"c2\", \"gap\"]";
@@ -220,14 +220,14 @@ fn amplitudes_that_stray_need_their_scatter() {
         let setting = example();
         for found in &told.parameters {
             let Estimate { value, std, .. } = found.estimate;
-            // Four standard deviations of eight: one of 2000 cases.
+            // Four standard deviations of eight values: exceeded in one of 2000 cases.
             assert!((value - setting.get(found.parameter)).abs() < 4.0 * std.unwrap_or(0.0), "{found:?}");
         }
     }
 }
 
-/// Hardly any loss in the impact: a search that begins at 0.95 must not end at 1, nor say more than the
-/// points hold.
+/// Almost no loss in the impact: a search from R = 0.95 must not end at 1, nor state too small an
+/// uncertainty.
 #[test]
 fn a_restitution_near_one_is_found_or_doubted() {
     let setting = example().with(Parameter::Restitution, 0.999);
@@ -244,7 +244,7 @@ fn a_restitution_near_one_is_found_or_doubted() {
             let Estimate { value, std, .. } = found.estimate;
             let off = (value - setting.get(found.parameter)).abs();
             stated += usize::from(std.is_some());
-            // Four standard deviations of sixteen: one of a thousand cases.
+            // Four standard deviations of sixteen values: exceeded in one of a thousand cases.
             assert!(std.is_none_or(|std| off < 4.0 * std), "{found:?}");
         }
     }

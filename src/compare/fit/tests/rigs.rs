@@ -1,4 +1,5 @@
-//! Rigs with other masses, springs, and restitutions than the example's, and many points of other patterns.
+//! Rigs with other masses, springs and restitutions than the example, and with many points of other
+//! patterns.
 
 use super::*;
 
@@ -8,12 +9,12 @@ fn light(restitution: f64, force: f64) -> Setting {
     Setting { rig, force }
 }
 
-/// Steps evenly over this range.
+/// Frequencies in Hz, evenly spaced over this range.
 fn evenly(low: f64, high: f64, n: usize) -> Vec<f64> {
     (0..n).map(|i| low + (high - low) * i as f64 / (n - 1) as f64).collect()
 }
 
-/// Starts off by 20 to 50 % as `draw` has it; a loss 1 − R as much.
+/// Starting values off by 20 to 50 %, drawn by `draw`; for R the loss 1 − R.
 fn off(setting: &Setting, draw: u64) -> Setting {
     let mut normal = Noise::new(1000 + draw);
     for _ in 0..16 {
@@ -27,9 +28,9 @@ fn off(setting: &Setting, draw: u64) -> Setting {
     })
 }
 
-/// Half of the steps show other patterns, and every parameter starts wrong. An answer is right where no
-/// parameter lies four standard deviations off (six of them, eight times: one in three hundred), and each
-/// answer is right or doubted.
+/// Half of the steps show other patterns, and every parameter starts wrong. Each answer must be right or in
+/// doubt. It is right where no parameter is four standard deviations off (six of them, eight times: chance
+/// exceeds that in one of three hundred cases).
 #[test]
 fn points_of_other_patterns_pull_nothing_away() {
     other_patterns(2..3, 1);
@@ -41,7 +42,7 @@ fn points_of_other_patterns_pull_nothing_away_in_all_draws() {
     other_patterns(1..5, 2);
 }
 
-/// These draws of the first of these rigs.
+/// Tests these draws of the first `rigs` rigs.
 fn other_patterns(draws: std::ops::Range<u64>, rigs: usize) {
     for (name, setting, range) in
         [("R 0.6, 3 N", light(0.6, 3.0), (20.0, 34.0)), ("R 0.8, 6 N", light(0.8, 6.0), (24.0, 44.0))]
@@ -70,9 +71,9 @@ fn other_patterns(draws: std::ops::Range<u64>, rigs: usize) {
     }
 }
 
-/// A gap stated in metres that was meant in millimetres, or the other way round: starts are spread no farther
-/// than by a half, and simulated rigs of that kind strike a million times a cycle. The fit ends all the same,
-/// here at the truth.
+/// A gap stated in metres that was meant in millimetres, or the reverse. Starts spread by no more than a
+/// half, and such simulated rigs strike a million times a cycle. The fit ends all the same, here at the
+/// truth.
 #[test]
 fn a_gap_a_thousand_times_off_is_found() {
     gaps_far_off(&[1e-6]);
@@ -93,7 +94,7 @@ fn gaps_far_off(gaps: &[f64]) {
         let start = setting.with(Parameter::Gap, gap);
         let unknowns = unknowns(&["restitution", "c1", "c2", "gap"], &start);
         let (settled, _) = identify(&Problem::new(&data, &start, unknowns), STARTS).unwrap();
-        // Four standard deviations, of four parameters.
+        // Four standard deviations of four parameters: exceeded in one of 4000 cases.
         let away = away(&settled, &setting);
         assert!(away.iter().all(|a| *a < 4.0), "{gap}: {away:?}");
     }

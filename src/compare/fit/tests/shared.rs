@@ -1,9 +1,9 @@
-//! Errors that points share, and what is known beside them.
+//! Errors common to several points, and priors.
 
 use super::*;
 
-/// The undoubted answer from this start: what is left over freedom, and how many standard deviations each
-/// parameter lies off `setting`.
+/// The answer from this start, which must have no doubt: χ²/ν, and the distance of each parameter from
+/// `setting` in standard deviations.
 fn answer(data: &Data, setting: &Setting, start: &Setting, names: &[&str]) -> (f64, Vec<f64>) {
     let (settled, _) = identify(&Problem::new(data, start, unknowns(names, start)), STARTS).unwrap();
     let found = (settled.least.reduced, away(&settled, setting));
@@ -11,7 +11,8 @@ fn answer(data: &Data, setting: &Setting, start: &Setting, names: &[&str]) -> (f
     found
 }
 
-/// A calibration of 1 % errs by ten times the noise: what explains the points to 0.3 % is not the rig.
+/// A calibration error of 1 % is ten times the noise. A rig that explains such points to 0.3 % would be
+/// wrong.
 #[test]
 fn a_poor_calibration_leads_to_no_other_rig() {
     let setting = example();
@@ -30,8 +31,8 @@ fn a_poor_calibration_leads_to_no_other_rig() {
     }
 }
 
-/// One point that shows another motion 2.7 % off is nine times the noise, and less than three times a
-/// calibration of 1 %.
+/// One point is 2.7 % off, as if in another motion: nine times the noise, but less than three times a
+/// calibration error of 1 %.
 #[test]
 fn a_lone_point_does_not_hide_behind_the_calibration() {
     let setting = example();

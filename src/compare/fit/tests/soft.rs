@@ -1,10 +1,10 @@
-//! Contacts that give way.
+//! Compliant contacts.
 
 use super::*;
 use crate::compare::simulated::simulated;
 use crate::model::Law;
 
-/// Sweeps of a rig whose contact is a spring and a damper, with noise.
+/// Noisy sweeps of a rig whose contact is a spring and a damper, with the stiffness in N/m.
 fn soft(setting: &Setting, stiffness: f64, seed: u64) -> Data {
     let (clean, kinds) = truth(setting, PACE);
     let mut data = noisy(&clean, &kinds, setting, seed);
@@ -33,8 +33,8 @@ fn soft(setting: &Setting, stiffness: f64, seed: u64) -> Data {
 
 const NAMES: &str = "parameters = [\"restitution\", \"c1\", \"c2\", \"gap\"]";
 
-/// Kelvin–Voigt contacts that last 0.5 and 0.15 % of the period at resonance: with the stiffness stated the
-/// rig is found, without it nothing is claimed.
+/// Kelvin–Voigt contacts that last 0.5 and 0.15 % of the period at resonance. With the stiffness stated the
+/// rig is found; without it no uncertainty is stated.
 #[test]
 fn the_stiffness_of_the_contact_is_allowed_for() {
     allowed_for(&[(1e7, 42)], Some(1));
@@ -61,7 +61,7 @@ fn allowed_for(contacts: &[(f64, u64)], starts: Option<usize>) {
         for found in &fit.parameters {
             let Estimate { value, std, .. } = found.estimate;
             let away = (value - setting.get(found.parameter)) / std.unwrap_or(f64::NAN);
-            // Four standard deviations of eight: one of 2000 cases.
+            // Four standard deviations of eight values: exceeded in one of 2000 cases.
             assert!(away.abs() < 4.0, "{stiffness:e}: {found:?} lies {away} off");
         }
     }
