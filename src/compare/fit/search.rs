@@ -1,11 +1,11 @@
 //! Searches from several starting points, with every step on the motion nearest to its measured amplitudes.
 //!
 //! Far from the truth a simulated sweep does not resemble the measured one. History is therefore ignored
-//! here, and points of other patterns are not recognised. A residual z is ln (measured/predicted) over √(κ²
-//! + (3s)²), with s the relative standard uncertainty. It costs ln (1 + z²) (Cauchy's: P. J. Huber, *Robust
-//! Statistics* (1981), 4.8): the farther off an outlier lies, the less it pulls. κ falls in steps, so that
-//! the valley that most points share is found before its lowest point (graduated non-convexity: A. Blake &
-//! A. Zisserman, *Visual Reconstruction* (1987), 7).
+//! here, and points of other patterns are not recognised. A residual z is ln (measured/predicted) over
+//! √(κ² + (3s)²), with s the relative standard uncertainty. It costs ln (1 + z²) (Cauchy's: P. J. Huber,
+//! *Robust Statistics* (1981), 4.8): the farther off an outlier lies, the less it pulls. κ falls in steps, so
+//! that the valley that most points share is found before its lowest point (graduated non-convexity:
+//! A. Blake & A. Zisserman, *Visual Reconstruction* (1987), 7).
 
 use super::{Data, MotionKind, Problem, Setting, SweepStep, Unknown};
 use crate::math::minimise;
