@@ -86,7 +86,7 @@ fn best(sounds: &[Sound], heard: FallRecord) -> Option<BestTrain> {
 }
 
 /// How many sounds no louder one precedes within the time of its echoes.
-fn alone(sounds: &[Sound]) -> usize {
+pub(super) fn alone(sounds: &[Sound]) -> usize {
     let alone = |(i, s): &(usize, &Sound)| {
         let mut before = sounds[..*i].iter().rev().take_while(|b| b.time > s.time - SHADOW);
         before.all(|b| s.height >= QUIETER * b.height)

@@ -149,6 +149,16 @@ fn choose(
     let other = n - train.impacts.len() - before - train.echoes;
     let foreign = before - train.release + other;
     let flight = time(b) - time(a);
+    if let &[_, second, third] = &train.impacts[..]
+        && heard.full.is_none()
+        && time(third) - time(second) < SHADOW
+    {
+        let flight = quantity(time(third) - time(second), "s", 3);
+        let why = format!(
+            "two flights, the second of {flight}: without the height of the fall the third sound may be the echo of the second"
+        );
+        return refused(why, &train);
+    }
     if let Some(why) = unconfirmed(&train, foreign, flight) {
         return refused(why, &train);
     }

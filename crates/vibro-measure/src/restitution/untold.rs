@@ -1,8 +1,8 @@
 //! What to try where sounds do not tell which of them are the bounces of one body: each advice is tried
 //! before it is given.
 
-use super::pairs::{FallRecord, Rival};
-use super::plausible::{Plausible, plausible};
+use super::pairs::{FallRecord, Rival, SHADOW};
+use super::plausible::{Plausible, alone, plausible};
 use super::{GROSS, Train};
 use crate::impacts::{ImpactsOptions, Sound};
 use std::cell::RefCell;
@@ -128,6 +128,10 @@ impl Untold {
         else {
             return None;
         };
+        // A body that is caught makes one sound more; bounces of which the first two are none make several.
+        if alone(&self.sounds[second..]) > 2 {
+            return None;
+        }
         let end = f64::midpoint(self.sounds[second].time, expected);
         let (from, to) = (hundredths(self.heard.ends.0), hundredths(end));
         let part = part(trace, from, to)?;
@@ -137,7 +141,11 @@ impl Untold {
     /// The part of the record in s behind the first sounds that tells the bounces: three, whose R by their
     /// flights is that by the height. What is cut off may be the first impact.
     fn part(&self, (trace, options, full): Read<'_>) -> Option<(f64, f64)> {
-        let behind = |first: &usize| self.may_tell(&self.sounds[*first..]).is_some();
+        // What follows a sound at once is its echo, and goes with it.
+        let behind = |first: &usize| {
+            let gap = self.sounds[*first].time - self.sounds[*first - 1].time;
+            gap > SHADOW && self.may_tell(&self.sounds[*first..]).is_some()
+        };
         let first = (1..self.sounds.len().min(CLAPS)).find(behind)?;
         let between = f64::midpoint(self.sounds[first - 1].time, self.sounds[first].time);
         let (from, to) = (hundredths(between), hundredths(self.heard.ends.1));
