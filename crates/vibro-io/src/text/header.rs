@@ -102,11 +102,16 @@ impl Stated {
     pub fn of<'a>(lines: impl Iterator<Item = &'a str>, mark: Option<u8>) -> Stated {
         let mut stated = Stated { mark, ..Stated::default() };
         for line in lines {
-            // `NPTS= 6000, DT= .01 SEC` are two statements.
-            let between = [(',', ['=', '=']), ('\t', ['=', ':'])].into_iter();
-            let several =
-                |(mark, ends): &(char, [char; 2])| line.split(*mark).all(|part| part.contains(*ends));
-            let mark = between.filter(several).map(|(mark, _)| mark).find(|mark| line.contains(*mark));
+            // `NPTS= 6000, DT= .01 SEC` are two statements; the comma in `fs=1,6 kHz; N=4096` is no mark
+            // between statements, since no key begins with a digit.
+            let between = [(';', ['=', ':']), ('|', ['=', ':']), (',', ['=', '=']), ('\t', ['=', ':'])];
+            let several = |(mark, ends): &(char, [char; 2])| {
+                let has_key = |part: &str| {
+                    part.contains(*ends) && !part.trim_start().starts_with(|c: char| c.is_ascii_digit())
+                };
+                line.contains(*mark) && line.split(*mark).all(has_key)
+            };
+            let mark = between.into_iter().find(several).map(|(mark, _)| mark);
             for line in line.split(|c| Some(c) == mark) {
                 let line = line.trim().trim_matches('"').trim_start_matches([';', ' ']);
                 let line = line.strip_prefix("//").map_or(line, str::trim_start);

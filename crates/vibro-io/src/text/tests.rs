@@ -1297,6 +1297,14 @@ fn a_head_that_says_that_the_abscissa_is_a_frequency() {
 fn decimal_commas_below_a_rate_tell_that_its_point_groups_digits() {
     let rate = |text: &str| of(text).records[0].axis().step().map(|step| (1.0 / step).round());
     assert_eq!(rate("Abtastrate: 1.000 Hz\nA (V);B (V)\n0,5;1,5\n2,5;3,5\n"), Some(1000.0));
+    for head in [
+        "fs=1,6 kHz; N=4096; Kanal: a1 / ms^-2",
+        "fs=1,6 kHz | N=4096",
+        "fs=1,6 kHz, N=4096",
+        "N=4096, fs=1600 Hz",
+    ] {
+        assert_eq!(rate(&format!("{head}\nA (V);B (V)\n0,5;1,5\n2,5;3,5\n")), Some(1600.0), "{head}");
+    }
     assert_eq!(rate("Sample rate: 1,000 Hz\nA (V);B (V)\n0.5;1.5\n2.5;3.5\n"), Some(1000.0));
     // Whole numbers tell nothing.
     let whole = of("Abtastrate: 1.000 Hz\nA (V);B (V)\n5;15\n25;35\n");
