@@ -75,6 +75,18 @@ impl Column {
             && values.iter().enumerate().all(|(i, v)| *v == first + i as f64)
     }
 
+    /// The two neighbours between which a column that counts the samples leaves some out: whole numbers that
+    /// rise, by one nine times in ten.
+    pub fn leaves_out(&self) -> Option<[f64; 2]> {
+        let values = self.reals();
+        let steps = || values.windows(2).map(|pair| pair[1] - pair[0]);
+        let ones = steps().filter(|step| *step == 1.0).count();
+        let rises = steps().all(|step| step >= 1.0 && step.fract() == 0.0);
+        let counts = self.name.may_count() && !matches!(self.values, Held::Ends(_)) && rises;
+        let first = steps().position(|step| step > 1.0).filter(|_| counts)?;
+        (10 * ones >= 9 * (values.len() - 1)).then(|| [values[first], values[first + 1]])
+    }
+
     /// Two values of a column that numbers the channel or the sensor of each row, the first and one that
     /// follows: whole numbers in turns, or few of them that come back under a name that says so.
     pub fn numbers_channels(&self) -> Option<[f64; 2]> {

@@ -355,8 +355,10 @@ const COUNTS: &str =
     "|#|index|i|n|no|nr|number|record|row|scan|sample|samples|sample no|point|frame|store no";
 
 /// Words that end the name of a column that only counts, behind others.
-const COUNT_WORDS: [&str; 9] =
-    ["sample", "samples", "index", "count", "counter", "number", "record", "row", "frame"];
+const COUNT_WORDS: [&str; 12] = [
+    "sample", "samples", "index", "count", "counter", "number", "record", "row", "frame", "packet", "seq",
+    "sequence",
+];
 
 /// The unit of a column that counts, in heads of telephones: the set ℕ, and no newton.
 pub(super) const NATURAL: &str = "N";

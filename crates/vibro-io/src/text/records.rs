@@ -70,6 +70,9 @@ pub fn build(
     table.retain(|column| Some(column.at - 1) != dialect.clock_at());
     of_one_channel(&table)?;
     let has_axis = printed.is_some();
+    if !has_axis {
+        without_gaps(&table)?;
+    }
     if numbered && !has_axis {
         of_axis.push(Finding::caution("column-numbers-rows"));
     }
@@ -137,6 +140,16 @@ fn of_one_channel(table: &[Column]) -> Result<()> {
     let found = format!("{name:?} goes from {} to {} and back", short(one), short(next));
     Err(Error::usage(found, "rows of one channel or sensor")
         .hint("keep the rows of one number in a file, those of the others each in a file of their own"))
+}
+
+/// Refuses rows without times of which a counter shows that some are missing: no rate is true of them.
+fn without_gaps(table: &[Column]) -> Result<()> {
+    let gap = table.iter().find_map(|column| Some((column.label(), column.leaves_out()?)));
+    let Some((name, [last, next])) = gap else { return Ok(()) };
+    let (lost, last, next) = (short(next - last - 1.0), short(last), short(next));
+    let found = format!("{name:?} goes from {last} to {next}: samples are missing, {lost} there");
+    Err(Error::usage(found, "all samples, for there are no times beside them")
+        .hint(format!("cut the file between {last} and {next}, and read each part by itself")))
 }
 
 /// The record of a column, and how its values are read again.

@@ -1294,6 +1294,22 @@ fn a_head_that_says_that_the_abscissa_is_a_frequency() {
 }
 
 #[test]
+fn samples_that_a_counter_leaves_out_are_missed() {
+    let text = |gap: usize, head: &str| {
+        let row = |i: usize| format!("{},{:.4}\n", if i < 50 { i } else { i + gap }, (0.3 * i as f64).sin());
+        format!("{head}\n{}", (0..100).map(row).collect::<String>())
+    };
+    for name in ["Packet", "Sample", "Index", "Seq"] {
+        let head = format!("Sample rate: 1000 Hz\n{name},Acc (m/s²)");
+        let error = Reader::new().from_reader("x.csv", text(7, &head).as_bytes()).unwrap_err().to_string();
+        assert!(error.contains("goes from 49 to 57") && error.contains("7 there"), "{name}: {error}");
+        assert_eq!(of(&text(0, &head)).records.len(), 1, "{name}");
+    }
+    // What rises otherwise counts no samples.
+    assert_eq!(of(&text(7, "Sample rate: 1000 Hz\nPosition (mm),Acc (m/s²)")).records.len(), 2);
+}
+
+#[test]
 fn decimal_commas_below_a_rate_tell_that_its_point_groups_digits() {
     let rate = |text: &str| of(text).records[0].axis().step().map(|step| (1.0 / step).round());
     assert_eq!(rate("Abtastrate: 1.000 Hz\nA (V);B (V)\n0,5;1,5\n2,5;3,5\n"), Some(1000.0));
