@@ -5,33 +5,33 @@ use vibro_math::border;
 use vibro_record::{Window, upper_median};
 use vibro_signal::window::line_shape;
 
-/// Lines on either side that are read where noise is taken for white.
+/// Lines read on either side of a peak for its noise floor: over these the noise is taken as white.
 pub const REACH: usize = 40;
 
-/// Lines next to the peak that are left out: they belong to it.
+/// Lines on either side of a peak that are left out of the floor: they belong to the peak.
 const GUARD: usize = 4;
 
-/// Median of | |L + noise| − L | for a line of height L, both in units of the noise of one component:
-/// √(2 ln 2) for noise alone (Rayleigh), 0.6745 where the line is high (normal). Quantiles of the Rice
-/// distribution (S. O. Rice, Bell Syst. Tech. J. 24 (1945) 46); straight lines between these are within 1 %.
+/// Median of | |L + noise| − L | for a line of height L, both in units of the noise of one component: √(2 ln
+/// 2) for noise alone (Rayleigh), 0.6745 where the line is high (normal). Quantiles of the Rice distribution
+/// (S. O. Rice, Bell Syst. Tech. J. 24 (1945) 46); linear interpolation is within 1 %.
 const HEIGHTS: [f64; 10] = [0.0, 0.35, 0.5, 0.7, 0.8, 0.9, 1.0, 2.0, 4.0, 10.0];
 const MEDIANS: [f64; 10] = [1.1774, 0.8636, 0.7516, 0.6273, 0.5972, 0.5848, 0.5826, 0.6484, 0.669, 0.6745];
 
 /// Standard deviation of the noise in one component (real or imaginary) of a line, from the magnitudes of the
 /// lines `reach` on either side of `centre`, not nearer than four lines to it and not below line 2.
 ///
-/// What the sine at `centre` spreads over these lines under `window` is taken out: without a window, or under
-/// Hamming's, it is far above the noise. The median of the rest is not moved by a few further peaks. What
-/// cannot be taken out counts as noise: leakage of the sine's negative frequency and of lines elsewhere, and
-/// all leakage of an unknown window. It bends the sine's own lines as much as those beside it, so the
-/// uncertainty made of this floor is of its size.
+/// The leakage of the sine at `centre` under `window` is subtracted first: without a window, or under
+/// Hamming's, it is far above the noise. The floor is a median, so a few further peaks do not move it.
+/// Leakage of the sine's negative frequency, of lines elsewhere, and all leakage of an unknown window cannot
+/// be subtracted and counts as noise. It disturbs the sine's own lines as much as those beside it, so
+/// uncertainties from this floor have its size.
 ///
 /// `None` where fewer than eight lines are left.
 pub fn around(magnitudes: &[f64], centre: usize, reach: usize, window: Option<Window>) -> Option<f64> {
     let low = centre.saturating_sub(reach).max(2);
     let high = centre.saturating_add(reach + 1).min(magnitudes.len());
     let sine = window.zip(sine(magnitudes, centre, window));
-    // Leakage of each line, and what is left of it.
+    // Leakage of the sine at each line, and the line's magnitude without it.
     let lines: Vec<(f64, f64)> = (low..high)
         .filter(|k| k.abs_diff(centre) > GUARD && magnitudes[*k].is_finite())
         .map(|k| {
@@ -46,9 +46,9 @@ pub fn around(magnitudes: &[f64], centre: usize, reach: usize, window: Option<Wi
     }
     let mut scaled = vec![0.0; lines.len()];
     let mut noise = f64::INFINITY;
-    // What a line's rest should be depends on its height over the noise, weakly: the slope of the logarithm
-    // of the median over that of the height is at most 0.75, so each turn leaves no more than that of the
-    // error, and 40 turns 1e-5.
+    // The expected rest of a line depends weakly on its height over the noise: the slope of the logarithm of
+    // the median over that of the height is at most 0.75. So each iteration leaves at most 0.75 of the
+    // error, and 40 leave 1e-5.
     for _ in 0..40 {
         for (scaled, (leakage, rest)) in scaled.iter_mut().zip(&lines) {
             *scaled = rest / rice_median(leakage / noise);
@@ -70,7 +70,7 @@ fn sine(magnitudes: &[f64], centre: usize, window: Option<Window>) -> Option<(f6
     interpolate(magnitudes, top, window, None).map(|sine| (sine.position, sine.amplitude))
 }
 
-/// Median for a line of this height.
+/// [`MEDIANS`] for a line of this height over the noise, by linear interpolation.
 fn rice_median(height: f64) -> f64 {
     let x = height.clamp(0.0, 10.0);
     let k = HEIGHTS.partition_point(|h| *h < x).clamp(1, 9);
@@ -78,7 +78,7 @@ fn rice_median(height: f64) -> f64 {
     a.1 + (b.1 - a.1) * (x - a.0) / (b.0 - a.0)
 }
 
-/// Chance that the true amplitude lies above the limit, at most.
+/// Largest probability that the true amplitude lies above the limit.
 const MISSED: f64 = 0.05;
 
 /// The amplitude that a sine stays below with 95 % confidence, from the magnitude of its line and the noise
@@ -89,9 +89,10 @@ const MISSED: f64 = 0.05;
 /// falling to nothing where noise happens to be small, so it is never below 2.45 `noise`, and the true
 /// amplitude lies above it in less than 5 % of all cases.
 ///
-/// All cases are faint and strong readings together. Where only faint readings are given a limit, no more
-/// than 5 % of all readings lie above theirs; but a strong sine that noise made faint lies above its limit
-/// more often than that. `None` where one of the two is not a number or there is no noise.
+/// These 5 % are of all readings, faint and strong. Where only faint readings get a limit, no more than 5 %
+/// of all readings still exceed theirs, but a strong sine that noise made faint exceeds its limit more
+/// often. `None` where one of the two is not a number, there is no noise, or the magnitude is above 20
+/// `noise`.
 pub fn upper_limit(magnitude: f64, noise: f64) -> Option<f64> {
     let m = magnitude / noise;
     // Far above the noise there is nothing to limit, and the series below would be long.
@@ -101,7 +102,7 @@ pub fn upper_limit(magnitude: f64, noise: f64) -> Option<f64> {
     // Below this the limit does not change in its first five digits, and the sums would cancel.
     let m = m.max(1e-3);
     let wanted = MISSED * below(m, 0.0);
-    // Ten standard deviations above the magnitude nothing is left.
+    // Ten standard deviations above the magnitude the probability is negligible.
     Some(noise * border(0.0, m + 10.0, |height| below(m, height) > wanted))
 }
 
@@ -109,10 +110,10 @@ pub fn upper_limit(magnitude: f64, noise: f64) -> Option<f64> {
 /// distributions with Poisson weights, since M² is noncentral χ² of two degrees of freedom.
 pub(super) fn below(m: f64, nu: f64) -> f64 {
     let (y, lambda) = (m * m / 2.0, nu * nu / 2.0);
-    // Poisson probability of j at λ and of j at y, and what is left of the latter above j.
+    // Poisson probabilities of j for means λ and y, and the latter's tail above j.
     let (mut weight, mut term, mut tail) = ((-lambda).exp(), (-y).exp(), -(-y).exp_m1());
     let (mut sum, mut j) = (weight * tail, 0.0);
-    // From where terms fall, until they no longer count.
+    // Terms fall from j = y on; the sum ends where they no longer count.
     while j < y || term > 1e-18 {
         j += 1.0;
         weight *= lambda / j;
@@ -167,8 +168,9 @@ mod tests {
         assert_eq!(around(&[1.0; 12], 6, REACH, None), None);
     }
 
-    /// Ratios of the scatter seen to the uncertainty stated, of position and amplitude, in `draws` spectra of
-    /// a sine at `truth` and its negative frequency at `image`; `None` where not all state one.
+    /// Ratios of the observed scatter to the stated uncertainty, of position and amplitude, in [`DRAWS`]
+    /// spectra of a sine at line `truth` and its negative frequency at `image`; `None` where one states no
+    /// uncertainty.
     fn scatter(
         window: Window,
         truth: f64,
@@ -208,8 +210,8 @@ mod tests {
         assert!(judged >= 66, "{judged} of 72");
     }
 
-    /// How many of three places under these windows at these levels state an uncertainty; all that do state
-    /// the scatter.
+    /// Number of cases (three places, these windows and levels) that state an uncertainty; asserts that it
+    /// is the scatter.
     fn judged(windows: &[Window], decibels: &[i32]) -> u32 {
         let mut normal = Noise::new(0x5eed);
         let mut judged = 0;
@@ -237,9 +239,8 @@ mod tests {
 
     #[test]
     fn the_leakage_of_the_negative_frequency_is_covered() {
-        // It bends the sine's own lines, which is no scatter of white noise; what it leaves beside the sine
-        // must make up for it. Without a window, 80 dB: its leakage 1/(160π) is twenty times the
-        // noise.
+        // The leakage bends the sine's own lines, unlike white noise; a floor raised by leakage beside the
+        // sine must cover that. Without a window, 80 dB: its leakage 1/(160π) is twenty times the noise.
         let mut normal = Noise::new(0x1a6e);
         for window in [Window::Rectangular, Window::Hamming] {
             for part in [0.3, 0.47] {

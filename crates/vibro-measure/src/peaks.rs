@@ -48,12 +48,12 @@ pub fn local_maxima(values: &[f64], ratio: f64) -> Vec<Maximum> {
 /// Vertex through three points `f` (rising) with heights `a` and their standard uncertainties.
 ///
 /// Near a resonance of one mode 1/a² is a parabola in frequency, so that parabola gives the vertex. Its
-/// uncertainty is made of the propagated uncertainty of the heights; the distance to the vertex of a parabola
-/// through ln a, for the choice of curve; and h²/f for points h apart, the size of what a curve has beyond
-/// the parabola: a mode itself bends it by half of that, (1 − r²)² = 4δ²(1 + δ + δ²/4) with δ = r − 1, and a
+/// uncertainty combines three parts: the propagated uncertainty of the heights; the distance to the vertex
+/// of a parabola through ln a, for the choice of curve; and h²/f for points h apart, for terms beyond the
+/// parabola. A mode itself bends it by half of that, (1 − r²)² = 4δ²(1 + δ + δ²/4) with δ = r − 1, and a
 /// zero or a mode at a distance d adds h²/d. Where a neighbour is below half of the middle point, the curve
-/// is not resolved: the middle point is given with the uncertainty of its place, and no uncertainty (NaN) of
-/// its height.
+/// is not resolved: the answer is the middle point with an uncertainty of its place, and none (NaN) of its
+/// height.
 ///
 /// `None` where the middle point is not the highest.
 pub fn vertex(f: [f64; 3], a: [f64; 3], std: [f64; 3]) -> Option<Vertex> {
@@ -79,7 +79,7 @@ pub fn vertex(f: [f64; 3], a: [f64; 3], std: [f64; 3]) -> Option<Vertex> {
     let height = 1.0 / inverse.sqrt();
     let (rival_f, rival_h) = parabola(a.map(|v| -v.ln())).map_or((f[1], 1.0), |(f, h)| (f, (-h).exp()));
     let beyond = spacing * spacing / frequency;
-    // The height moves by as much of the fall beside it.
+    // A shift of the vertex by `beyond` moves the height by that fraction of the fall over one spacing.
     let fall = (1.0 / a[0].min(a[2]) - 1.0) * beyond / spacing;
     let mut variance =
         [(frequency - rival_f).powi(2) + beyond * beyond, (height - rival_h).powi(2) + fall * fall];
@@ -99,7 +99,7 @@ pub fn vertex(f: [f64; 3], a: [f64; 3], std: [f64; 3]) -> Option<Vertex> {
 }
 
 /// Where the polynomial through points (`x`, `y`) of rising `x` is lowest between `low` and `high`, and its
-/// value there. `None` unless it falls at the one and rises at the other.
+/// value there. `None` unless it falls at `low` and rises at `high`.
 pub(crate) fn lowest(x: &[f64], y: &[f64], (low, high): (f64, f64)) -> Option<(f64, f64)> {
     // Newton's divided differences.
     let mut c = y.to_vec();
@@ -118,17 +118,16 @@ pub(crate) fn lowest(x: &[f64], y: &[f64], (low, high): (f64, f64)) -> Option<(f
     })
 }
 
-/// Top of a curve over rising frequency near its highest point `i`, from the points around it, up to two on
-/// each side.
+/// Vertex of a curve over rising frequency near its highest point `i`, from up to two points on each side.
 ///
-/// 1/a² of a damped mode is a parabola in f² (its receptance squared); what further modes and contacts add
-/// bends it. So the polynomial in f² through up to two points on each side is taken: exact for one mode at
-/// any spacing. Its uncertainty is made of the propagated uncertainties of the heights, and of what the
-/// polynomial leaves open: its largest distance to those through the highest point and its neighbours and
-/// with one point less, anywhere within that with equal chance. (Contact makes a resonance lean, and what is
-/// beyond a polynomial then falls off slowly: two orders that happen to agree prove nothing.) Where the
-/// points beside `i` are below half of it, where there are three only, or where the polynomial has no single
-/// top, the answer is that of [`vertex`], with the uncertainty of a lean that three points cannot show.
+/// 1/a² of a damped mode is a parabola in f² (its receptance squared); further modes and contacts bend it.
+/// So the polynomial in f² through up to two points on each side is used: exact for one mode at any spacing.
+/// Its uncertainty combines the propagated uncertainties of the heights with the choice of points. For the
+/// latter, the largest distance to the polynomials through the highest point and its neighbours, and through
+/// one point less, counts as the half-width of a rectangular distribution. (Contact makes a resonance lean;
+/// higher orders then decrease slowly, and two orders may agree by chance.) The answer is that of
+/// [`vertex`], with the uncertainty of a lean that three points cannot show, where the points beside `i` are
+/// below half of it, where there are only three, or where the polynomial has no single vertex.
 pub(crate) fn apex(points: &[Point], i: usize) -> Option<Vertex> {
     let near: [Point; 3] = points.get(i.checked_sub(1)?..=i + 1)?.try_into().ok()?;
     let (f, a) = (near.map(|p| p.0), near.map(|p| p.1));
@@ -149,12 +148,13 @@ pub(crate) fn apex(points: &[Point], i: usize) -> Option<Vertex> {
     })
 }
 
-/// A lean of this many half-widths a half-width is feared where three points cannot show it: up to 1/2 to
-/// either side with equal chance (1/√12). From 1 on a resonance overhangs and ends in a jump.
+/// Standard uncertainty of the lean κ of a resonance (see [`leaning`]), which three points cannot show: up
+/// to 1/2 to either side with equal chance (1/√12). From κ = 1 on a resonance overhangs and ends in a jump.
 const LEAN: f64 = 0.288_675;
 
-/// The vertex with the uncertainty of a lean: a resonance 1/a = y, δ = κy ± √(y² − 1) in half-widths δ whose
-/// flanks are measured at y moves its top by κ(y − 1) against them, and its height by as much of their slope.
+/// Adds the uncertainty of a lean to a vertex. A resonance that leans by κ is δ = κy ± √(y² − 1), with δ the
+/// detuning in half-widths and y = 1/a relative to the top. Against flanks measured at y its top moves by
+/// κ(y − 1), and its height by that times their slope.
 fn leaning(vertex: Vertex, f: [f64; 3], a: [f64; 3]) -> Vertex {
     let y = vertex.height / a[0].min(a[2]);
     // κ(y − 1) half-widths, where the half-width is the distance of the flanks over √(y² − 1).
@@ -166,21 +166,23 @@ fn leaning(vertex: Vertex, f: [f64; 3], a: [f64; 3]) -> Vertex {
     }
 }
 
-/// Place and height of the top near point `i` with their uncertainties; `None` where the polynomial through
-/// all points has no single one.
+/// Place and height of the vertex near point `i` with their uncertainties; `None` where the polynomial
+/// through all points has no single vertex.
 fn fitted(points: &[Point], i: usize) -> Option<[(f64, f64); 2]> {
     let beside = (points[i - 1].0, points[i + 1].0);
     let found = extremum(points, beside)?;
     let n = points.len();
     let mut open = [0.0f64; 2];
-    // Without a neighbour of the highest point it would be extrapolated.
+    // All subsets keep the neighbours of the highest point: without one the polynomial would be
+    // extrapolated.
     for fewer in [i - 1..i + 2, usize::from(i > 1)..n, 0..n - usize::from(i + 2 < n)] {
         let rival = extremum(&points[fewer], beside)?;
         for q in 0..2 {
             open[q] = open[q].max((rival[q] - found[q]).abs());
         }
     }
-    // Four points leave one order to compare, which may agree by chance: its whole distance.
+    // With four points only one order can be compared, and it may agree by chance: the whole distance
+    // counts.
     let share = if n > 4 { 1.0 / 3.0 } else { 1.0 };
     let mut variance = open.map(|o| share * o * o);
     let mut moved = points.to_vec();

@@ -1,8 +1,8 @@
 //! Contact pulses: damping ratio and contact frequency from two instants, or from fits to the whole pulse.
 //!
-//! The model of spring and damper (Kelvin–Voigt) gives the answer, if the record prefers no other; those of
-//! Hertz, of Hunt and Crossley, of any exponents, and of a spring that yields are fitted beside it,
-//! to see whether the record prefers them. The instrument's low-pass is applied to the models in closed form.
+//! The model of spring and damper (Kelvin–Voigt) gives the answer unless the record prefers another. Fitted
+//! beside it are those of Hertz, of Hunt and Crossley, of a power law with free exponents, and of a yielding
+//! spring. The instrument's low-pass is applied to the models in closed form.
 
 mod contact;
 mod fit;
@@ -38,18 +38,19 @@ pub struct PulseOptions {
 /// What an instrument does to the shape of a pulse.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub enum Instrument {
-    /// Not known. An ignored low-pass moves ξ by 0.1 and more, and fits may look right all the same: there
-    /// are no uncertainties.
+    /// Not known: no uncertainties are stated. An ignored low-pass moves ξ by 0.1 and more, and fits may
+    /// look right all the same.
     #[default]
     Unknown,
-    /// Nothing.
+    /// The pulse passes unchanged.
     Flat,
     /// A Butterworth low-pass.
     LowPass(LowPass),
 }
 
 impl Instrument {
-    /// What a person states: nothing, no low-pass (`Some(None)`), or one of a corner in Hz with its order.
+    /// From what the user states: nothing (unknown), no low-pass (`Some(None)`), or one of a corner in Hz
+    /// with its order.
     ///
     /// # Errors
     /// If corner and order do not come together; as [`LowPass::new`].
@@ -69,11 +70,11 @@ impl Instrument {
         }
     }
 
-    /// Why the shape of a pulse sampled at `rate` in Hz does not tell one contact from another.
+    /// Reasons why a pulse recorded by this instrument at `rate` in Hz does not determine the contact.
     fn doubts(&self, rate: f64) -> Vec<Finding> {
         match self {
             Instrument::Unknown => vec![Finding::doubt("pulse-instrument-unknown")],
-            // Its rise falls between two samples.
+            // The rise of this low-pass falls between two samples.
             Instrument::LowPass(filter) if filter.corner >= 0.5 * rate => {
                 let above = Finding::doubt("pulse-corner-above-half-rate");
                 vec![above.number("corner", filter.corner).number("rate", rate)]
@@ -88,17 +89,16 @@ impl Instrument {
     }
 }
 
-/// Fewest samples above half the height, two thirds of a half sine: five inside the pulse, whose shape has
-/// four parameters.
+/// Fewest samples above half the height. A half sine is above it for two thirds of its length: five samples
+/// in the pulse, one more than its shape has parameters.
 const FEWEST: f64 = 10.0 / 3.0;
 
 /// Fits the largest pulse of a record of acceleration (or of force).
 ///
-/// Residuals are taken for noise of one variance. Where they are correlated, which is tested, uncertainties
-/// are enlarged by the correlation. Where the pulse begins otherwise than the model can, as behind an
-/// unstated low-pass, ξ and all that follows are null. Where the instrument is unknown, or its corner lies at
-/// half the sampling rate or above, no uncertainty is stated: in the one case another ξ may pass for this
-/// one, in the other more than one onset fits.
+/// Residuals are taken as noise of one variance; where a test finds them correlated, uncertainties are
+/// enlarged. Where the onset does not match the model, as after an unstated low-pass, ξ and all values
+/// derived from it are null. No uncertainty is stated where the instrument is unknown, since another ξ may
+/// fit as well, or where its corner is at half the sampling rate or above, since more than one onset fits.
 ///
 /// # Errors
 /// If the record is not evenly sampled in time, holds no whole pulse, or too few samples of it, or does not
@@ -147,10 +147,10 @@ pub fn pulse(trace: &Trace, options: &PulseOptions) -> Result<PulseResult> {
         let std = factor * main.fit.std(2) * widened;
         Estimate::new(factor * main.fit.parameters[2].abs(), Some(std), "m/s", n, method)
     });
-    // Beyond rounding a contact gives back no more than it took.
+    // A contact cannot return more energy than it took: ξ may be below 0 only by its uncertainty.
     let gains = result.xi.value + 2.0 * result.xi.std.unwrap_or(UNKNOWN) < 0.0;
     let onset = if filter.is_none() { "pulse-low-pass-missing" } else { "pulse-onset-unlike" };
-    // What spring and damper cannot be; it says nothing of a contact that follows another law.
+    // Reasons against spring and damper; they say nothing of a contact that follows another law.
     let impossible = [gains.then(|| gained(&result)), widening.is_none().then(|| Finding::doubt(onset))];
     if gains || widening.is_none() {
         result = result.refused();
@@ -188,7 +188,7 @@ pub fn pulse(trace: &Trace, options: &PulseOptions) -> Result<PulseResult> {
     Ok(result)
 }
 
-/// Whether a trace can be one of a contact, and the mass that of a body.
+/// Refuses records of displacement or velocity, and a mass that is not above 0.
 fn check(trace: &Trace, options: &PulseOptions) -> Result<()> {
     let quantity = trace.meta.quantity;
     if matches!(quantity, Quantity::Displacement | Quantity::Velocity) {
@@ -202,8 +202,8 @@ fn check(trace: &Trace, options: &PulseOptions) -> Result<()> {
     Ok(())
 }
 
-/// All models fitted to the samples, that of spring and damper first. Where it leaves white noise, and the
-/// others more, no exponents are fitted.
+/// Fits all models to the samples, spring and damper first. The power law is skipped where spring and damper
+/// leaves white residuals and is clearly ahead of the other models.
 fn rivals(samples: &Samples<'_>, main: FittedPulse) -> Vec<FittedPulse> {
     let mut fits = vec![main];
     for rival in ContactModel::RIVALS {

@@ -15,11 +15,11 @@ pub struct Resonance {
     pub frequency: f64,
     /// Its standard uncertainty in Hz.
     pub frequency_std: Option<f64>,
-    /// Amplitude there.
+    /// Amplitude there, in the unit of the curve.
     pub amplitude: f64,
-    /// Its standard uncertainty.
+    /// Its standard uncertainty; `None` where the points do not determine it.
     pub amplitude_std: Option<f64>,
-    /// Maximum or minimum, by its name where both masses were measured.
+    /// Maximum or minimum; a maximum has the name of its mode where both masses were measured.
     pub kind: ResonanceKind,
     /// Whether the curve ends in a jump there, so that the true maximum may lie between the points.
     pub at_jump: bool,
@@ -53,7 +53,8 @@ impl ResonanceKind {
     }
 }
 
-/// A maximum must stand this factor above its valleys.
+/// Least ratio of a maximum to the higher of its valleys: a smaller one lists ripples, a larger one misses
+/// weak resonances.
 const PROMINENCE: f64 = 1.2;
 
 /// Resonances and minima of a curve of rising frequency, given its jumps, and the mass where it is known.
@@ -80,15 +81,15 @@ pub(crate) fn resonances(points: &[Point], jumps: &[Jump], mass: Option<u8>) -> 
     found
 }
 
-/// A minimum without a zero is less deep than this factor below the curve half-way (in f²) to the resonances
-/// beside it: where the tails A/(u − p) and B/(q − u) of two modes add, the sum there is less than 2 times
-/// its minimum, (2r + 2/(2 + r))/(1 + r) with r² = A/B or its inverse. Where they cancel, it falls to what
-/// damping leaves.
+/// An antiresonance lies more than this factor below the curve half-way (in f²) to the resonances beside it.
+/// Where the tails A/(u − p) and B/(q − u) of two modes add, the sum there is less than 2 times its minimum:
+/// (2r + 2/(2 + r))/(1 + r) with r² = A/B or its inverse. Where they cancel, only damping limits the
+/// minimum.
 const DEEP: f64 = 2.0;
 
 impl Resonance {
-    /// Whether it is a maximum that the points around the highest do not determine: the true one may lie
-    /// between them, and be larger.
+    /// Whether this is a maximum that its neighbouring points do not determine: the true one may lie between
+    /// them, and be higher.
     pub(crate) fn is_largest_point(&self) -> bool {
         self.kind.is_maximum()
             && !self.at_jump
@@ -107,14 +108,15 @@ impl Resonance {
     }
 }
 
-/// Differences fewer than this do not tell a scatter.
+/// Fewest divided differences from which a scatter is estimated.
 const FEW: usize = 4;
 
-/// Points beyond this many from the highest may lie where the motion is another one.
+/// Most points on either side of the highest used for the scatter: farther ones may belong to another
+/// motion.
 const REACH: usize = 4;
 
-/// Square of the divided difference of 1/a² over f² through all `points`, against its variance. Frequencies
-/// and heights are taken relative to `top`.
+/// Squared divided difference of 1/a² over f² through all `points`, over its variance by their
+/// uncertainties; 1 without uncertainties. Frequencies and heights are taken relative to `top`.
 fn squared_difference(points: &[Point], top: Point) -> f64 {
     let x = |p: &Point| (p.0 / top.0).powi(2);
     let (mut difference, mut variance) = (0.0, 0.0);
@@ -131,7 +133,7 @@ fn squared_difference(points: &[Point], top: Point) -> f64 {
 /// A response curve of rising frequency.
 struct Curve<'a> {
     points: &'a [Point],
-    /// Its inverse.
+    /// The same points with inverse amplitudes, whose maxima are the minima of the curve.
     inverse: &'a [Point],
     jumps: &'a [Jump],
 }
@@ -151,8 +153,8 @@ impl Curve<'_> {
         })
     }
 
-    /// The top of this curve or its inverse between the points around the highest, `i`, and up to two on each
-    /// side over which it falls without a jump; `None` where they do not determine it.
+    /// Vertex of this curve or its inverse near its highest point `i`, from up to two points on each side
+    /// over which the curve falls without a jump; `None` where they do not determine it.
     fn interpolated(&self, of: &[Point], i: usize) -> Option<Vertex> {
         let falls =
             |from: usize, to: usize| of[to].1 < of[from].1 && of[to].1 > 0.0 && !self.jump_between(from, to);
@@ -165,13 +167,12 @@ impl Curve<'_> {
         if rises { apex(&near, i - low) } else { None }
     }
 
-    /// How many times more the points around the highest, `i`, scatter than their uncertainties say; 1 at
-    /// least. A force that changes from step to step moves points that are each right.
+    /// Factor by which the points around the highest, `i`, scatter more than their uncertainties say; at
+    /// least 1. A force that varies from step to step moves points that are each correct.
     ///
-    /// 1/a² of one mode is a parabola in f²; what contact and other modes add is smooth. So the third and
-    /// higher divided differences of the near points above half of the highest are noise, or fall from
-    /// one order to the next: the least root mean square of three orders against what the uncertainties
-    /// give.
+    /// 1/a² of one mode is a parabola in f², and contact and other modes add a smooth part. So divided
+    /// differences of orders 3 to 5, over near points above half of the highest, are noise or fall with the
+    /// order. The smallest of their root mean squares, in units of the stated uncertainties, is taken.
     fn scatter(&self, of: &[Point], i: usize) -> f64 {
         let joined = |from: usize, to: usize| 2.0 * of[to].1 > of[i].1 && !self.jump_between(from, to);
         let low = (1..=i).rev().take(REACH).take_while(|k| joined(*k, k - 1)).last().map_or(i, |k| k - 1);
@@ -194,7 +195,8 @@ impl Curve<'_> {
         }
     }
 
-    /// The maximum or minimum at point `i`, which lies anywhere between those on its two `sides`.
+    /// The maximum or minimum at point `i`. Its true place lies with equal chance anywhere between the
+    /// points on its two `sides`.
     fn point(&self, i: usize, sides: [usize; 2], kind: ResonanceKind) -> Resonance {
         let (frequency, amplitude, _) = self.points[i];
         let [a, b] = sides.map(|k| (self.points[k].0 - frequency).abs());
@@ -202,11 +204,12 @@ impl Curve<'_> {
         Resonance { frequency, frequency_std, amplitude, amplitude_std: None, kind, at_jump: false }
     }
 
-    /// `None` at the foot of a jump.
+    /// The minimum at point `i`; `None` at the foot of a jump.
     fn minimum(&self, i: usize, kind: ResonanceKind) -> Option<Resonance> {
         let (_, amplitude, std) = self.points[i];
         if amplitude < SIGMA * std {
-            // In the noise its place is not known: between the points that stand out on both sides.
+            // A minimum below the noise may lie anywhere between the nearest points on both sides that
+            // differ from it.
             let out = |k: &usize| differ(&self.points[i], &self.points[*k]);
             let sides = [(0..i).rev().find(out)?, (i + 1..self.points.len()).find(out)?];
             let here = Resonance { amplitude_std: known(std), ..self.point(i, sides, kind) };
@@ -221,8 +224,8 @@ impl Curve<'_> {
         Some(here.moved(Vertex { height, height_std, ..top }))
     }
 
-    /// Whether the curve stands [`DEEP`] above a minimum at the last point before half-way to its neighbours,
-    /// on both sides.
+    /// Whether the curve rises above [`DEEP`] times a minimum no farther than half-way (in f²) to the maxima
+    /// beside it, on both sides.
     fn is_deep(&self, minimum: &Maximum) -> bool {
         let square = |k: usize| self.points[k].0.powi(2);
         minimum.valleys.iter().all(|&end| {
@@ -234,8 +237,8 @@ impl Curve<'_> {
         })
     }
 
-    /// Uncertainty of the height of a branch that ends in a jump beside point `i`: the slope towards it,
-    /// carried on over the distance to the point behind the jump.
+    /// Standard uncertainty of the amplitude of a branch that ends in a jump beside point `i`: the slope
+    /// before the jump, extrapolated to the point on its other side, with that of the point itself.
     fn std_at_jump(&self, i: usize, jump: &Jump) -> Option<f64> {
         let (f, amplitude, std) = self.points[i];
         let behind = if (jump.from - f).abs() < (jump.to - f).abs() { jump.to } else { jump.from };
@@ -248,11 +251,11 @@ impl Curve<'_> {
 /// A response curve with its jumps and resonances.
 #[derive(Debug, Clone, PartialEq)]
 pub struct NamedCurve {
-    /// 1 excited, 2 passive; `None` where that is not known.
+    /// Mass: 1 excited, 2 passive; `None` where that is not known.
     pub mass: Option<u8>,
     /// Direction of the sweep.
     pub direction: Direction,
-    /// Its points, rising in frequency.
+    /// Its points by rising frequency.
     pub curve: Vec<Point>,
     /// Its jumps.
     pub jumps: Vec<Jump>,
@@ -261,8 +264,8 @@ pub struct NamedCurve {
 }
 
 impl NamedCurve {
-    /// Finds jumps and resonances of a curve whose points come in the order in which they were measured.
-    /// `receptances` are those of the points; none where they are not known.
+    /// Finds jumps and resonances of a curve whose points come in the order of measurement. `receptances`
+    /// belong to the points in that order; empty where they are not known.
     pub fn new(
         mut curve: Vec<Point>,
         receptances: &[Complex64],
@@ -276,17 +279,17 @@ impl NamedCurve {
     }
 }
 
-/// The other mass must move at least this fraction of the one that resonates, or they do not resonate
-/// together.
+/// Least amplitude of the other mass over that of the resonating one for a resonance of both; below it the
+/// other mass counts as at rest.
 const TOGETHER: f64 = 0.1;
 
 /// Names the resonances in which both masses move: the largest maximum below the antiresonance of mass 1 is
 /// the grazing resonance (in phase), the largest above it the clapping one (out of phase).
 ///
-/// Where one mass jumps, the motion of both has changed: a change of the other there that its slopes do not
-/// predict is entered in its jumps, and resonances are found again with the jumps of both. A maximum at which
-/// the other mass of the same sweep rests keeps its kind, as do all where the other mass was not measured. A
-/// sweep without an antiresonance of mass 1 uses that of the other direction.
+/// A jump of one mass changes the motion of both. A step of the other mass there that its slopes do not
+/// predict is added to its jumps, and resonances are searched again with the jumps of both. A maximum at
+/// which the other mass of the same sweep rests keeps its kind, as do all where the other mass was not
+/// measured. A sweep without an antiresonance of mass 1 uses that of the other direction.
 pub fn name_modes(curves: &mut [NamedCurve]) {
     let partner = |curves: &[NamedCurve], i: usize| {
         let own = &curves[i];
@@ -323,7 +326,7 @@ pub fn name_modes(curves: &mut [NamedCurve]) {
                 largest.kind = kind;
             }
         }
-        // A maximum at a jump of one mass alone is the jump's edge.
+        // A maximum at a jump that did not get the name of a mode is only the edge of the jump.
         curves[i].resonances.retain(|r| !(r.at_jump && r.kind == ResonanceKind::Resonance));
     }
 }

@@ -41,19 +41,19 @@ pub struct Restitution {
     pub restitution: Estimate,
     /// All answers.
     pub by: Vec<MethodAnswer>,
-    /// Whether the answers agree within their uncertainties; null where one that has none leaves that open.
-    /// A single answer agrees.
+    /// Whether the answers agree within their uncertainties; null where an answer without uncertainty leaves
+    /// that open. A single answer counts as agreeing.
     pub agree: Option<bool>,
-    /// Standard deviation of `restitution` by drops over 2000 drawings of as many drops with replacement
+    /// Standard deviation of the restitution by drops over 2000 resamples of the drops with replacement
     /// (Efron 1979), from a fixed seed: the scatter of the drops alone. Null for fewer than five drops.
     pub bootstrap_std: Option<f64>,
-    /// Intervals between impacts in s, one list a drop or train.
+    /// Intervals between onsets of impacts in s, one list a drop or train.
     pub intervals: Vec<Vec<f64>>,
-    /// What was assumed, and what is doubtful.
+    /// Assumptions and doubts.
     pub findings: Vec<Finding>,
 }
 
-/// What is known of the impacts. Everything is optional; what is there decides which methods answer.
+/// Measurements of the impacts. All are optional; those given decide which methods answer.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Measured {
     /// Drops from a height, with the interval between first and second impact.
@@ -62,9 +62,9 @@ pub struct Measured {
     pub trains: Vec<Train>,
     /// Velocities before and after.
     pub velocities: Option<Velocities>,
-    /// How long an impact lasts, in s: intervals between the beginnings of impacts are so much longer than
-    /// the flights. Where `None` it is what the records of all trains show; else none is taken off, and
-    /// the uncertainties allow for up to a millisecond, longer than steel and most plastics touch.
+    /// Contact time of an impact in s, by which intervals between onsets are longer than the flights. Where
+    /// `None`, it is read from the records where all trains show it. Otherwise nothing is subtracted, and
+    /// the uncertainties allow for up to 1 ms, longer than steel and most plastics touch.
     pub contact_time: Option<f64>,
 }
 
@@ -88,7 +88,7 @@ pub fn restitution(measured: &Measured) -> Result<Restitution> {
     let (contact, contact_std) = contact(measured);
     let flights =
         |intervals: &[f64]| intervals.iter().map(|interval| interval - contact).collect::<Vec<f64>>();
-    // What a thousandth of a second of contact makes of R.
+    // Relative change of R by 1 ms of contact time, one value a method.
     let mut bias = Vec::new();
     let trains: Vec<Train> =
         measured.trains.iter().map(|t| Train { intervals: flights(&t.intervals), ..t.clone() }).collect();
@@ -113,11 +113,11 @@ pub fn restitution(measured: &Measured) -> Result<Restitution> {
                 [first, .., last] => Some(1e-3 * (1.0 / last - 1.0 / first) / (t.intervals.len() - 1) as f64),
                 _ => None,
             };
-            // Without flights there is no answer by them, and no bias of it.
+            // Without an answer by flight times there is no bias of it: both lists match.
             bias.extend(way.iter().map(|_| average(&trains.iter().filter_map(of).collect::<Vec<f64>>())));
             by.extend(way);
         }
-        // What follows a drop may be no train of bounces; the drop answers nevertheless.
+        // The impacts after a drop may be no train of bounces; the drop still answers.
         Err(error) if measured.drop.is_some() && error.exit_code() == 1 => {
             let doubt = grown(&trains).or(drop.as_ref().and_then(|drop| drop.unlike(&trains)));
             by.iter_mut().filter(|_| doubt.is_some()).for_each(|way| way.restitution.std = None);
@@ -171,22 +171,24 @@ pub fn restitution(measured: &Measured) -> Result<Restitution> {
     Ok(Restitution { restitution, by, agree, bootstrap_std, intervals, findings })
 }
 
-/// Longest contact in s that is allowed for where none is stated and none is seen.
+/// Longest contact in s for which uncertainties allow where none is stated or seen: longer than steel and
+/// most plastics touch.
 const LONGEST: f64 = 1e-3;
 
-/// What is doubtful where too many flights of a train are longer than the first.
+/// Doubt about a drop where too many flights of a train are longer than its first.
 fn grown(trains: &[Train]) -> Option<Finding> {
     let first = |(i, train): (usize, &Train)| Some((i + 1, flights::longer(train)?));
     let (train, n) = trains.iter().enumerate().find_map(first)?;
     Some(Finding::doubt("drop-flights-grow").count("n", n).count("train", train))
 }
 
-/// A soft ball touches so many times as long: where that moves R by its uncertainty, the contact is asked
-/// for.
+/// A soft ball touches this many times as long. Where that would move R by more than its uncertainty, a
+/// finding asks for the contact time.
 const LONG_CONTACT: f64 = 5.0;
 
-/// How long an impact lasts and its standard uncertainty, in s: as stated, or as all records show it.
-/// Otherwise anywhere between nothing and the longest with equal chance, and the answer at its one end.
+/// Contact time of an impact and its standard uncertainty in s: as stated, else the mean over the records
+/// where all show it. Else 0, with the uncertainty of a time anywhere from 0 to [`LONGEST`] with equal
+/// chance.
 fn contact(measured: &Measured) -> (f64, f64) {
     let seen: Option<Vec<&Estimate>> = measured.trains.iter().map(|train| train.contact.as_ref()).collect();
     let mean = |seen: &[&Estimate], of: &dyn Fn(&Estimate) -> f64| {
@@ -199,12 +201,13 @@ fn contact(measured: &Measured) -> (f64, f64) {
     }
 }
 
-/// Answers of which one has no uncertainty disagree where they differ by more than this part of them beyond
-/// what the other may be off: R scatters by 2 % from bounce to bounce, and the ratio of two by √2 of that.
+/// Two answers, one without uncertainty, disagree where they differ by more than this fraction plus 1.96
+/// uncertainties of the other: R scatters by 2 % from bounce to bounce, and the ratio of two by √2 of that.
 const GROSS: f64 = 1.96 * std::f64::consts::SQRT_2 * SCATTER;
 
 /// Whether every pair of answers agrees at 95 %; `None` where one has no uncertainty and the others agree.
-/// Methods may share numbers, as a drop and its train do: the largest possible correlation is assumed.
+/// Methods may share data, as a drop and its train do, with unknown correlation: the uncertainties of two
+/// answers are added, which covers the worst case.
 fn agreement(by: &[MethodAnswer], findings: &mut Vec<Finding>) -> Option<bool> {
     let mut agree = Some(true);
     for (i, a) in by.iter().enumerate() {
@@ -234,8 +237,8 @@ fn agreement(by: &[MethodAnswer], findings: &mut Vec<Finding>) -> Option<bool> {
     agree
 }
 
-/// What answers that disagree say of a record that begins with the second impact: its first flight is that
-/// after two, and the height gives the square of R.
+/// Doubt that a record begins with the second impact: its first interval is then the second one of the drop,
+/// and the drop gives the square of the R by flight times.
 fn first_unheard(by: &[MethodAnswer]) -> Option<Finding> {
     let of = |method: &str| by.iter().find(|way| way.method == method).map(|way| way.restitution.value);
     let (drop, flights) = (of("drop")?, of("flight times")?);
@@ -244,9 +247,9 @@ fn first_unheard(by: &[MethodAnswer]) -> Option<Finding> {
     is_square.then(|| found.number("flights", flights))
 }
 
-/// Mean of repeated values and its standard uncertainty: the larger of their scatter (Student's, from three
-/// values on) and of what is `stated` of one value. Two have one only where what is stated explains how they
-/// scatter (95 %).
+/// Mean of repeated values and its standard uncertainty: the larger of their scatter (Student, from three
+/// values on) and the `stated` uncertainty of one value, over √n. Two values have one only where the stated
+/// one explains their scatter (95 %).
 fn repeated(values: &[f64], stated: Option<f64>) -> (f64, Option<f64>) {
     let (n, mean, scatter) = (values.len() as f64, average(values), scatter(values));
     let one = if values.len() > 2 {
@@ -271,7 +274,7 @@ fn above_zero(name: &str, value: f64) -> Result<()> {
     Err(Error::refused(format!("{name} is {value:.4}: it must be above 0")))
 }
 
-/// Checks an uncertainty.
+/// Checks an optional number that must be finite and not below 0.
 fn not_negative(name: &str, value: Option<f64>) -> Result<()> {
     match value {
         Some(v) if !(v.is_finite() && v >= 0.0) => Err(Error::usage(format!("{name} of {v}"), "0 or more")),

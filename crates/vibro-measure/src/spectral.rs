@@ -26,12 +26,12 @@ use vibro_signal::window::line_shape;
 
 /// Samples of a segment where none is stated: lines 5.9 Hz apart at 48 kHz.
 const SEGMENT: usize = 8192;
-/// Half the span of a reference over its RMS from which on it rests but for blows: noise has 3 to 5, and the
+/// A reference comes in blows where half its span exceeds its RMS by this factor: noise has 3 to 5, and the
 /// impacts of a machine at a duty of one in 200 have 10.
 const BLOWS: f64 = 15.0;
-/// Fewest samples of a blow's record that are taken unasked.
+/// Fewest samples of a blow's record, unless its length is stated.
 const SHORTEST: usize = 256;
-/// One part in so many of a hammer record stands before the blow.
+/// A hammer record begins 1/50 of its length before the blow.
 const BEFORE: usize = 50;
 
 /// The spectrum of the only channel, or with an estimator the frequency response function from the first
@@ -73,11 +73,11 @@ pub fn spectral(
     Ok(found)
 }
 
-/// The lines of a spectrum that an instrument took: they have no uncertainty, since a file does not say how
-/// many segments they are averages of.
+/// Result of a spectrum that an instrument took. Its lines have no uncertainty, since a file does not say
+/// over how many segments they were averaged.
 ///
 /// # Errors
-/// If options are of how a spectrum is taken, or the values are levels without a reference.
+/// If options state how a spectrum is taken, or the values are levels without a reference.
 pub fn stored(spectrum: &Spectrum, options: &SpectralOptions) -> Result<SpectralResult> {
     options.check()?;
     let SpectralOptions { integrate, fmin, decibel, .. } = *options;
@@ -111,7 +111,7 @@ pub fn stored(spectrum: &Spectrum, options: &SpectralOptions) -> Result<Spectral
     Ok(found)
 }
 
-/// What a file does not say.
+/// Value of settings that a file does not state.
 const UNSAID: &str = "not said";
 
 fn lines(
@@ -134,7 +134,7 @@ fn lines(
         )
     } else {
         let [trace] = whole(traces, progress)?;
-        // The sines that are fitted know of it themselves.
+        // The fit of sines (`tones`) accounts for clipping itself.
         if options.tones.is_none() {
             let mut range = Rails::default();
             range.extend(&trace.values);
@@ -166,8 +166,8 @@ fn lines(
     Ok(found)
 }
 
-/// Ends of the range at which channels rest. A channel that is at one half of the time is of two levels, or
-/// rests between pulses.
+/// Findings on channels that are clipped at ends of their range. A channel at one end for half of the time
+/// or more is not clipped: it has two levels, or rests between pulses.
 fn clipped(ranges: &[Rails], traces: &Traces) -> Vec<Finding> {
     let of = |(range, meta): (&Rails, &Meta)| {
         let ends: Vec<(f64, usize)> = range.clipped(f64::INFINITY).collect();
@@ -181,8 +181,8 @@ fn clipped(ranges: &[Rails], traces: &Traces) -> Vec<Finding> {
     ranges.iter().zip(traces.channels()).flat_map(of).collect()
 }
 
-/// The lines that are listed: peaks that are neither noise, nor what is left of a constant, nor in the skirt
-/// of a larger one. `powers` are those of all lines, the first `left_out` of which `found` does not have.
+/// Marks the lines to list: peaks that are neither noise, nor leakage of a constant, nor on the skirt of a
+/// larger one. `powers` are those of all lines; `found` does not have the first `left_out` of them.
 fn clear(
     found: &SpectralResult,
     powers: &[f64],
@@ -211,15 +211,15 @@ fn clear(
     clear
 }
 
-/// Whether line `k` is of the shape that the window gives to a constant: nothing is beyond its main lobe,
-/// where a sine at `k` would still be. Less than half of the amplitude of that sine is nothing.
+/// Whether line `k` is leakage of a constant: the line beyond the constant's main lobe has less than half of
+/// the amplitude that a sine at `k` would have there.
 fn is_of_mean(powers: &[f64], k: usize, window: Window) -> bool {
     let beyond = window.coefficients().len();
     let sine = |line: usize| line_shape(window, (line - k) as f64).powi(2) * powers[k];
     k < beyond && powers.get(beyond).is_some_and(|power| *power < 0.25 * sine(beyond))
 }
 
-/// Powers of the lines.
+/// Powers of the lines: amplitudes are squared, power scalings kept.
 fn powers(spectrum: &Spectrum) -> Vec<f64> {
     let mut powers = spectrum.values.magnitudes();
     if matches!(spectrum.scaling, Scaling::Peak | Scaling::Rms | Scaling::Unknown) {
@@ -264,7 +264,7 @@ fn response(
     let fmin = options.lowest(step);
     let mut found = found.integrated(options.integrate, fmin)?;
     if let Some(delay) = options.delay {
-        // What comes late by τ has the factor e^(−iωτ).
+        // A response late by τ has the factor e^(−iωτ), which is removed.
         for (k, value) in found.frf.values.iter_mut().enumerate() {
             *value *= Complex64::cis(TAU * found.frf.axis.at(k) * delay);
         }
@@ -281,15 +281,15 @@ fn response(
     Ok(result)
 }
 
-/// The function of blows, and the length of their records: as stated, or as long as the response rings and
-/// the next blow allows.
+/// The frequency response function of blows, and the length of their records in samples: as stated, or as
+/// long as the response rings and the next blow allows.
 fn of_blows(
     force: &Trace,
     response: &Trace,
     options: &SpectralOptions,
     estimator: Estimator,
 ) -> Result<(BlowTransfer, usize)> {
-    // A part of a record stands before its blow.
+    // The part of a record before its blow is 1/[`BEFORE`].
     let longest = spacing(force)? / (BEFORE - 1) * BEFORE;
     let mut length = options.segment.unwrap_or(SEGMENT);
     while options.segment.is_none() && length > longest && length > SHORTEST {
@@ -305,14 +305,14 @@ fn of_blows(
         |found: &BlowTransfer| found.transfer.findings.iter().any(|f| f.code == code::RESPONSE_CUT_OFF);
     let mut found = of(length)?;
     while options.segment.is_none() && rings(&found) && 2 * length <= longest {
-        // What would lose a blow stays as it is.
+        // A longer record that would lose a blow is not taken.
         let Some(longer) = of(2 * length).ok().filter(|longer| clean(longer) >= clean(&found)) else { break };
         (found, length) = (longer, 2 * length);
     }
     Ok((found, length))
 }
 
-/// Averages over segments, with products where there is a second channel.
+/// Averages over segments, with cross spectra where a frequency response function is estimated.
 fn averages(
     traces: &mut Traces,
     options: &SpectralOptions,

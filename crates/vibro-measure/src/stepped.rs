@@ -2,9 +2,9 @@
 //!
 //! The frequency is that of the force ([`sine`]). Both traces are cut into blocks of whole periods, in each
 //! of which a sine of that frequency and a mean are fitted by least squares (IEEE Std 1057, three
-//! parameters). The phasors of the response, turned by the phase of the force in the same block, are free of
-//! its drift; those from where they stay are averaged, and their scatter is the uncertainty of amplitude,
-//! phase and receptance.
+//! parameters). The phasors of the response, relative to the phase of the force in the same block, do not
+//! drift with the force. They are averaged from the block on from which they are settled, and their scatter
+//! gives the uncertainty of amplitude, phase and receptance.
 
 use super::answered::answered;
 use super::clipping::clipped;
@@ -24,24 +24,24 @@ use vibro_record::{
 };
 use vibro_signal::spectrum;
 
-/// Fewest periods of a step.
+/// Fewest periods of a step: as blocks, they leave four in its second half, the fewest with an uncertainty.
 const PERIODS: f64 = 8.0;
-/// Periods of a block: subharmonics to the fourth fit in whole numbers of periods where there are enough of
-/// them.
+/// Periods of a block, the first that gives enough blocks: 12 hold whole periods of subharmonics up to the
+/// fourth.
 const BLOCK: [usize; 4] = [12, 6, 4, 2];
-/// Fewest blocks of several periods, and most.
+/// Fewest blocks of a step with several periods a block, and most blocks of a step.
 const BLOCKS: (usize, usize) = (12, 48);
-/// χ² of two degrees of freedom that chance passes in 1 of 100 cases.
+/// 99 % quantile of χ² with two degrees of freedom.
 const CHANCE: f64 = 9.21;
-/// Part of the amplitude by which a response may still change that counts as settled.
+/// A response that still changes by less than this fraction of its amplitude counts as settled.
 const SETTLED: f64 = 1e-3;
-/// An amplitude below so many standard uncertainties is one of noise.
+/// An amplitude below this many of its standard uncertainties counts as noise: it gets an upper limit.
 const FAINT: f64 = 3.0;
 
-/// The sweep that traces of its steps make: amplitude, phase and receptance from the traces, harmonics and
-/// the rest from the spectra of the settled parts, which it gives, too. `named` has name, direction and mass.
-/// A step is left out, and named in a finding, where it was not read, its traces are not sampled together and
-/// evenly, or it holds no sine of force or fewer than eight periods.
+/// Makes a sweep of the traces of its steps. Amplitude, phase and receptance come from the traces; harmonics
+/// and the rest from the spectra of the settled parts, which are in the sweep returned. `named` has name,
+/// direction and mass. A step is left out, with a finding, where it was not read, its force and response are
+/// not sampled together and evenly, it has no sine of force, or fewer than eight periods.
 ///
 /// # Errors
 /// If no step is left, or two are not sampled at the same rate.
@@ -62,7 +62,7 @@ pub fn stepped(
         let found = format!("the step is sampled at {} Hz", step.rate);
         return Err(Error::input(Place::file(&at.path), found, format!("{rate} Hz, as the steps before")));
     }
-    // One number of lines for all: that of the shortest settled part.
+    // All spectra have the same number of lines, by the shortest settled part.
     let n = taken.iter().map(|step| step.samples - step.begins).min().unwrap_or(0);
     let points =
         steps.iter().zip(&taken).map(|(step, taken)| taken.spectra(step, n)).collect::<Result<Vec<_>>>()?;
@@ -94,12 +94,12 @@ pub fn stepped(
     Ok((sweep, found.curve(direction)))
 }
 
-/// What to try where a force has no sine.
+/// Hint where a force has no sine.
 const SHAKER: &str = "check the channel of the force, and that the shaker ran";
-/// Steps that a finding names, at most.
+/// Most steps that a finding names.
 const NAMED: usize = 4;
 
-/// What the traces of a step say.
+/// Frequency, amplitudes and ratio of a step, from its traces.
 struct StepReading {
     rate: f64,
     samples: usize,
@@ -109,12 +109,12 @@ struct StepReading {
     frequency: Estimate,
     /// Amplitude of the force in N, and its standard uncertainty.
     force: (f64, Option<f64>),
-    /// Response as the phasor against that of the force, and what is known of it.
+    /// Phasor of the response relative to the phase of the force.
     response: Phasor,
-    /// Response over force.
+    /// Phasor of response over force.
     ratio: Phasor,
-    /// Whether the response changes from one stretch to the next by no more than its noise, where that is
-    /// known.
+    /// Test of whether the response varies from block to block as independent noise does; `None` without an
+    /// uncertainty of the response.
     whiteness: Option<Whiteness>,
     findings: Vec<Finding>,
 }
@@ -163,7 +163,8 @@ impl StepReading {
         let (f, x) = (blocks.phasors(force), blocks.phasors(response));
         let ratio: Vec<Complex64> = x.iter().zip(&f).map(|(x, f)| x / f).collect();
         let (begins, left, stays) = settled(&ratio);
-        // A force that is still rising gives the right ratio, and another size.
+        // While the force still rises, the ratio is right already but amplitudes are not: each has its own
+        // first block.
         let sizes: Vec<Complex64> = f.iter().map(|f| f.norm().into()).collect();
         let (steady, drift, _) = settled(&sizes);
         let first = begins.max(steady);
@@ -171,12 +172,12 @@ impl StepReading {
         let (mut response, mut ratio) = (Phasor::of(&turned[first..]), Phasor::of(&ratio[begins..]));
         let force: Vec<f64> = f[first..].iter().map(|f| f.norm()).collect();
         let mut force = (mean::average(&force), scatter_of_mean(&force));
-        // What it still changes by is in its uncertainty, and in that of the response to it.
+        // The remaining drift of the force is in its uncertainty, and in that of the response.
         force.1 = force.1.map(|std| std.hypot(drift));
         response.allow(drift * ratio.value.norm());
         response.allow(left * force.0);
         ratio.allow(left);
-        // What interpolation takes it takes of both: the ratio keeps it.
+        // Interpolation lowers both amplitudes by the same factor, so the ratio is not affected.
         let [of_force, of_response] = metas.map(|meta| meta.lost(frequency.value));
         force.1 = force.1.map(|std| std.hypot(of_force * force.0));
         response.allow(of_response * response.value.norm());
@@ -227,7 +228,8 @@ impl StepReading {
         })
     }
 
-    /// Puts what the traces say in the place of what the spectra do.
+    /// Replaces the values of a point from spectra by those from the traces; `integrate` counts
+    /// integrations, `unit` is that of the amplitude.
     fn overrule(&self, point: &mut ResponsePoint, integrate: i8, unit: &'static str) {
         let omega = Complex64::new(0.0, TAU * self.frequency.value).powi(integrate.into());
         let method = "least-squares sine fit to blocks of the settled part";
@@ -248,16 +250,16 @@ impl StepReading {
     }
 }
 
-/// A mean of phasors.
+/// Mean of the phasors of blocks.
 #[derive(Clone, Copy)]
 struct Phasor {
     value: Complex64,
-    /// Standard uncertainty along it, and across.
+    /// Standard uncertainty along the mean, for the amplitude; `across` it, for the phase.
     std: Option<f64>,
     across: Option<f64>,
     /// Number of blocks.
     n: usize,
-    /// Whether the blocks depend on each other.
+    /// Test of whether the blocks are independent.
     whiteness: Whiteness,
 }
 
@@ -277,7 +279,8 @@ impl Phasor {
         Phasor { std: None, across: None, ..self }
     }
 
-    /// Adds what may be left of a transient.
+    /// Adds the change that a transient or drift may still make, in the unit of the phasor, to both
+    /// uncertainties.
     fn allow(&mut self, left: f64) {
         for std in [&mut self.std, &mut self.across] {
             *std = std.map(|std| std.hypot(left));
@@ -285,7 +288,7 @@ impl Phasor {
     }
 }
 
-/// Standard uncertainty of the mean of independent values; `None` of fewer than four.
+/// Standard uncertainty (Student) of the mean of independent values; `None` for fewer than four.
 fn scatter_of_mean(values: &[f64]) -> Option<f64> {
     let n = values.len();
     student(n.saturating_sub(1)).map(|factor| factor * mean::scatter(values) / (n as f64).sqrt())
@@ -313,8 +316,7 @@ impl Blocks {
         ((block * self.periods) as f64 * self.period).round() as usize
     }
 
-    /// Phasors of the sine at the excitation, block by block: A e^{iφ} of A cos(ωt + φ), t from the first
-    /// sample.
+    /// Phasors at the excitation frequency, one a block: A e^{iφ} of A cos(ωt + φ), t from the first sample.
     fn phasors(&self, trace: &Trace) -> Vec<Complex64> {
         let omega = TAU / self.period;
         let edges = (0..).map(|block| self.start(block)).take_while(|end| *end <= self.samples);
@@ -336,15 +338,15 @@ impl Blocks {
     }
 }
 
-/// The first block from which on the phasors stay, no later than half-way: where those of the first quarter
-/// of the rest differ from the others by no more than chance. A transient that noise hides there is given
-/// half as long again to die. With it the change that may be left, 0 where it is chance, and whether they
-/// stay at all.
+/// First block from which on the phasors are settled, no later than half-way: the mean of the first quarter
+/// of the rest differs from that of the others by no more than chance, or by less than [`SETTLED`]. The
+/// block is moved on by half of its number, for a transient that noise hides. Also returns the change that
+/// may be left, 0 where it is chance, and whether the phasors settle at all.
 fn settled(all: &[Complex64]) -> (usize, f64, bool) {
     let n = all.len();
     let half = n / 2;
     let steps = all[half..].windows(2).map(|w| (w[1] - w[0]).norm_sqr());
-    // Two components, and two blocks to a difference.
+    // Variance of one component of one block: a squared difference holds two components of two blocks.
     let variance = steps.sum::<f64>() / (4 * (n - half).saturating_sub(1).max(1)) as f64;
     let mean = |values: &[Complex64]| values.iter().sum::<Complex64>() / values.len() as f64;
     let change = |first: usize| {

@@ -21,7 +21,7 @@ pub(super) struct Rational {
     /// The fitted response at its lines.
     pub fitted: Vec<Complex64>,
     pub whiteness: Whiteness,
-    /// Root mean square of what is left, over the highest line.
+    /// Root mean square of the residuals without weights, over the highest line.
     pub unexplained: f64,
     /// Akaike's criterion with the weights of the noise, to compare numbers of modes on the same lines.
     pub aicc: f64,
@@ -29,7 +29,7 @@ pub(super) struct Rational {
     pub noise: &'static str,
 }
 
-/// Lines, scaled: frequency over `unit`, values over `height`.
+/// Lines in scaled units: frequency over `unit` in Hz, values over `height`.
 struct Scaled<'a> {
     x: Vec<f64>,
     values: Vec<Complex64>,
@@ -39,14 +39,16 @@ struct Scaled<'a> {
     unit: f64,
     height: f64,
     power: i32,
-    /// Of the segments that the function was averaged over.
+    /// Leakage of the windowed segments over which the function was averaged.
     leakage: Option<Leakage>,
     magnitude_only: bool,
-    /// Frequency and damping that each mode had last, bit by bit, and what it was then at all lines.
+    /// Cache of each mode: frequency and damping of its last evaluation, as bits, and its values at all
+    /// lines.
     known: RefCell<Vec<([u64; 2], Vec<Complex64>)>>,
 }
 
-/// How much of the lines modes `starts` leave at the least, unweighted: to choose among first guesses.
+/// Smallest sum of squares, unweighted, that modes at `starts` leave of the lines: to choose among first
+/// guesses.
 pub(super) fn residual_sum(
     measured: &Measured,
     part: std::ops::Range<usize>,
@@ -88,20 +90,20 @@ impl<'a> Scaled<'a> {
     }
 }
 
-/// Part of the sum of squares that another step gains, below which the search over the shapes ends: all
-/// parameters are then fitted together.
+/// The search over frequencies and damping ratios ends where a step lowers the sum of squares by less than
+/// this fraction; then all parameters are fitted together.
 const NEAR_ENOUGH: f64 = 1e-6;
 
 impl Scaled<'_> {
-    /// Frequency and damping of mode `m` from its parameters: in units of the first guess of its half
-    /// bandwidth and damping.
+    /// Scaled frequency and damping ratio of mode `m`. Its parameters are the shift from the first guess in
+    /// half bandwidths, and the damping ratio over its first guess.
     fn shape(&self, p: &[f64], m: usize) -> (f64, f64) {
         let (f, zeta) = self.starts[m];
         ((f + p[4 * m] * zeta * f) / self.unit, p[4 * m + 1] * zeta)
     }
 
-    /// Mode `m` at line `i`. All but a few steps of a fit leave its shape as it was: its lines are computed
-    /// once a shape.
+    /// Mode `m` at line `i` for a constant of 1. Most evaluations of a fit leave its frequency and damping
+    /// as they were, so its lines are cached.
     fn mode(&self, i: usize, p: &[f64], m: usize) -> Complex64 {
         let shape = self.shape(p, m);
         let bits = [shape.0.to_bits(), shape.1.to_bits()];
@@ -120,7 +122,8 @@ impl Scaled<'_> {
         self.factor[i] / Complex64::new(own * own - x * x, 2.0 * zeta * own * x)
     }
 
-    /// The model at line `i`: modes, and what lies above (U) and below (L/x²) as receptances.
+    /// The model at line `i`: modes, and residual terms of modes above (U) and below (L/x²) the lines, as
+    /// receptances.
     fn at(&self, p: &[f64], i: usize) -> Complex64 {
         let amplitude = |at: usize| Complex64::new(p[at], p[at + 1]);
         let modes = self.starts.len();
@@ -129,18 +132,19 @@ impl Scaled<'_> {
         sum + self.factor[i] * (above + below / (self.x[i] * self.x[i]))
     }
 
-    /// What the model leaves of line `i`.
+    /// Residual of the model at line `i`, or of its magnitude where phases are not known.
     fn left(&self, p: &[f64], i: usize) -> Complex64 {
         let model = self.at(p, i);
         if self.magnitude_only { (self.values[i].re - model.norm()).into() } else { self.values[i] - model }
     }
 
-    /// Numbers that the lines hold.
+    /// Number of real values of the lines: one a line for magnitudes, else two.
     fn rows(&self) -> usize {
         if self.magnitude_only { self.x.len() } else { 2 * self.x.len() }
     }
 
-    /// The parameters that enter linearly, for given shapes, by least squares; and the sum of squares.
+    /// Sets the linear parameters of `p`, constants and residual terms, by least squares for its frequencies
+    /// and damping ratios. Returns the sum of squares.
     fn linear(&self, p: &mut [f64], weight: &[f64]) -> Option<f64> {
         let modes = self.starts.len();
         let columns = modes + 2;
@@ -165,8 +169,9 @@ impl Scaled<'_> {
         sum.is_finite().then_some(sum)
     }
 
-    /// First guess: frequency and damping of each mode but the first `known` in turn on a small grid, all
-    /// else by linear least squares; behind the sum of squares.
+    /// First guess: frequency and damping of each mode but the first `known` in turn on a small grid, with
+    /// shifts up to half the line spacing `width`; all else by linear least squares. Returns the sum of
+    /// squares and the parameters.
     fn start(&self, known: usize, width: f64, weight: &[f64]) -> Option<(f64, Vec<f64>)> {
         let mut p = vec![0.0; 4 * self.starts.len() + 4];
         (0..self.starts.len()).for_each(|m| p[4 * m + 1] = 1.0);
@@ -186,8 +191,8 @@ impl Scaled<'_> {
         Some((self.linear(&mut p, weight)?, p))
     }
 
-    /// The minimum, nearly: frequency and damping of the modes alone, with all else by linear least squares
-    /// for each (Golub & Pereyra 1973).
+    /// Parameters near the minimum: a search over frequency and damping of the modes alone, with all else by
+    /// linear least squares for each (Golub & Pereyra 1973).
     fn nearer(&self, start: &[f64], noise: &LineNoise) -> Result<Vec<f64>> {
         if self.magnitude_only {
             return Ok(self.fit(start, noise)?.parameters);
@@ -212,7 +217,7 @@ impl Scaled<'_> {
             .ok_or_else(|| Error::refused("the modes of a fit do not determine their constants"))
     }
 
-    /// What the model leaves, as white as the noise is known.
+    /// Residuals of the model at all lines, whitened by the noise.
     fn white(&self, p: &[f64], noise: &LineNoise, out: &mut [f64]) {
         let n = self.x.len();
         for i in 0..n {
@@ -244,8 +249,8 @@ impl Scaled<'_> {
         Ok(fit)
     }
 
-    /// The noise of segments under a window, by the response of the model and the variance of each line;
-    /// `None` for magnitudes, or lines that are not evenly spaced.
+    /// The noise of segments under a window, from the response of the model and the variance `total` of each
+    /// line; `None` for magnitudes, or lines that are not evenly spaced.
     fn of_segments(&self, window: Window, spacing: f64, p: &[f64], total: &[f64]) -> Option<LineNoise> {
         let step = spacing / self.unit / STEPS as f64;
         let at = |x: &f64| MARGIN + STEPS * ((x - self.x[0]) / step / STEPS as f64).round() as usize;
@@ -263,9 +268,9 @@ impl Scaled<'_> {
         of_segments(window, &h, &at, total)
     }
 
-    /// Parameters that the values can determine: without phases no phase of the modes, no term from below,
-    /// and no part of the residual term a quarter of a turn ahead, which changes |H| as the modal
-    /// constant does.
+    /// Indices of the parameters that the values determine. Without phases these are not the imaginary parts
+    /// of modal constants, the residual term from below, and the imaginary part of that from above, which
+    /// changes |H| as the modal constant does.
     fn free(&self) -> Vec<usize> {
         let modes = 4 * self.starts.len();
         (0..modes + 4).filter(|i| !self.magnitude_only || (*i < modes && i % 4 != 3) || *i == modes).collect()
@@ -275,9 +280,9 @@ impl Scaled<'_> {
 /// Fits modes near the first guesses `starts` (frequency in Hz, damping ratio), the first `known` of which
 /// come from a fit, to the lines `part` of a function from which `others` are subtracted.
 ///
-/// Noise is weighted by the uncertainty of each line where that is known, else by the coherence where there
-/// is one, its level or its share of the response smoothed over lines; else as equal on all lines or as
-/// proportional to the response, of which the more likely is taken.
+/// Lines are weighted by their stated uncertainty. Else the coherence gives their noise: with the window of
+/// the segments, or with the level of noise or its share of the response smoothed over lines. Else noise is
+/// equal on all lines or proportional to the response. Of alternatives the likeliest is taken.
 pub(super) fn rational(
     measured: &Measured,
     part: std::ops::Range<usize>,
@@ -334,7 +339,7 @@ pub(super) fn rational(
     Err(failed)
 }
 
-/// What the noise of the lines may be, with a name each; `at` are parameters that fit nearly.
+/// Alternatives for the noise of the lines, each with a name; `at` are parameters near the best fit.
 fn rivals(
     measured: &Measured,
     part: std::ops::Range<usize>,
@@ -355,8 +360,8 @@ fn rivals(
         }
         (None, Some(coherence)) => {
             // Variance of a line: |H|²(1 − γ²)/(2γ²) over the averages (Bendat & Piersol 2010, 9.90), whose
-            // number is left to the fit. That of few averages is hardly known from the line
-            // alone, and one that is small by chance would draw the fit to it.
+            // number is left to the fit. With few averages the variance of a single line is poorly known,
+            // and one that is small by chance would attract the fit.
             let share: Vec<f64> = coherence[part].iter().map(|c| (1.0 - c).max(1e-5) / c).collect();
             let level: Vec<f64> =
                 share.iter().zip(&scaled.values).map(|(s, v)| s * v.norm_sqr().max(1e-12)).collect();
@@ -377,11 +382,12 @@ fn rivals(
     }
 }
 
-/// A mode must be known better than this part of its damping ratio; else the peak may be anything.
+/// Largest standard uncertainty of a damping ratio, over the ratio, of a mode that is determined; beyond it
+/// the peak may be anything.
 const KNOWN: f64 = 0.5;
 
 impl Rational {
-    /// Which modes stand: damped, known, and where their peaks, in the same order, are.
+    /// Which modes are sound: damped, determined, and near their peaks, which are in the same order.
     pub fn sound(&self, measured: &Measured, peaks: &[Peak]) -> Vec<bool> {
         let stands = |((mode, std), peak): ((&Pole, &[f64; 4]), &Peak)| {
             let f = &measured.frequency;
@@ -396,7 +402,7 @@ impl Rational {
 }
 
 impl Scaled<'_> {
-    /// First guess without phases: the modes alone, as high as the response there.
+    /// First guess for magnitudes: the modes alone, each as high as the response at its frequency.
     fn guess(&self) -> Vec<f64> {
         let mut p = vec![0.0; 4 * self.starts.len() + 4];
         for (m, (f, zeta)) in self.starts.iter().enumerate() {

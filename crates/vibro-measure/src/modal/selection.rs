@@ -9,18 +9,17 @@ use std::ops::Range;
 use vibro_record::units::notation::shortest;
 use vibro_record::{Error, Result, Window, median};
 
-/// Modes of one group at most: beyond, parameters outgrow the lines.
+/// Most modes in one group: with more, the parameters outgrow the lines.
 const TOGETHER: usize = 6;
 
-/// First guesses of frequency and damping ratio for `peaks`.
+/// First guesses of frequency in Hz and damping ratio for `peaks`, from place and half-power bandwidth.
 fn starts(lines: &Measured, peaks: &[Peak]) -> Vec<(f64, f64)> {
     let start = |p: &Peak| (lines.frequency[p.at], p.width / (2.0 * lines.frequency[p.at]));
     peaks.iter().map(start).collect()
 }
 
-/// Finds out whether the highest peak shows the leakage of segments under a Hann window, which analysers take
-/// if nothing else is said, or none at all, as under a periodic excitation; `false` where its lines do not
-/// tell.
+/// Sets the window of the segments by the leakage at the highest peak: Hann, the default of analysers, or
+/// none, as under a periodic excitation. Returns `false` where the lines do not decide.
 pub(super) fn averaging(lines: &mut Measured, groups: &[PeakGroup]) -> bool {
     let highest = |group: &PeakGroup| group.peaks.iter().map(|p| p.rise).fold(0.0, f64::max);
     let Some(group) = groups.iter().max_by(|a, b| highest(a).total_cmp(&highest(b))) else { return false };
@@ -34,11 +33,11 @@ pub(super) fn averaging(lines: &mut Measured, groups: &[PeakGroup]) -> bool {
     (without - with).abs() > NO_SUPPORT
 }
 
-/// Finds the peaks of a group that the lines need. The group keeps those; the others are added to
+/// Fits the peaks of a group that the lines need. The group keeps those; the others are added to
 /// `unsupported`.
 ///
-/// The highest peaks are fitted all at once: with a strong one left out the others explain its lines. Those
-/// that are not known, or not needed beside the others, are dropped.
+/// The highest peaks are fitted at once: without a strong one the others would bend to explain its lines.
+/// Modes that are not determined, or not needed beside the others, are dropped.
 pub(super) fn chosen(
     lines: &Measured,
     group: &mut PeakGroup,
@@ -63,8 +62,8 @@ pub(super) fn chosen(
     Ok(if fit.whiteness.rejected() { narrowed(lines, group, fit) } else { fit })
 }
 
-/// Drops the modes that are not known, the lowest peak first, then those that the lines do not need beside
-/// the others.
+/// Drops the modes that are not determined, the lowest peak first, then those whose removal raises Akaike's
+/// criterion by no more than [`NO_SUPPORT`].
 fn pruned(
     lines: &Measured,
     group: &mut PeakGroup,
@@ -82,7 +81,7 @@ fn pruned(
             fewer.remove(at);
             guess.remove(at);
             let less = rational(lines, group.lines.clone(), (&guess, 0), &[]).ok()?;
-            // A mode that leaves its peak for the one taken away is not the other's.
+            // Where a remaining mode moves to the removed peak, the removed mode was needed.
             let needless =
                 less.aicc <= fit.aicc + NO_SUPPORT && less.sound(lines, &fewer).iter().all(|sound| *sound);
             (lowest.is_some() || needless).then_some((less, fewer, at))
@@ -98,8 +97,8 @@ fn pruned(
     fit
 }
 
-/// Fits the modes that were found around each peak of a band together, to all its lines, where that explains
-/// them.
+/// Fits the modes found around the peaks of a band together to all its lines. Keeps the separate fits where
+/// only they leave white residuals.
 pub(super) fn together(
     lines: &Measured,
     part: Range<usize>,
@@ -126,11 +125,12 @@ pub(super) fn together(
     *fits = vec![(all, fit)];
 }
 
-/// Fewest lines on either side of the outer peaks of a band that is made narrower.
+/// Fewest lines beyond the outer peaks of a narrowed band: fewer determine the modes less, more let other
+/// modes in.
 const BESIDE: usize = 8;
 
-/// Makes the band of a fit whose residuals are not white narrower, as long as they are not: what else is in a
-/// band matters the less the narrower it is. Keeps the wide band where that does not help.
+/// Narrows the band of a fit until its residuals are white: other modes disturb a narrow band less. Keeps
+/// the wide band where that does not help.
 fn narrowed(lines: &Measured, group: &mut PeakGroup, wide: Rational) -> Rational {
     let (first, last) = (group.peaks[0].at, group.peaks[group.peaks.len() - 1].at);
     let starts = starts(lines, &group.peaks);
@@ -148,24 +148,26 @@ fn narrowed(lines: &Measured, group: &mut PeakGroup, wide: Rational) -> Rational
     wide
 }
 
-/// An additional mode that shows no peak must lower Akaike's criterion by this much: its four numbers then
-/// explain 28 of χ², as chance does in one of 10⁵ peaks; ten (Burnham & Anderson 2002, 2.6) would be chance
-/// in one of a thousand.
+/// Least drop of Akaike's criterion for an additional mode that shows no peak. Its four parameters then
+/// explain 28 of χ², as chance does in one of 10⁵ peaks; a drop of ten (Burnham & Anderson 2002, 2.6) would
+/// be chance in one of a thousand.
 const SPLIT: f64 = 20.0;
 
-/// Bandwidths from a mode at which another is looked for that shows no peak.
+/// Distances from a mode, in its bandwidths, at which a neighbour without a peak is searched.
 const BESIDE_A_MODE: [f64; 6] = [-3.0, -1.5, -0.5, 0.5, 1.5, 3.0];
 
-/// What a fit leaves of a peak of noise, over the highest line, at the least.
+/// A group without a sound mode counts as noise where its residuals exceed this fraction of the highest line
+/// (root mean square).
 const NOISE: f64 = 0.2;
 
-/// Modes nearer than this part of their mean bandwidth are not two, but one of another form.
+/// Two modes closer than this fraction of their mean bandwidth count as one whose shape is not that of the
+/// model.
 const APART: f64 = 0.25;
 
-/// A neighbour of this part of the highest peak of a group, or less, is left to the residual terms.
+/// A neighbour lower than this fraction of the highest peak of a group is left to the residual terms.
 const LOW: f64 = 0.05;
 
-/// Of those places the best, at which it is fitted.
+/// Number of the best places of [`BESIDE_A_MODE`] at which a further mode is fitted.
 const TRIED: usize = 3;
 
 /// The best fit of a group with one more mode than `fit`, whether it shows a peak or not; `others` are
@@ -176,7 +178,7 @@ fn one_more(lines: &Measured, group: &PeakGroup, fit: &Rational, others: &[Pole]
         let (frequency, zeta) = starts[m];
         let at = frequency * (1.0 + 2.0 * bandwidths * zeta);
         let mut starts = starts.clone();
-        // Where they are near, both move to the sides of the peak.
+        // Where the two are near, both start beside the peak, on opposite sides.
         if bandwidths.abs() < 1.0 {
             starts[m].0 = frequency * (1.0 - bandwidths * zeta);
         }
@@ -195,10 +197,9 @@ fn one_more(lines: &Measured, group: &PeakGroup, fit: &Rational, others: &[Pole]
     guesses.into_iter().take(TRIED).filter_map(fitted).min_by(|a, b| a.aicc.total_cmp(&b.aicc))
 }
 
-/// Adds the modes that a group needs though they show no peak, as one beside a higher peak, or two under one.
-/// Where the lines support another mode and do not tell which, the group says so; where they do not tell
-/// whether there is one, the uncertainties hold both cases (Burnham & Anderson 2002, 4.3.2). Says which modes
-/// stand.
+/// Adds modes that the lines need although they show no peak: one beside a higher peak, or two under one.
+/// Where another mode is supported but not determined, `group.ahead` records it. Where its existence is
+/// open, the uncertainties cover both cases (Burnham & Anderson 2002, 4.3.2). Returns which modes are sound.
 pub(super) fn complete(
     lines: &Measured,
     group: &mut PeakGroup,
@@ -206,7 +207,7 @@ pub(super) fn complete(
     others: &[Pole],
 ) -> Vec<bool> {
     let mut sound = fit.sound(lines, &group.peaks);
-    // A peak of noise has no neighbours.
+    // No neighbours are searched without phases, or around a peak of noise.
     if lines.magnitude_only || !sound.contains(&true) && fit.unexplained > NOISE {
         return sound;
     }
@@ -214,10 +215,10 @@ pub(super) fn complete(
         let Some(more) = one_more(lines, group, fit, others) else { break };
         let better = fit.aicc - more.aicc;
         if fit.whiteness.rejected() && more.whiteness.rejected() {
-            // Anything would explain residuals better that are not white.
+            // Residuals that stay coloured would support any additional mode.
             break;
         }
-        // What lies beyond the lines, or is much lower, is no mode of the group, and widens its
+        // A mode beyond the lines, or much lower, does not belong to the group: it only widens the
         // uncertainties.
         let height = |mode: &Pole| mode.constant.norm() / (mode.zeta * mode.frequency.powi(2));
         let highest = more.modes.iter().map(height).fold(0.0, f64::max);
@@ -238,7 +239,7 @@ pub(super) fn complete(
             (group.peaks, *fit, sound) = (peaks, more, its);
             continue;
         }
-        // What chance explains moves no uncertainty.
+        // A mode that does not lower the criterion leaves the uncertainties as they are.
         if better <= 0.0 {
             break;
         }
@@ -249,16 +250,16 @@ pub(super) fn complete(
     sound
 }
 
-/// Lets the uncertainties of a fit hold the modes of a fit with one `more` as well, by the weight that its
-/// criterion, lower by `better`, gives it; `sound` are those of its modes that stand. Gives the first mode
-/// that may not be what it seems.
+/// Widens the uncertainties of a fit to cover the fit `more`, which has one more mode, by its Akaike weight;
+/// `better` is how much lower its criterion is, `sound` which of its modes are sound. Returns `better` and
+/// the frequency in Hz of the first mode that the fit `more` leaves undetermined.
 fn widened(fit: &mut Rational, more: &Rational, sound: &[bool], better: f64) -> Option<(f64, f64)> {
     let mut ahead = None;
     let weight = 1.0 / (1.0 + (-0.5 * better).exp());
     for (mode, std) in fit.modes.iter().zip(&mut fit.std) {
         let near = |i: &usize| (more.modes[*i].frequency - mode.frequency).abs();
         let Some(i) = (0..more.modes.len()).min_by(|a, b| near(a).total_cmp(&near(b))) else { continue };
-        // Nor does a mode that could be anything, but then this one may not be what it seems.
+        // An undetermined mode widens no uncertainty, but makes this one doubtful.
         if !sound[i] {
             ahead = ahead.or((better > NO_SUPPORT).then_some((better, mode.frequency)));
             continue;
@@ -278,18 +279,19 @@ fn widened(fit: &mut Rational, more: &Rational, sound: &[bool], better: f64) -> 
     ahead
 }
 
-/// Peaks that are fitted together, and the lines to which they are.
+/// Peaks that are fitted together, and the lines used for the fit.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct PeakGroup {
     pub peaks: Vec<Peak>,
     pub lines: Range<usize>,
-    /// How much lower Akaike's criterion is with one more mode, and its frequency, where that is not known
-    /// by itself: then those around it are not what they seem.
+    /// Drop of Akaike's criterion with one more mode, and the frequency in Hz, where that mode is not
+    /// determined: the modes around it are then doubtful.
     pub ahead: Option<(f64, f64)>,
 }
 
 impl Measured {
-    /// The peak that a mode has, whether it shows or not.
+    /// The peak of a mode, whether it shows or not: the higher of the two lines beside it, and the
+    /// bandwidth.
     fn peak(&self, mode: &Pole) -> Peak {
         let last = self.frequency.len() - 2;
         let above = self.frequency.partition_point(|f| *f < mode.frequency).clamp(1, last);
@@ -299,19 +301,20 @@ impl Measured {
     }
 }
 
-/// A peak must stand this factor above its valleys.
+/// Least ratio of a peak to the higher of its valleys: a smaller one lists ripples, a larger one misses
+/// peaks beside others.
 const PROMINENCE: f64 = 2.0;
 
-/// A peak must rise above its valleys by this many standard deviations of the noise of one component of a
-/// line: of 3 000 lines of noise one does.
+/// Least rise of a peak above its higher valley, in standard deviations of the noise of one component of a
+/// line: fewer than one of 3000 lines of noise passes.
 const ABOVE_NOISE: f64 = 4.0;
 
-/// Lines on either side of a peak that are at least fitted, and bandwidths on either side.
+/// Fewest lines, and fewest bandwidths, fitted on either side of a peak.
 const LINES: usize = 16;
 const BANDWIDTHS: f64 = 6.0;
 
-/// The peaks, those too near each other in one group, each with the lines around it; only those of `band`
-/// where there is one.
+/// Finds the peaks, only those of `band` in Hz where there is one. Peaks too close to be fitted alone share
+/// a group; each group has the lines around it.
 pub(super) fn groups(measured: &Measured, band: Option<(f64, f64)>) -> Result<Vec<PeakGroup>> {
     let f = &measured.frequency;
     let magnitude: Vec<f64> = measured.values.iter().map(|v| v.norm()).collect();
@@ -367,28 +370,28 @@ pub(super) fn groups(measured: &Measured, band: Option<(f64, f64)>) -> Result<Ve
     Ok(groups.into_iter().enumerate().map(group).collect())
 }
 
-/// Standard deviation of the noise of one component of the lines around `at`, from the median of their second
-/// differences, in which what is smooth vanishes, where it is not known; 0 where there are too few lines.
+/// Standard deviation of the noise of one component of the lines around `at`: as stated, else from the
+/// median of their second differences, in which a smooth response vanishes. 0 where there are too few lines.
 fn noise(measured: &Measured, at: usize) -> f64 {
     if let Some(std) = &measured.std {
         return std[at];
     }
     let around = at.saturating_sub(LINES)..(at + LINES + 1).min(measured.values.len());
     let differences = measured.values[around].windows(3).map(|v| (v[0] - 2.0 * v[1] + v[2]).norm());
-    // A second difference of lines of σ has 6σ² a component. The median of a Rayleigh variable is √(2 ln 2)
-    // of its scale; that of the size of a normal one 0.6745, and magnitudes of noise alone scatter by
-    // 0.655σ.
+    // A second difference of lines with noise σ has the variance 6σ² a component. The median of a Rayleigh
+    // variable is √(2 ln 2) of its scale, that of the absolute value of a normal one 0.6745; magnitudes of
+    // noise alone scatter by 0.655σ.
     let scale = if measured.magnitude_only { 0.6745 * 0.655 } else { (2.0 * f64::ln(2.0)).sqrt() };
     (median(differences) / (scale * f64::sqrt(6.0))).max(0.0)
 }
 
-/// Whether there are too few lines, or bandwidths, between two peaks to fit each alone: their own lines would
-/// overlap by more than eight, or by half of the bandwidths that each needs.
+/// Whether two peaks are too close to be fitted alone: their own lines would overlap by more than eight, or
+/// by half of the bandwidths that each needs.
 fn near(f: &[f64], a: &Peak, b: &Peak) -> bool {
     b.at - a.at < 2 * LINES - 8 || f[b.at] - f[a.at] < BANDWIDTHS * f64::midpoint(a.width, b.width)
 }
 
-/// Half-power bandwidth as the lines show it: at least half a line.
+/// Half-power bandwidth in Hz, interpolated between lines; at least half a line spacing.
 fn width(f: &[f64], magnitude: &[f64], at: usize, valleys: [usize; 2]) -> f64 {
     let half = magnitude[at] / f64::sqrt(2.0);
     let cross = |a: usize, b: usize| {
@@ -409,7 +412,7 @@ mod bands {
     use vibro_math::Noise;
     use vibro_record::units::Quantity;
 
-    /// Lines of noise of 0.3 a component, and one line of 3.
+    /// Lines of noise with a standard deviation of 0.3 a component, and one line of height 3.
     fn measured(magnitude_only: bool) -> Measured {
         let mut noise = Noise::new(3);
         let mut values: Vec<Complex64> =
@@ -433,8 +436,8 @@ mod bands {
         assert!((mean / 0.3 - 1.0).abs() < 0.1, "{mean}");
         let all = groups(&found, None).unwrap();
         let peaks: Vec<usize> = all.iter().flat_map(|g| g.peaks.iter().map(|p| p.at)).collect();
-        // A third of 2000 lines are local maxima; fewer than one line of noise in 3000 passes four
-        // deviations, where those are right within a quarter one in 90 does.
+        // A third of 2000 lines are local maxima. Fewer than one line of noise in 3000 passes four
+        // deviations; with deviations that are wrong by a quarter one in 90 does.
         assert!(peaks.contains(&1000) && peaks.len() < 22, "{peaks:?}");
         let sizes = measured(true);
         assert!(groups(&sizes, None).unwrap().iter().any(|g| g.peaks.iter().any(|p| p.at == 1000)));

@@ -1,11 +1,12 @@
-//! Contacts: spring and damper side by side; two curved bodies with losses that grow with the indentation.
+//! Laws of contact: spring and damper side by side; power laws of curved bodies with losses; a yielding
+//! spring.
 
 use super::LowPass;
 use num_complex::Complex64;
 use std::f64::consts::{PI, TAU};
 
-/// Contact of damping ratio ξ and undamped frequency f, met at unit velocity and left where its force is
-/// zero.
+/// Contact of damping ratio ξ and undamped frequency f, with approach at unit velocity and separation at
+/// zero force.
 ///
 /// With ω = 2πf, sin θ = ξ, Ω = ω cos θ and h = ωξ the deceleration is a(t) = (ω/cos θ) e^{−ht} sin(Ωt + 2θ)
 /// from 0 to (π − 2θ)/Ω: it begins with a jump to 2ξω.
@@ -55,13 +56,15 @@ impl KelvinVoigt {
         (-(PI - 2.0 * self.theta) * self.theta.tan()).exp()
     }
 
-    /// Deceleration at `t`, in m/s² for each m/s of approach; goes on before 0 and after the duration.
+    /// Deceleration at `t` in s, in m/s² for each m/s of approach, continued smoothly before 0 and after the
+    /// duration.
     pub(crate) fn unbounded(&self, t: f64) -> f64 {
         let (h, turn) = (self.omega * self.theta.sin(), self.omega * self.theta.cos());
         self.omega / self.theta.cos() * (-h * t).exp() * (turn * t + 2.0 * self.theta).sin()
     }
 
-    /// Deceleration as an instrument with this low-pass shows it.
+    /// Deceleration at `t` in s, in m/s² for each m/s of approach, as an instrument with this low-pass shows
+    /// it.
     pub fn filtered(&self, filter: &LowPass, t: f64) -> f64 {
         let s = Complex64::new(-self.omega * self.theta.sin(), self.omega * self.theta.cos());
         let c = Complex64::cis(2.0 * self.theta) * (self.omega / self.theta.cos());
@@ -70,29 +73,31 @@ impl KelvinVoigt {
     }
 }
 
-/// A contact met at unit velocity, in scales of time T and length VT in which mass and stiffness are 1.
+/// A contact with approach at unit velocity, in units of time T and length VT in which mass and stiffness
+/// are 1.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Rebound {
     /// −z″ at multiples of [`STEP`], up to the end of the contact.
     deceleration: Vec<f64>,
-    /// In units of T.
+    /// Duration of the contact in units of T.
     duration: f64,
     /// Speed of separation over that of approach.
     pub restitution: f64,
 }
 
-/// Step of the integration, about 1/400 of the contact. Over the last part of a step the force falls along a
-/// straight line.
+/// Step of the integration in units of T, about 1/400 of the contact. Over the last part of a step the force
+/// falls along a straight line.
 const STEP: f64 = 1.0 / 128.0;
 
-/// Steps after which a contact is given up.
+/// Most steps of an integration, 200 T: a longer contact is given up.
 const LONGEST: usize = 128 * 200;
 
 impl Rebound {
-    /// Force k δⁿ + c δˢ δ̇ that does not pull, for both exponents 3/2 that of Hunt & Crossley (1975),
-    /// without losses that of Hertz; α the loss at unit velocity: z″ = −zⁿ − α zˢ z′. By the classical
-    /// Runge–Kutta formula, for exponents of 3/2 good to 1e-5 of the largest value. `None` for α outside
-    /// −0.5…100, n outside 1…4, s outside 0…4, and where the contact does not end within 200 T.
+    /// Force k δⁿ + c δˢ δ̇ that does not pull: with both exponents 3/2 that of Hunt & Crossley (1975), and
+    /// without losses that of Hertz. With α the loss at unit velocity, z″ = −zⁿ − α zˢ z′, integrated by the
+    /// classical Runge–Kutta formula; for exponents of 3/2 it is good to 1e-5 of the largest value. `None`
+    /// for α outside −0.5…100, n outside 1…4, s outside 0…4, and where the contact does not end within 200
+    /// T.
     pub fn power_law(alpha: f64, n: f64, s: f64) -> Option<Rebound> {
         let possible =
             (-0.5..=100.0).contains(&alpha) && (1.0..=4.0).contains(&n) && (0.0..=4.0).contains(&s);
@@ -122,7 +127,7 @@ impl Rebound {
             let next = z + h / 6.0 * (v + 2.0 * v2 + 2.0 * v3 + v4);
             let (before, faster) = (force(z, v), v + h / 6.0 * (a1 + 2.0 * a2 + 2.0 * a3 + a4));
             let after = force(next, faster);
-            // Left where the bodies part, or where the loss would pull them.
+            // The contact ends where the bodies part, or where the force would begin to pull.
             if next <= 0.0 || after <= 0.0 && faster < 0.0 {
                 // Over a part of a step the force falls along a straight line.
                 let part = if next <= 0.0 { z / -v } else { h * before / (before - after) };
@@ -136,9 +141,9 @@ impl Rebound {
         None
     }
 
-    /// A spring that yields and is 1/R² times as stiff on the way back (Walton & Braun 1986): a quarter of a
-    /// sine, and a shorter one of a cosine. `None` for R outside 0.05…1.05, as much above 1 as noise may ask
-    /// for.
+    /// A spring that yields, 1/R² times as stiff on unloading (Walton & Braun 1986): its force is a quarter
+    /// of a sine, then a shorter quarter of a cosine. `None` for R outside 0.05…1.05: a fit to noise may
+    /// need R slightly above 1.
     pub fn yielding(restitution: f64) -> Option<Rebound> {
         if !(0.05..=1.05).contains(&restitution) {
             return None;

@@ -7,9 +7,9 @@ use crate::residuals::{Whiteness, aicc, student};
 use vibro_math::{Fit, least_squares};
 use vibro_record::{Error, Result};
 
-/// Samples in units of about the pulse: time from its rising flank over its length, value over its height.
+/// Samples scaled to the pulse: time from its rising flank over its length, value over its height.
 pub(super) struct Samples<'a> {
-    /// Distance of two samples.
+    /// Sampling interval, in lengths of the pulse.
     pub step: f64,
     /// What the instrument does to a pulse.
     pub filter: Option<&'a LowPass>,
@@ -17,54 +17,56 @@ pub(super) struct Samples<'a> {
     pub places: Vec<usize>,
     pub times: Vec<f64>,
     pub values: Vec<f64>,
-    /// What rings on behind the pulse, and so within it, too.
+    /// Ringing after the pulse, which may be within it, too.
     pub rings: Option<Ringing>,
 }
 
-/// A model at its best, its parameters onset, baseline, velocity of approach, and those of its shape: ξ and
-/// f, duration, duration and α or R, or duration, α, and both exponents.
+/// The best fit of a model. Its parameters are onset, baseline, velocity of approach, and those of the
+/// shape: ξ and f (Kelvin–Voigt); duration (Hertz); duration and α (Hunt–Crossley) or restitution
+/// (yielding); duration, α and both exponents (power law).
 pub(super) struct FittedPulse {
     pub model: ContactModel,
     pub fit: Fit,
     pub whiteness: Whiteness,
-    /// Factor for the uncertainties by the fit's covariance. `None` where more is left around the onset than
-    /// elsewhere, and is not white noise, or the onset lies beyond the two samples that begin the
-    /// contact: the pulse begins otherwise than the model can, and the parameters may be anything.
+    /// Factor on the uncertainties by the fit's covariance. `None` where the record does not begin as the
+    /// model does, so that the parameters may be anything: coloured residuals are larger around the onset
+    /// than elsewhere, or the onset lies outside the two samples between which the contact begins.
     pub widening: Option<f64>,
     /// First sample inside the contact, where the model begins with a jump.
     first: Option<usize>,
-    /// Other exponents of the loss at which the sum of squares is least, too.
+    /// Fits at further minima of the sum of squares over the exponent of the loss.
     pub also: Vec<FittedPulse>,
 }
 
-/// Exponents of the loss that are nearer are those of one minimum.
+/// Fits whose exponents of the loss differ by less than this belong to one minimum.
 const APART: f64 = 0.05;
 
-/// Least noise, in parts of the height.
+/// Least standard deviation of the noise, over the height of the pulse: about the digits of a converter.
 const DIGITS: f64 = 3e-4;
 
-/// Standard deviations of chance by which one variance must exceed another.
+/// A variance counts as larger than another if it exceeds it by this many standard deviations of chance.
 const SURE: f64 = 4.0;
 
 /// Step of the coarse grid of onsets, in durations of the contact.
 const LEAD: f64 = 0.08;
 
-/// Durations of the contact on either side of a first guess of the onset that the finer grid spans: one and a
-/// half steps of the coarse one.
+/// Half-width of the finer grid of onsets around a first guess, in durations of the contact: one and a half
+/// steps of the coarse grid.
 const REACH: f64 = 1.5 * LEAD;
 
-/// Samples that the search for a first guess uses.
+/// Most samples that the search for a first guess uses; of more, every n-th is taken.
 const COARSE: usize = 48;
 
-/// Corner of a low-pass over the sampling rate from which on its rise takes fewer than about four samples.
+/// Corner over sampling rate above which a low-pass counts as fast: its rise takes fewer than about four
+/// samples.
 const FAST: f64 = 0.1;
 
-/// Part of the pulse's length around the onset in which a wrong low-pass shows.
+/// Half-width of the interval around the onset, over the pulse's length, in which a wrong low-pass shows.
 const AROUND: f64 = 0.1;
 
-/// What the exponents of spring and loss are likely to be, and by how much they differ: those of plane to
-/// pointed bodies (Johnson 1985, 5.3), and of losses that hardly depend on the indentation to such that grow
-/// like its square. Without losses nothing else tells the second.
+/// Prior mean and standard deviation of the exponents of spring and loss: from flat to pointed bodies for
+/// the spring (Johnson 1985, 5.3), from losses that hardly depend on the indentation to losses that grow
+/// with its square. Without losses only the prior determines the second.
 const LIKELY: [(f64, f64); 2] = [(1.5, 0.5), (1.0, 0.75)];
 
 impl Samples<'_> {
@@ -73,7 +75,8 @@ impl Samples<'_> {
         self.filter.map_or(0.0, LowPass::delay)
     }
 
-    /// The model at these rising times; `first` is the first time inside the contact where that is settled.
+    /// The model at these rising times; `first` is the index of the first time inside the contact where that
+    /// is fixed.
     pub fn model(
         &self,
         model: ContactModel,
@@ -103,8 +106,8 @@ impl Samples<'_> {
         Some(shape.into_iter().map(|s| p[1] + p[2] * s).collect())
     }
 
-    /// The best fit of a model, from a coarse search over onset and shape. What free exponents may be counts
-    /// as much as a sample each.
+    /// The best fit of a model, from a coarse search over onset and shape. The prior of each free exponent
+    /// counts as one sample.
     pub fn fit(&self, model: ContactModel) -> Result<FittedPulse> {
         let (starts, noise) = (self.starts(model)?, self.noise());
         let corner = self.filter.map(|f| f.corner);
@@ -117,10 +120,10 @@ impl Samples<'_> {
                     .map(|p| (p.clone(), None)),
             );
         }
-        // The jump of the force at the onset makes the sum of squares jump where the onset passes a sample.
-        // So the onset is fitted between each two samples near the guess, the contact going on
-        // smoothly beyond them, and the best is taken. The rise of a fast low-pass falls, like a
-        // jump, between a few samples: each of them then holds a minimum of its own.
+        // The force jumps at the onset, so the sum of squares jumps where the onset passes a sample. So the
+        // onset is fitted between each two samples near the guess, with the contact continued smoothly
+        // beyond them, and the best fit is taken. The rise of a fast low-pass lies, like a jump, between a
+        // few samples: each of them then has a minimum of its own.
         if model == ContactModel::KelvinVoigt && corner.is_none_or(|c| c * self.step > FAST) {
             let near = self.nearer(&starts[0]);
             let at = |onset: f64| [&[onset], &near[1..]].concat();
@@ -134,9 +137,10 @@ impl Samples<'_> {
                 Some((at(f64::midpoint(self.times[first - 1], self.times[first])), Some(first)))
             }));
         }
-        // Noise may take the onset beyond the two samples: what the sum of squares would be with the onset
-        // held between them, to first order. Farther beyond than noise takes it, or half a sample, or
-        // by half of the whole pulse, the model follows a rise that it has not.
+        // Noise may move the onset beyond the two samples: the sum of squares is then that with the onset
+        // held between them, to first order. An onset beyond them by more than noise explains and by more
+        // than half a sample, or by more than half of the pulse, follows a rise that the model does not
+        // have.
         let held = |fit: &FittedPulse| {
             let (onset, std) = (fit.fit.parameters[0], fit.fit.std(0));
             let beyond =
@@ -163,8 +167,8 @@ impl Samples<'_> {
         Ok(best)
     }
 
-    /// A fit with the whiteness of what it leaves and the factor of its uncertainties, if its onset is not
-    /// `outside` of where it may be.
+    /// Tests the residuals of a fit for whiteness, and sets the factor of its uncertainties, unless its
+    /// onset is `outside` of where it may be or does not match the record.
     fn judged(&self, mut fitted: FittedPulse, outside: bool) -> FittedPulse {
         fitted.whiteness = Whiteness::of(&[&fitted.fit.residuals]);
         if !(outside || fitted.whiteness.rejected() && self.more_left_at_onset(&fitted.fit)) {
@@ -177,15 +181,15 @@ impl Samples<'_> {
         fitted
     }
 
-    /// Standard deviation of the record well before the pulse; no less than the digits of a converter leave.
+    /// Standard deviation of the record well before the pulse, over the pulse's height; at least [`DIGITS`].
     fn noise(&self) -> f64 {
         let begins = -0.5 - self.delay();
         let before = &self.values[..self.times.partition_point(|t| *t < begins)];
         if before.len() < 8 { DIGITS } else { scatter(before).max(DIGITS) }
     }
 
-    /// Whether more is left within the contact than before it, by more than chance: then the contact follows
-    /// another law, or something else moved.
+    /// Whether the residuals within the contact exceed those before it by more than chance: then the contact
+    /// follows another law, or something else moved.
     pub fn unexplained(&self, fitted: &FittedPulse) -> bool {
         let fit = &fitted.fit;
         let (onset, end) = (fit.parameters[0], fitted.end() + self.delay());
@@ -195,7 +199,7 @@ impl Samples<'_> {
             (squares.clone().sum::<f64>(), squares.count() as f64)
         };
         let (inside, before) = (of(&|t| t >= onset && t <= end), of(&|t| t < onset - AROUND));
-        // The parameters follow the noise within the contact.
+        // The parameters absorb noise within the contact: they take its degrees of freedom.
         let free = inside.1 - fit.parameters.len() as f64;
         let chance = SURE * fitted.whiteness.inflation * (2.0 / free.max(1.0) + 2.0 / before.1).sqrt();
         free >= 1.0 && before.1 >= 8.0 && inside.0 / free > (1.0 + chance) * before.0 / before.1
@@ -215,7 +219,7 @@ impl Samples<'_> {
         near.0 / near.1 > limit * far.0 / far.1
     }
 
-    /// `None` where the fit does not converge.
+    /// The fit from one first guess; `None` where it does not converge.
     fn from(
         &self,
         model: ContactModel,
@@ -246,7 +250,8 @@ impl Samples<'_> {
         })
     }
 
-    /// A contact of spring and damper nearer to the pulse, from a finer grid around a guess, on all samples.
+    /// A better guess of a contact of spring and damper, from a finer grid around a first one, on all
+    /// samples.
     fn nearer(&self, guess: &[f64]) -> Vec<f64> {
         let Some(duration) = KelvinVoigt::new(guess[3], guess[4]).map(|c| c.duration()) else {
             return guess.to_vec();
@@ -278,8 +283,8 @@ impl Samples<'_> {
         let thin = |all: &[f64]| all.iter().copied().step_by(stride).collect::<Vec<f64>>();
         let (times, values) = (thin(&self.times), thin(&self.values));
         let delay = self.delay();
-        // The loss of free exponents has a minimum to either side of the exponent where it makes the pulse
-        // neither steeper nor flatter at its end.
+        // With free exponents there is a minimum on either side of the loss exponent at which the loss makes
+        // the end of the pulse neither steeper nor flatter.
         let shapes: &[[f64; 2]] = match model {
             ContactModel::KelvinVoigt => &[[0.03, 0.0], [0.15, 0.0], [0.3, 0.0], [0.5, 0.0], [0.75, 0.0]],
             ContactModel::Hertz => &[[0.0; 2]],
@@ -313,8 +318,8 @@ impl Samples<'_> {
         Ok(found.into_iter().map(|f| f.1).collect())
     }
 
-    /// Parameters with the baseline and velocity that are best for these samples, behind their sum of
-    /// squares.
+    /// The sum of squares, and the parameters with the baseline and velocity that are best for these
+    /// samples.
     fn levelled(
         &self,
         model: ContactModel,
@@ -346,12 +351,12 @@ impl FittedPulse {
         samples.model(self.model, &self.fit.parameters, times, first)
     }
 
-    /// Akaike's criterion, corrected.
+    /// Corrected Akaike criterion (AICc).
     pub fn aicc(&self) -> f64 {
         aicc(self.fit.sum_of_squares(), self.fit.residuals.len(), self.fit.parameters.len())
     }
 
-    /// When the contact ends.
+    /// Time at which the contact ends, in lengths of the pulse.
     pub fn end(&self) -> f64 {
         let p = &self.fit.parameters;
         p[0] + match self.model {

@@ -1,4 +1,4 @@
-//! Where in a record the pulse is; the record in units of its pulse, and the way back.
+//! Finds the pulse of a record, scales the record to the pulse, and converts fits back to SI units.
 
 use super::fit::{FittedPulse, Samples};
 use super::result::{PulseCurve, PulseFit, PulsePicture, propagated};
@@ -13,8 +13,8 @@ use vibro_record::code;
 use vibro_record::units::Quantity;
 use vibro_record::{Error, Finding, Result, Trace, median};
 
-/// A record with time over the length of its pulse, from half the height of the rising flank, and values over
-/// its height.
+/// A record scaled to its pulse: time over the length of the pulse, from half height of the rising flank,
+/// and values over the height of the pulse.
 pub(super) struct Normalised<'a> {
     trace: &'a Trace,
     found: &'a Located,
@@ -22,23 +22,24 @@ pub(super) struct Normalised<'a> {
     step: f64,
     /// Unit of time in s: about the duration of the pulse.
     pub length: f64,
-    /// Unit of the values.
+    /// Height of the pulse, in the unit of the record: unit of the values.
     height: f64,
-    /// The low-pass in these units.
+    /// The low-pass with its corner in cycles a length.
     filter: Option<LowPass>,
 }
 
-/// A mean of this part of the root mean square is another level; what rings is on both sides of its own.
+/// Mean over root mean square of the residuals after the pulse above which the record has changed its level:
+/// ringing has a mean near zero.
 const LEVEL: f64 = 0.5;
 
-/// Lengths of the pulse that are fitted before and after it, for the baseline.
+/// Baseline fitted before and after the pulse, in lengths of the pulse.
 const BESIDE: f64 = 2.0;
 
-/// Delays of the low-pass that its tail lasts: of one of the first order e⁻³ is left then.
+/// Duration of the tail of the low-pass, in its delays: a first-order tail has fallen to e⁻³ then.
 const TAIL: f64 = 3.0;
 
-/// Root mean square of what is left after the pulse, in parts of that within it, beyond which the record does
-/// not rest.
+/// The record does not rest after the pulse where its residuals there exceed those of the fit by this factor
+/// (root mean squares).
 const RESTLESS: f64 = 4.0;
 
 /// Fewest samples up to the falling flank: five parameters and four degrees of freedom.
@@ -72,7 +73,7 @@ impl<'a> Normalised<'a> {
         self.trace.axis.start() + self.found.flanks.0 * self.step + time * self.length
     }
 
-    /// The usable samples of a part of the record.
+    /// The usable samples of a part of the record: finite and not clipped.
     fn samples(&self, range: Range<usize>) -> Samples<'_> {
         let usable = |i: &usize| self.trace.values[*i].is_finite() && !self.found.clipped.contains(i);
         let places: Vec<usize> = range.filter(usable).collect();
@@ -107,7 +108,7 @@ impl<'a> Normalised<'a> {
         let settled = self.index(fitted.end() + TAIL * delay);
         let far = self.index(fitted.end() + TAIL * delay + BESIDE);
         let after = self.samples(settled..far);
-        // Mean and root of the mean square of what is left after the pulse.
+        // Mean and root mean square of the residuals after the pulse.
         let model = fitted.at(&after, &after.times).unwrap_or_default();
         let left: Vec<f64> = model.iter().zip(&after.values).map(|(m, v)| v - m).collect();
         let mean = average(&left);
@@ -124,7 +125,7 @@ impl<'a> Normalised<'a> {
         Ok((Samples { rings, ..self.samples(from..end) }, level))
     }
 
-    /// What is wrong with the record around the pulse.
+    /// Adds findings on clipped samples, on missing ones, and on another pulse in the record.
     fn faults(&self, range: Range<usize>, findings: &mut Vec<Finding>) {
         let Normalised { trace, found, .. } = self;
         if let Some(first) = found.clipped.first() {
@@ -190,7 +191,7 @@ impl<'a> Normalised<'a> {
         let shape = &fit.parameters[3..];
         let variance = |i: usize, j: usize| fit.covariance(3 + i, 3 + j) * widened.powi(2);
         let kelvin_voigt = |p: &[f64]| KelvinVoigt::new(p[0], p[1]);
-        // Those of curved bodies are integrated, and no smoother than to 1e-5.
+        // All but spring and damper are integrated, and smooth only to 1e-5: differences need larger steps.
         let scale = vec![if *model == ContactModel::KelvinVoigt { 1.0 } else { 1e3 }; shape.len()];
         let mut follow = |name, factor: f64, unit, of: &dyn Fn(&[f64]) -> Option<f64>| {
             if let Some((value, std)) = propagated(shape, &scale, variance, of) {
@@ -213,7 +214,7 @@ impl<'a> Normalised<'a> {
         }
     }
 
-    /// What a figure needs.
+    /// The samples, curves and residuals for a figure.
     pub fn picture(&self, samples: &Samples<'_>, fits: &[FittedPulse]) -> PulsePicture {
         let from = self.index(-1.5);
         let end = fits.iter().map(FittedPulse::end).fold(1.0, f64::max);
@@ -248,18 +249,18 @@ pub(super) struct Located {
     pub flanks: (f64, f64),
     /// Place, in samples, where the falling flank has come down to a fifth of the height.
     pub low: usize,
-    /// Samples of a flat top.
+    /// Indices of the samples of a flat top.
     pub clipped: Vec<usize>,
 }
 
-/// Fewest samples of a flat top.
+/// Samples by which a flat top must be longer than three round ones.
 const FLAT: f64 = 3.0;
 
-/// Standard deviations of the noise within which samples count as equal to the largest.
+/// Samples within this many standard deviations of the noise of the largest count as equal to it.
 const BAND: f64 = 8.0;
 
-/// Standard deviations of the noise that a pulse must stand above the baseline: white noise of 10⁶ samples
-/// reaches 5.
+/// Least height of a pulse above the baseline, in standard deviations of the noise: white noise of 10⁶
+/// samples reaches 5.
 const LEAST: f64 = 6.0;
 
 /// Finds the largest pulse.
@@ -278,7 +279,8 @@ pub(super) fn locate(values: &[f64]) -> Result<Located> {
             .setting("channel"));
     }
     let baseline = mode(&sorted);
-    // Median to standard deviation of a normal distribution, and of a difference to that of a value.
+    // 1.4826: from the median of absolute values to the standard deviation of a normal distribution. √2:
+    // from the standard deviation of a difference to that of a value.
     let differences = values.windows(2).map(|w| (w[1] - w[0]).abs());
     let noise = 1.4826 * median(differences).max(0.0) / f64::sqrt(2.0);
     let far = |v: &f64| if v.is_finite() { (v - baseline).abs() } else { -1.0 };
@@ -322,14 +324,14 @@ pub(super) fn locate(values: &[f64]) -> Result<Located> {
 /// `width` samples wide at half its height.
 ///
 /// The top of a half sine, 1.5 widths long, is within a part x of its height for (3/π) acos(1 − x) widths.
-/// Three times that, and an eighth of the width at least, is the shape of no contact.
+/// No contact stays there for three times that and for more than an eighth of the width.
 fn flat(run: f64, width: f64, depth: f64) -> bool {
     let round = 3.0 / std::f64::consts::PI * (1.0 - depth).max(-1.0).acos() * width;
     run > 3.0 * round + FLAT && run > width / 8.0
 }
 
-/// Middle of the shortest interval that holds a quarter of the values: the baseline, also of a record that is
-/// mostly pulse.
+/// Middle of the shortest interval that holds a quarter of the sorted values: the baseline, also of a record
+/// that is mostly pulse.
 fn mode(sorted: &[f64]) -> f64 {
     let quarter = (sorted.len() / 4).clamp(1, sorted.len().max(2) - 1);
     sorted
@@ -342,7 +344,8 @@ fn mode(sorted: &[f64]) -> f64 {
 mod located {
     use super::*;
 
-    /// A half sine of 40 samples after 60 of nothing and before 30, over 2, of height `h`.
+    /// A half sine of height `h` over 40 samples, on a baseline of 2, after 60 samples of baseline and
+    /// before 30.
     fn record(h: f64) -> Vec<f64> {
         let half = |i: i32| {
             if (0..=40).contains(&i) { (f64::from(i) * std::f64::consts::PI / 40.0).sin() } else { 0.0 }
@@ -386,8 +389,8 @@ mod located {
         let record =
             |limit: f64| (-200..400).map(|i| (5.0 * half(i)).min(limit) + noise(i)).collect::<Vec<f64>>();
         assert!(locate(&record(9.0)).unwrap().clipped.is_empty());
-        // With this noise 11 samples of a round top count as equal to its peak; a flat part of three times
-        // that, a cut of 4 %, is told.
+        // With this noise 11 samples of a round top count as equal to its peak; a flat top three times as
+        // long, by a cut of 4 %, is detected.
         for part in [0.8, 0.9] {
             let n = locate(&record(5.0 * part)).unwrap().clipped.len() as f64;
             // 200/π · 2 acos(part) samples at the limit, and those within eight deviations of noise and their

@@ -1,4 +1,4 @@
-//! What a contact pulse says.
+//! Results of a contact pulse: damping ratio and frequency, the models fitted, and their uncertainties.
 
 use super::{KelvinVoigt, Rebound};
 use crate::Estimate;
@@ -27,7 +27,7 @@ pub enum ContactModel {
 }
 
 impl ContactModel {
-    /// All but that of spring and damper.
+    /// The models fitted beside that of spring and damper.
     pub(super) const RIVALS: [ContactModel; 4] =
         [ContactModel::Hertz, ContactModel::HuntCrossley, ContactModel::Yielding, ContactModel::PowerLaw];
 
@@ -36,9 +36,10 @@ impl ContactModel {
         ["kelvin-voigt", "hertz", "hunt-crossley", "power-law", "yielding"][self as usize]
     }
 
-    /// The contact of its parameters after the duration: the loss α, and both exponents where they are free.
+    /// The contact for the shape parameters after the duration: none (Hertz), the loss α, α and both
+    /// exponents, or the restitution (yielding). `None` for spring and damper, and for impossible values.
     pub(super) fn rebound(self, shape: &[f64]) -> Option<Rebound> {
-        // It has no shape, and a fit asks for it again and again.
+        // Hertz has no shape parameters: integrated once, since every step of a fit needs it.
         static HERTZ: LazyLock<Option<Rebound>> = LazyLock::new(|| Rebound::power_law(0.0, 1.5, 1.5));
         match (self, shape) {
             (ContactModel::Hertz, []) => HERTZ.clone(),
@@ -50,28 +51,28 @@ impl ContactModel {
     }
 }
 
-/// Damping and frequency of a contact, what follows from them, and the models that were fitted.
+/// Damping ratio and frequency of a contact, the quantities derived from them, and the fitted models.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct PulseResult {
-    /// Damping ratio of a contact of spring and damper; it and all that follows null where the record is no
-    /// such contact.
+    /// Damping ratio of a contact of spring and damper. It and all values derived from it are null where the
+    /// record is no such contact.
     pub xi: Estimate,
     /// Its undamped natural frequency in Hz.
     pub frequency: Estimate,
-    /// Velocity after over velocity before, when it is left at zero force; like the velocity of approach and
-    /// the duration by the model that the record prefers, where that states it.
+    /// Coefficient of restitution: velocity after over velocity before, with separation at zero force. Like
+    /// the velocity of approach and the duration, it comes from the preferred model where that gives it.
     pub restitution: Estimate,
     /// Stiffness in N/m; `None` without a mass.
     pub stiffness: Option<Estimate>,
     /// Damping in N s/m; `None` without a mass.
     pub damping: Option<Estimate>,
-    /// Velocity of approach in m/s; `None` where the record is no acceleration.
+    /// Velocity of approach in m/s; `None` unless the record is an acceleration, or a force on a known mass.
     pub initial_velocity: Option<Estimate>,
     /// Duration of the contact in s.
     pub duration: Estimate,
     /// The models fitted to the whole pulse; the first is the one of spring and damper.
     pub fits: Vec<PulseFit>,
-    /// What was assumed, and what the record leaves open.
+    /// Assumptions, and doubts that the record leaves.
     pub findings: Vec<Finding>,
     /// Curves for a figure.
     #[serde(skip)]
@@ -85,7 +86,7 @@ impl PulseResult {
         contact.into_iter().chain(more.into_iter().flatten())
     }
 
-    /// The same without values: the record is no such contact.
+    /// The result with all values null: the record is no contact of spring and damper.
     pub(super) fn refused(mut self) -> PulseResult {
         for estimate in self.estimates() {
             (estimate.value, estimate.std) = (f64::NAN, None);
@@ -94,8 +95,9 @@ impl PulseResult {
         self
     }
 
-    /// The same of a record whose sampling rate has the relative standard uncertainty `clock`: ratios do not
-    /// depend on it, stiffness on its square.
+    /// Adds the relative standard uncertainty `clock` of the sampling rate: once to frequency, duration,
+    /// damping and velocity, twice to stiffness, which grows with the square of the rate. Ratios do not
+    /// depend on it.
     pub(super) fn by_clock(mut self, clock: f64) -> PulseResult {
         let once = [
             Some(&mut self.frequency),
@@ -110,24 +112,25 @@ impl PulseResult {
         self
     }
 
-    /// The same without uncertainties.
+    /// The result without uncertainties.
     pub(super) fn doubted(mut self) -> PulseResult {
         self.estimates().for_each(|estimate| estimate.std = None);
         self
     }
 
-    /// Leads with the model that the record prefers, where that is not the one of spring and damper: what it
-    /// states takes the place of what that states, which loses its uncertainty. What all models state has
-    /// the spread between them in its uncertainty. `inflation` is that of the best model's residuals:
-    /// what they repeat counts once (Burnham & Anderson 2002, 2.5). `also` are other minima of the models.
+    /// Takes restitution, duration and velocity of approach from the model that the record prefers, and adds
+    /// the spread between the supported models to their uncertainties. Where that model is not spring and
+    /// damper, a finding says so, and the values of spring and damper lose their uncertainties. `inflation`
+    /// enlarges uncertainties for correlated residuals of the best model: its square divides differences of
+    /// the criterion (Burnham & Anderson 2002, 2.5). `also` are further minima of the models.
     pub(super) fn led_by_best(&mut self, also: &[PulseFit], inflation: f64) -> Option<Finding> {
         let best = self.fits.iter().min_by(|a, b| a.aicc.total_cmp(&b.aicc))?;
         let behind = |fit: &PulseFit| (fit.aicc - best.aicc) / (inflation * inflation);
         let ahead = behind(&self.fits[0]);
         let (other, lower) = (ahead > NO_SUPPORT, self.fits[0].aicc - best.aicc);
         let lead = if other { best } else { &self.fits[0] };
-        // Burnham & Anderson 2002, eq. 4.9, in squares, about what leads; a model that cannot begin as the
-        // record does says nothing.
+        // Model averaging (Burnham & Anderson 2002, eq. 4.9) of squares, about the value of the leading
+        // model. A model whose onset does not match the record has no values (NaN) and is left out.
         let supported: Vec<&PulseFit> =
             self.fits.iter().chain(also).filter(|fit| (-0.5 * behind(fit)).exp() > NEGLIGIBLE).collect();
         let stated = |name: &str, own: Option<&Estimate>| {
@@ -156,7 +159,7 @@ impl PulseResult {
     }
 }
 
-/// Weight of a model beside the best that counts no more.
+/// Models with less than this Akaike weight, relative to the best, are left out of the average.
 const NEGLIGIBLE: f64 = 1e-6;
 
 /// A model fitted to a pulse.
@@ -164,9 +167,9 @@ const NEGLIGIBLE: f64 = 1e-6;
 pub struct PulseFit {
     /// The model.
     pub model: ContactModel,
-    /// Root mean square of what is left, in the unit of the record.
+    /// Root mean square of the residuals, in the unit of the record.
     pub residual: f64,
-    /// Akaike's criterion, corrected; the smaller the better, and only differences count.
+    /// Corrected Akaike criterion (AICc): smaller is better, and only differences between models matter.
     pub aicc: f64,
     /// Probability that white noise shows as much serial correlation as the residuals (Ljung & Box 1978).
     pub whiteness: Option<f64>,
@@ -198,8 +201,8 @@ pub struct PulseCurve {
     pub residuals: Vec<(f64, f64)>,
 }
 
-/// A value of a function of parameters and its standard uncertainty by their covariance, linearised by
-/// central differences.
+/// Value of a function of the parameters and its standard uncertainty from their covariance, linearised by
+/// central differences; `scale` sets the smallest step of each parameter.
 pub(super) fn propagated(
     parameters: &[f64],
     scale: &[f64],
@@ -226,7 +229,7 @@ pub(super) fn propagated(
     Some((value, variance.sqrt()))
 }
 
-/// All that follows from the parameters of a contact of spring and damper, without fits and findings.
+/// The estimates of a contact of spring and damper from its parameters; fits and findings stay empty.
 pub(super) fn contact_estimates(
     (parameters, scale): (&[f64], &[f64]),
     covariance: impl Fn(usize, usize) -> f64,
@@ -254,7 +257,8 @@ pub(super) fn contact_estimates(
     })
 }
 
-/// A ρ this many standard uncertainties above 0 is resolved: of those that are 0 one in 740 comes out beyond.
+/// ρ counts as resolved from 0 beyond this many of its standard uncertainties: a true 0 passes in 1 of 740
+/// cases.
 const RESOLVED: f64 = 3.0;
 
 /// A Kelvin–Voigt contact from the time to its largest force and its duration, both in s.
@@ -314,7 +318,7 @@ pub fn two_times(
     let times = [time_to_peak, duration];
     contact_estimates((&times, &times), covariance, contact, mass, 2, "closed form from two times")
         .map(|estimates| {
-            // Times that are taken as exact do not show that there is no damping.
+            // Without an uncertainty of the times ξ cannot be called consistent with zero.
             let known = estimates.xi.std.is_some();
             findings.extend(undamped(&estimates.xi).filter(|_| known));
             PulseResult { findings, ..estimates }
@@ -322,10 +326,12 @@ pub fn two_times(
         .ok_or_else(|| Error::refused("the two times belong to no contact"))
 }
 
-/// Half of the interval in which ξ lies where it has no uncertainty, as behind an unknown instrument.
+/// Half-width of the interval of ξ where it has no uncertainty: the low-pass of an unknown instrument moves
+/// ξ by about this much.
 pub(super) const UNKNOWN: f64 = 0.1;
 
-/// That ξ may be zero: by its uncertainty, or, where it has none, by what an unknown instrument may move it.
+/// Caution that ξ is consistent with zero: below twice its standard uncertainty or, without one, below
+/// [`UNKNOWN`].
 pub(super) fn undamped(xi: &Estimate) -> Option<Finding> {
     let found = Finding::caution("pulse-no-damping").number("xi", xi.value);
     let (reach, found) = match xi.std {
@@ -335,7 +341,7 @@ pub(super) fn undamped(xi: &Estimate) -> Option<Finding> {
     (xi.value < reach).then_some(found)
 }
 
-/// ξ of a contact whose peak comes after this part of its duration.
+/// ξ of a contact with the ratio `rho` of time to peak to duration.
 fn damping(rho: f64) -> f64 {
     (PI * (1.0 - 2.0 * rho) / (2.0 * (3.0 - 2.0 * rho))).sin()
 }
@@ -385,8 +391,8 @@ mod two_times {
         assert!(two_times(1.0, 3.0, Some(-1.0), None).is_err());
     }
 
-    /// At both ends of what ρ may be: no uncertainty is stated where ξ may be any of 1/2 and more, and what
-    /// is stated holds.
+    /// At both ends of the range of ρ: no uncertainty is stated where ξ may be anything from 1/2 up, and
+    /// stated uncertainties cover the error.
     #[test]
     fn near_the_ends_what_is_stated_holds() {
         let std = 0.005;
@@ -408,8 +414,9 @@ mod two_times {
                 assert!(found.frequency.std.is_none());
             }
             println!("seeds 0 to 999, ξ = {xi}: {beyond} of {stated} beyond, {withheld} withheld");
-            // 2.7 of 1000 normal errors lie beyond, more than 11 in one run of 10 000. Of ρ = 0 half the
-            // answers are above it, 1.35 beyond RESOLVED, more than 7 in one run of 10 000.
+            // Expected are 2.7 of 1000 normal errors beyond 3 standard uncertainties, and more than 11 in
+            // one run of 10 000. For ρ = 0 half of the answers are above 0: 1.35 are expected beyond
+            // RESOLVED, and more than 7 in one run of 10 000.
             assert!(beyond <= if xi < 0.5 { 11 } else { 7 }, "{xi}: {beyond}");
             assert!(if xi < 0.46 { withheld == 0 } else { xi < 0.49 || withheld > 100 }, "{xi}: {withheld}");
         }

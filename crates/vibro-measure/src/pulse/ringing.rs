@@ -1,21 +1,23 @@
-//! What rings on behind a pulse, and so may have swung within it.
+//! Ringing of a structure after a pulse, which may have disturbed the pulse itself.
 
 use std::f64::consts::PI;
 
-/// A swing within the contact larger than this, in units of what is left there, would show in it.
+/// Largest ringing assumed within the contact, in standard deviations of its residuals: a larger one would
+/// show in them.
 const SHOWS: f64 = 1.2;
 
-/// What a record does behind its pulse.
+/// Ringing of a record after its pulse.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Ringing {
     rms: f64,
-    /// Samples of half a swing.
+    /// Half a period of the ringing, in samples.
     half: f64,
 }
 
 impl Ringing {
-    /// From what is left behind the pulse: half a swing lasts from one side of the root of the mean square to
-    /// the other, without end where it stays on one.
+    /// From the residuals `left` after the pulse, with their mean and root mean square. Half a period is the
+    /// mean time between excursions beyond the root mean square on opposite sides; infinite where all are on
+    /// one side.
     pub fn of(left: &[f64], mean: f64, rms: f64) -> Ringing {
         let (mut side, mut turns) = (0.0, Vec::new());
         for (i, v) in left.iter().map(|v| v - mean).enumerate().filter(|(_, v)| v.abs() > rms) {
@@ -31,9 +33,9 @@ impl Ringing {
         Ringing { rms, half }
     }
 
-    /// Factor of the variance of what `n` samples in a contact state, of which noise leaves this `variance`.
-    /// Half a swing adds up to 2√2/π of its root mean square, noise to the root of n; a swing that is
-    /// larger than what is left would show in it.
+    /// Factor on the variances of parameters from `n` samples in a contact whose residuals have this
+    /// `variance`. Half a period of ringing adds up to 2√2/π of its root mean square a sample, noise to the
+    /// root of n. Ringing above [`SHOWS`] times the residuals would show in them.
     pub fn widening(&self, n: f64, variance: f64) -> f64 {
         let sum = 2.0 * f64::sqrt(2.0) / PI * self.half.min(0.5 * n);
         1.0 + sum * sum / n * (self.rms * self.rms / variance).min(SHOWS * SHOWS)

@@ -1,33 +1,34 @@
 //! Restitution from a train of bounces: flight times shrink by R from bounce to bounce, `ln Δt_n = ln Δt₁ +
 //! (n − 1) ln R`.
 //!
-//! ln R comes from ratios of successive flights, where R scatters from bounce to bounce and the onsets carry
-//! noise.
+//! ln R comes from ratios of successive flight times, since R scatters from bounce to bounce and onsets
+//! carry noise.
 //!
 //! Ratios `y = ln(Δt_b/Δt_a)` have the covariance `s²·(b − a) + σ²AAᵀ`, with A the derivative of y by the
-//! onsets, s the scatter of ln R from bounce to bounce and σ that of an onset. ln R follows by generalised
-//! least squares (Aitken 1935), averaged over s², or s²/σ² where σ is not stated, which the restricted
-//! likelihood (Patterson and Thompson 1971) weighs with its reference prior, the root of its information
-//! (Jeffreys 1946; Berger and Bernardo, *Bayesian Statistics 4*, 1992, 35): it knows that s shows in the
-//! first flights and σ in the last. Where σ is not stated, scatter of R alone has a probability of one half,
-//! and the scale that the residuals give makes Student's distribution.
+//! onsets, s the scatter of ln R from bounce to bounce and σ the standard uncertainty of an onset. For given
+//! s and σ, ln R follows by generalised least squares (Aitken 1935). The result is averaged over s², or over
+//! s²/σ² where σ is not stated. The weight is the restricted likelihood (Patterson and Thompson 1971) times
+//! its reference prior, the root of its information (Jeffreys 1946; Berger and Bernardo, *Bayesian
+//! Statistics 4*, 1992, 35): s dominates the first flights and σ the last. Where σ is not stated, scatter of
+//! R alone has a prior probability of one half, and the residuals give the scale, hence Student's
+//! distribution.
 //!
-//! Where R does not scatter at all the uncertainty is some four times what the onsets alone would make of it:
-//! they rule the last flights, and a scatter that few flights hardly show rules the first.
+//! Where R does not scatter at all, the uncertainty is about four times that by the onsets alone. Onsets
+//! dominate the last flights, but a few flights cannot exclude a scatter of R, which dominates the first.
 
 use super::together;
 use crate::mean::{average, mixture};
 use crate::residuals::{student, widened};
 use nalgebra::{DMatrix, DVector};
 
-/// One flight: place in the train, logarithm of its time.
+/// One flight: its place in the train, and the logarithm of its time in s.
 #[derive(Clone, Copy)]
 pub(super) struct Flight {
     pub place: usize,
     pub log: f64,
 }
 
-/// How far one flight may be off: by R, which scatters from bounce to bounce, and by its two onsets.
+/// Noise of one flight time: of R, which scatters from bounce to bounce, and of its two onsets.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct FlightNoise {
     /// Variance of ln R from bounce to bounce.
@@ -37,7 +38,7 @@ pub(super) struct FlightNoise {
 }
 
 impl FlightNoise {
-    /// Standard uncertainty in s of the first `flight` for what follows from all bounces.
+    /// Standard uncertainty in s of a first flight time of `flight` seconds, against the R of all bounces.
     pub(super) fn of(&self, flight: f64) -> f64 {
         (self.scatter * flight * flight + 2.0 * self.onset).sqrt()
     }
@@ -48,36 +49,37 @@ impl FlightNoise {
     }
 }
 
-/// Prior probability that R alone scatters, where nothing is stated of the onsets.
+/// Prior probability that R alone scatters, where no uncertainty of the onsets is stated: undecided.
 const SCATTER_ALONE: f64 = 0.5;
-/// Variances of R are averaged over from where they show in ln R to where they outdo all else, and this
-/// factor beyond.
+/// The average over s² runs from where s² shows in ln R to where it exceeds all other noise, and this factor
+/// beyond at either end.
 const WIDE: f64 = 1e3;
-/// Steps of the logarithm (to base 10) of a variance.
+/// Step of that average, in decades of s².
 const STEP: f64 = 0.15;
 
-/// What trains of one R tell together.
+/// Joint fit of trains with one R.
 #[derive(Clone, Copy)]
 pub(super) struct TrainFit {
     pub(super) log_r: f64,
-    /// Standard uncertainty of ln R, which three degrees of freedom show.
+    /// Standard uncertainty of ln R; `None` below three degrees of freedom.
     pub(super) std: Option<f64>,
-    /// That of their flights, which one shows.
+    /// Noise of the flights; `None` without a degree of freedom.
     pub(super) noise: Option<FlightNoise>,
 }
 
 /// Flights of a train, and the standard uncertainty of its onsets in s where it is known.
 pub(super) type Timed = (Vec<Flight>, Option<f64>);
 
-/// Sum over `trains` of the squared difference of their own ln R from `log`, over the variance that the
-/// `noise` of flights gives it: χ² with one degree of freedom less than trains, where all have one R.
+/// Sum over `trains` of the squared difference of each one's ln R from `log`, over its variance for this
+/// `noise` of flights: χ² with one degree of freedom less than trains, where all have one R.
 pub(super) fn misfit(trains: &[Timed], log: f64, noise: FlightNoise) -> f64 {
     let node =
         |(flights, _): &Timed| Ratios::new(&[flights], &[1.0], false).node(noise.scatter, noise.onset, false);
     trains.iter().filter_map(node).map(|own| (own.log_r - log).powi(2) / own.variance).sum()
 }
 
-/// ln R of trains and the noise of their flights; `None` without a ratio.
+/// Fits ln R and the noise of flights to trains; `None` without a ratio. With `fall`, all trains follow the
+/// same fall, and their first flights are compared, too.
 pub(super) fn fit(trains: &[Timed], fall: bool) -> Option<TrainFit> {
     let onset_std = together(trains.iter().map(|(_, std)| *std)).filter(|std| *std > 0.0);
     let part = |std: Option<f64>| onset_std.map_or(1.0, |all| std.unwrap_or(all) / all);
@@ -93,7 +95,7 @@ pub(super) fn fit(trains: &[Timed], fall: bool) -> Option<TrainFit> {
     let onsets_alone = ratios.node(0.0, sigma2, scaled)?;
     if free < 3 {
         let log_r = if scaled { scatter_alone.as_ref()?.log_r } else { onsets_alone.log_r };
-        // What R alone explains is the most that the first flights can be off.
+        // All residuals are put down to scatter of R, which bounds the noise of the first flights.
         let scatter = |node: Node| widened(free).powi(2) * node.scale;
         let onset = stated.unwrap_or(0.0);
         let noise =
@@ -107,7 +109,7 @@ pub(super) fn fit(trains: &[Timed], fall: bool) -> Option<TrainFit> {
     let grid = (0..=steps).map(|i| {
         let s2 = least * 10f64.powf(STEP * i as f64);
         let node = ratios.node(s2, sigma2, scaled)?;
-        // Even steps of the logarithm: the density of s² times s².
+        // Even steps of log s²: the prior density of s² is multiplied by s².
         Some((s2 * node.prior, node))
     });
     let mut nodes: Vec<(f64, Node)> = grid.collect::<Option<_>>()?;
@@ -128,34 +130,35 @@ pub(super) fn fit(trains: &[Timed], fall: bool) -> Option<TrainFit> {
 /// A fit for one s² and σ².
 struct Node {
     log_r: f64,
-    /// Its variance, Student's where the scale is that of the residuals.
+    /// Variance of ln R, with Student's factor where the residuals give the scale.
     variance: f64,
-    /// s² and σ², times what the residuals say and Student's factor where they give the scale.
+    /// s² and σ², times the scale and the square of Student's factor where the residuals give the scale.
     noise: [f64; 2],
-    /// Mean square of the residuals over s² and σ², of one degree of freedom each.
+    /// χ² of the residuals for s² and σ², a degree of freedom.
     scale: f64,
     /// `mᵀC⁻¹m`.
     information: f64,
-    /// Restricted log-likelihood but for a constant.
+    /// Restricted log-likelihood, up to a constant.
     likelihood: f64,
-    /// Root of the information on s².
+    /// Reference prior of s²: root of the information on it, up to a factor.
     prior: f64,
 }
 
-/// Ratios of successive flights, and of first flights behind the same fall.
+/// Ratios of successive flights, and of first flights after the same fall.
 struct Ratios {
     /// Their logarithms.
     y: DVector<f64>,
     /// Bounces between them.
     m: DVector<f64>,
-    /// `BBᵀ`, with B the bounces that each has more than the other.
+    /// `BBᵀ`, with B the bounces by which the two flights of each ratio differ.
     scatter: DMatrix<f64>,
     /// `AAᵀ`, in 1/s².
     timing: DMatrix<f64>,
 }
 
 impl Ratios {
-    /// Of trains whose onsets are off by these `parts` of σ.
+    /// Ratios of trains whose onsets have the uncertainties `parts` times σ; with `fall` also those of first
+    /// flights.
     fn new(trains: &[&[Flight]], parts: &[f64], fall: bool) -> Ratios {
         let places = 2 + trains.iter().copied().flatten().map(|f| f.place).max().unwrap_or(0);
         let within = trains
@@ -173,7 +176,8 @@ impl Ratios {
         let mut by_bounce = by_onset.clone();
         for (i, pair) in pairs.iter().enumerate() {
             for ((train, flight), sign) in pair.iter().zip([-1.0, 1.0]) {
-                // A flight is the later onset less the earlier, and has R of each bounce before it.
+                // A flight time is the later onset less the earlier, and contains the R of each bounce
+                // before it.
                 let slope = parts[*train] * sign * (-flight.log).exp();
                 let first = train * places;
                 by_onset[(i, first + flight.place)] -= slope;
@@ -189,19 +193,19 @@ impl Ratios {
         }
     }
 
-    /// Generalised least squares; with `scaled`, all variances are multiplied by what the residuals say.
+    /// Generalised least squares for one s² and σ²; with `scaled` the residuals give their common scale.
     fn node(&self, s2: f64, sigma2: f64, scaled: bool) -> Option<Node> {
         let cholesky = (&self.scatter * s2 + &self.timing * sigma2).cholesky()?;
         let (wm, wy) = (cholesky.solve(&self.m), cholesky.solve(&self.y));
         let (mm, my, yy) = (self.m.dot(&wm), self.m.dot(&wy), self.y.dot(&wy));
         let log_det = 2.0 * cholesky.l().diagonal().iter().map(|d| d.ln()).sum::<f64>();
         let log_r = my / mm;
-        // Roundings of the ratios are no scatter.
+        // At least rounding, so that exact ratios have no residual of zero.
         let rest = (yy - log_r * my).max(1e-15 * yy.abs());
         let free = self.y.len() as f64 - 1.0;
         // Twice Fisher's information of the restricted likelihood on s², tr(PDPD) with P = C⁻¹ −
-        // C⁻¹mmᵀC⁻¹/mᵀC⁻¹m and D the derivative of C by s² (D. Harville, J. Am. Stat. Assoc. 72
-        // (1977) 320); with a scale of C that is not known, what that leaves of it.
+        // C⁻¹mmᵀC⁻¹/mᵀC⁻¹m and D the derivative of C by s² (D. Harville, J. Am. Stat. Assoc. 72 (1977) 320).
+        // Where the scale of C is not known either, the information spent on it (`taken`) is subtracted.
         let pd = (cholesky.inverse() - &wm * wm.transpose() / mm) * &self.scatter;
         let squares = pd.component_mul(&pd.transpose()).sum();
         let scale = rest / free.max(1.0);

@@ -1,16 +1,16 @@
-//! The skirt of a sine: what the window leaves of it beyond its main lobe. Noise on a skirt makes maxima of
-//! lines that are no sines of their own.
+//! The skirt of a sine: its leakage beyond the main lobe of the window. Noise on a skirt makes local maxima
+//! that are no sines of their own.
 
 use crate::line::interpolate;
 use vibro_record::Window;
 use vibro_signal::window::line_shape;
 
-/// The skirts of so many of the largest peaks are counted: each further one is checked against all of them,
-/// and a spectrum without noise has thousands.
+/// Number of the largest peaks whose skirts are counted. Each further peak is checked against all of them,
+/// and a spectrum without noise has thousands of peaks.
 const SKIRTS: usize = 32;
 
-/// The `peaks` that rise above the skirts of larger ones, in order of frequency. `stands_out` says whether
-/// a power at a line is more than noise; it is asked for what is left of a peak without those skirts.
+/// The `peaks` that rise above the skirts of larger ones, in order of frequency. `stands_out` says whether a
+/// power at a line exceeds the noise; it is called with the power of a peak less those skirts.
 pub(super) fn above_skirts(
     mut peaks: Vec<usize>,
     powers: &[f64],

@@ -1,22 +1,22 @@
-//! What samples tell of a fit of sines, those too that are cut off.
+//! Contribution of each sample, clipped ones included, to a fit of sines.
 
 use crate::chance::normal_beyond;
 
-/// What a sample tells of a fit. What lies beyond an end of the range is only known to be beyond it (J.
-/// Tobin, Econometrica 26 (1958) 24): it counts by the curvature of its likelihood.
+/// Contribution of a sample to a fit. A clipped sample is only known to lie beyond an end of the range (J.
+/// Tobin, Econometrica 26 (1958) 24): its weight is the curvature of its likelihood.
 pub(super) struct Left {
     /// Weight in the normal matrix, 1 for a whole sample.
     pub weight: f64,
-    /// Expected value without the sines.
+    /// Expected residual from the sines.
     pub mean: f64,
-    /// Part in the sum of squares of the noise, and in its degrees of freedom.
+    /// Contribution to the sum of squares of the noise; that to its degrees of freedom is `known`.
     pub square: f64,
     pub known: f64,
 }
 
 impl Left {
-    /// From what is left of the value, the side on which it is cut off (0 for none), and the standard
-    /// deviation of the noise.
+    /// From the residual `left` of the sample, the side on which it is clipped (1 or −1, 0 for none), and
+    /// the standard deviation of the noise.
     pub fn of(left: f64, side: f64, noise: f64) -> Left {
         if side == 0.0 {
             return Left { weight: 1.0, mean: left, square: left * left, known: 1.0 };
