@@ -1,4 +1,4 @@
-//! Values to records: which kind they are, over which axis.
+//! Builds records from values: chooses the kind of record and its axis.
 
 use crate::options::Options;
 use vibro_record::code;
@@ -8,7 +8,7 @@ use vibro_record::{
     Trace, Values, Window, is_fine, stretches, uniform_std,
 };
 
-/// What a file states of a spectrum.
+/// What a file says about a spectrum.
 #[derive(Debug, Clone, Default)]
 pub struct Spectral {
     /// Scaling, where it is stated.
@@ -17,15 +17,16 @@ pub struct Spectral {
     pub enbw: Option<f64>,
     /// Whether complex values are stated to be a frequency response function.
     pub frf: bool,
-    /// What to say where the scaling is not known, if not that the file is silent.
+    /// Finding for an unknown scaling; `None` for the usual one, that the file does not state it.
     pub doubt: Option<Finding>,
 }
 
-/// The record of values in SI units: a trace unless they stand over frequency, and a frequency response
-/// function where they are complex and their unit is a ratio of response to force.
+/// The record of values in SI units. Real values are a spectrum over frequency, else a trace. Complex values
+/// are a spectrum, or a frequency response function if the file says so or their unit is a response over
+/// force.
 ///
 /// # Errors
-/// If complex values stand over time.
+/// If values over time are complex.
 pub fn record(mut meta: Meta, axis: Axis, values: Values, said: Spectral) -> Result<Record> {
     let values = match values {
         Values::Complex(_) if axis.kind == AxisKind::Time => return Err(complex_over_time()),
@@ -51,10 +52,10 @@ pub fn complex_over_time() -> Error {
         .setting("base_band")
 }
 
-/// Multiplies values by the factor of their unit.
+/// Multiplies values by the factor of their unit to SI.
 ///
 /// # Errors
-/// If one becomes too large for a number.
+/// If a result overflows a double.
 pub fn to_si(values: &mut Values, factor: f64) -> Result<()> {
     if factor == 1.0 {
         return Ok(());
@@ -68,9 +69,9 @@ pub fn to_si(values: &mut Values, factor: f64) -> Result<()> {
 }
 
 impl Options {
-    /// Adopts the unit of values: what a person states, else what the file says. Returns the factor to SI.
+    /// Sets the unit of a record: the user's, else the file's. Returns the factor to SI.
     pub(crate) fn adopt(&self, meta: &mut Meta, said: Option<&str>) -> f64 {
-        // A coherence beside a function has no unit, whatever that of the function is.
+        // A coherence stored beside an FRF has no unit: a stated unit is meant for the FRF.
         let bare = said.is_none_or(|u| matches!(u.trim(), "" | "1"));
         if self.unit.is_some() && bare && meta.name.to_lowercase().contains("coherence") {
             return meta.adopt_unit("1");
@@ -99,18 +100,18 @@ pub fn domain(kind: &AxisKind) -> (&'static str, &'static str) {
     }
 }
 
-/// An axis that is made of values one by one.
+/// An axis made from individually stored values, and how good it is.
 #[derive(Debug, Clone, PartialEq)]
 pub struct JudgedAxis {
     pub axis: Axis,
-    /// Relative standard uncertainty of an even step.
+    /// Relative standard uncertainty of the step; 0 for an uneven axis.
     pub clock: f64,
-    /// What is to be said of it, where it is uneven, jitters or was printed with too few digits.
+    /// Finding for an axis that is uneven, jitters or was printed with too few digits.
     pub found: Option<Finding>,
 }
 
-/// Judges `values` (SI), of which half a unit in the last digit is `resolution`; `what` names them, e.g.
-/// `column "t"`. Instants that jitter stay as they are where they are `resampled`.
+/// Decides whether `values` (SI units) form an even axis. `resolution` is half a unit in their last digit;
+/// `what` names them in findings, e.g. `column "t"`. Jittering times are kept if `resampled`, else made even.
 pub fn from_values(
     kind: AxisKind,
     values: Vec<f64>,
@@ -120,7 +121,8 @@ pub fn from_values(
 ) -> JudgedAxis {
     let n = values.len();
     let mean = (values.last().unwrap_or(&0.0) - values.first().unwrap_or(&0.0)) / n.max(2) as f64;
-    // Digits that are fine hide nothing, and equal steps of any size nothing that can be seen.
+    // Fine digits: even to within the resolution is even. Coarse digits could hide unevenness: steps must be
+    // equal.
     let tolerance = if is_fine(resolution, mean) { resolution } else { EQUAL * resolution };
     let axis = Axis::from_values(kind, values, tolerance);
     let Axis { kind, grid: Grid::Uneven(values) } = axis else {
@@ -142,7 +144,7 @@ pub fn from_values(
         Some(found.count("long", long).count("n", n - 1))
     };
     let between_gaps = if time && clock.is_none() { stretches(&values, resolution) } else { Vec::new() };
-    // One stretch that holds all instants has no gap beside it, and none in it where it is calm.
+    // One stretch over all instants means no gaps beside it; small jitter means none within it.
     let whole = between_gaps.first().filter(|stretch| stretch.samples == (0..n)).map(|stretch| stretch.clock);
     let clock = clock.or(whole.filter(|clock| clock.jitter <= CALM * clock.step));
     let kept = resampled && clock.is_some_and(|clock| clock.jitter > 0.0) && smallest > 0.0;
@@ -152,7 +154,7 @@ pub fn from_values(
         let grid = Grid::Even { start: clock.start, step: clock.step, n };
         return JudgedAxis { axis: Axis { kind, grid }, clock: clock.relative(), found };
     }
-    // Several samples within one printed digit have one time.
+    // Samples closer than the last printed digit share one time: that is no step backwards.
     let rises = smallest > 0.0 || (smallest == 0.0 && !is_fine(resolution, mean));
     let gaps = with_gaps(&between_gaps, if rises { code::SAMPLES_LOST } else { code::AXIS_BACKWARDS });
     let code = if smallest > 0.0 { "axis-uneven" } else { code::AXIS_BACKWARDS };
@@ -161,11 +163,11 @@ pub fn from_values(
     JudgedAxis { axis: Axis { kind, grid: Grid::Uneven(values) }, clock: 0.0, found }
 }
 
-/// Largest RMS jitter of a clock, as a part of its step, that is no pattern of lost samples: every third one
-/// lost leaves 1/6 about another even grid, and all others more.
+/// Largest RMS jitter, over the step, that is taken for an even clock without lost samples. Losing every
+/// third sample leaves a jitter of 1/6 about another even grid; other patterns leave more.
 const CALM: f64 = 0.1;
 
-/// What is said, under this code, of times with even stretches between lost samples, pauses or restarts.
+/// Finding `code` on times with even stretches between lost samples, pauses or restarts.
 fn with_gaps(all: &[Stretch], code: &'static str) -> Option<Finding> {
     let (number, longest) = Stretch::longest(all)?;
     let (rate, std) = longest.clock.rate();
@@ -176,37 +178,38 @@ fn with_gaps(all: &[Stretch], code: &'static str) -> Option<Finding> {
     Some(if all.len() <= LISTED { found.numbers("durations", durations) } else { found })
 }
 
-/// Part of half a printed digit by which equal steps may differ: binary numbers of s since 1970 are off by
-/// 1e-7 s.
+/// Tolerance for equal steps, over half a unit in the last digit: doubles of s since 1970 are rounded by 1e-7
+/// s.
 const EQUAL: f64 = 1e-2;
 
-/// Relative difference between the rate that a logger or a telephone was set to and that of its clock.
+/// Largest relative difference between the nominal rate of a logger or telephone and the rate of its clock.
 pub const NOMINAL: f64 = 1e-2;
 
-/// Stretches that are listed one by one.
+/// Most stretches whose durations a finding lists one by one.
 const LISTED: usize = 12;
 
-/// What a file says of an abscissa.
+/// What a file says about an abscissa, in SI units.
 pub struct Abscissa {
     pub kind: AxisKind,
     /// Start and step.
     pub even: Option<(f64, f64)>,
-    /// Instants or lines that are stored one by one; empty where there are none.
+    /// Instants or spectral lines that are stored one by one; empty where there are none.
     pub stored: Vec<f64>,
-    /// Half a unit in the last digit of those.
+    /// Half a unit in the last digit of the stored values.
     pub resolution: f64,
 }
 
-/// How far the end of lines may be from a stated base band, as a part of it: three digits are stated.
+/// Largest relative distance between the end of the spectral lines and a stated base band: three digits are
+/// stated.
 const BAND: f64 = 5e-3;
 
 impl Abscissa {
-    /// Values at equal distances.
+    /// An abscissa with even start and step, or without any.
     pub fn even(kind: AxisKind, even: Option<(f64, f64)>) -> Abscissa {
         Abscissa { kind, even, stored: Vec::new(), resolution: 0.0 }
     }
 
-    /// That of an axis that is known.
+    /// The abscissa of a known axis.
     pub fn of(axis: Axis) -> Abscissa {
         match axis {
             Axis { kind, grid: Grid::Even { start, step, .. } } => Abscissa::even(kind, Some((start, step))),
@@ -214,8 +217,8 @@ impl Abscissa {
         }
     }
 
-    /// The axis of `n` values. A stated rate wins, then a step, then what is stored. A step that is no step
-    /// leaves numbered values, and so does a file that says nothing.
+    /// The axis of `n` values. A stated rate wins, then the file's step, then stored values. Sample numbers
+    /// are used if the step is not positive and finite, or the file says nothing.
     pub fn axis(self, n: usize, options: &Options, meta: &mut Meta) -> Axis {
         let Abscissa { kind, even, stored, resolution } = self;
         let silent = even.is_none() && stored.len() != n;
@@ -224,7 +227,8 @@ impl Abscissa {
         }
         if let Some(band) = options.base_band {
             let ends_at = |end: f64| (end - band).abs() <= BAND * band;
-            // LabVIEW calls the axis of a spectrum a time. Lines may end one step before the base band.
+            // LabVIEW labels the axis of a spectrum as time. The last line may lie one step below the base
+            // band.
             if let (AxisKind::Time, Some((0.0, step))) = (&kind, even)
                 && (ends_at(step * n as f64) || ends_at(step * n.saturating_sub(1) as f64))
             {
@@ -236,7 +240,7 @@ impl Abscissa {
             (Some(rate), _) => {
                 let (start, step) = even.unzip();
                 let said = 1.0 / rate;
-                // Files print six digits.
+                // Files print six digits: smaller differences are rounding.
                 if !silent && step.is_none_or(|step| (step / said - 1.0).abs() > 1e-5) {
                     let found = match step {
                         Some(step) => Finding::caution("rate-overrides-step").number("step", step),
@@ -251,7 +255,7 @@ impl Abscissa {
                 meta.found(Finding::caution(code::ABSCISSA_UNSAID));
                 return Axis::index(n);
             }
-            // Lines of a spectrum are used one by one and keep their frequencies.
+            // Spectral lines keep their stored frequencies: they are used one by one.
             (None, None) if kind != AxisKind::Time => return Axis { kind, grid: Grid::Uneven(stored) },
             (None, None) => {
                 let judged = from_values(kind, stored, resolution, "abscissa", options.resample.is_some());
@@ -268,8 +272,8 @@ impl Abscissa {
     }
 }
 
-/// Sums of steps drift by rounding: a millionth of a step is no unevenness. Floats of 32 bits round to 2⁻²⁴,
-/// those of 64 to 2⁻⁵³.
+/// Tolerance for even `values`, in their unit: half a millionth of the mean step, for sums of steps drift by
+/// rounding, and at least the rounding of the values (2⁻²⁴ for 32-bit floats, else 2⁻⁵³).
 pub fn drift(values: &[f64], single: bool) -> f64 {
     let (first, last) = (values[0], values[values.len() - 1]);
     let drift = 0.5e-6 * (last - first) / (values.len() - 1).max(1) as f64;
@@ -277,8 +281,8 @@ pub fn drift(values: &[f64], single: bool) -> f64 {
     drift.max(first.abs().max(last.abs()) * digits / 2.0)
 }
 
-/// The kind of abscissa that a unit is of. Revolutions have the dimension of a frequency, yet are no
-/// frequency axis.
+/// The kind of abscissa that a unit implies: time or frequency. A unit such as rpm has the dimension of a
+/// frequency, but gives no frequency axis.
 pub fn kind_of(unit: &Unit) -> Option<AxisKind> {
     match unit.quantity() {
         Quantity::Time => Some(AxisKind::Time),
@@ -287,7 +291,7 @@ pub fn kind_of(unit: &Unit) -> Option<AxisKind> {
     }
 }
 
-/// Unit of a time without one that is counted from 1970, from 2001 to 2096, and its factor to s.
+/// Unit and factor to s of a time since 1970 that has no unit: the one that gives a date from 2001 to 2096.
 pub fn epoch(first: f64) -> Option<(&'static str, f64)> {
     let since_1970 = |(_, factor): &(&str, f64)| (1e9..4e9).contains(&(first * factor));
     [("s", 1.0), ("ms", 1e-3), ("µs", 1e-6), ("ns", 1e-9)].into_iter().find(since_1970)
@@ -296,9 +300,9 @@ pub fn epoch(first: f64) -> Option<(&'static str, f64)> {
 /// Seconds of a day.
 pub const DAY: f64 = 86_400.0;
 
-/// Whether times without a unit are days as sheets count them: from 1900 or 1904, here from 1982 to 2064,
-/// with a row a second or more, for as seconds no record that begins so late has so short steps; or parts of
-/// a day at 1 to 1000 whole hertz, for as seconds their rate is that many times 86 400 Hz.
+/// Whether times without a unit are days as spreadsheets count them. Either dates from 1982 to 2064, with at
+/// least a row a second: as seconds, no record begins so late with such short steps. Or fractions of a day at
+/// 1 to 1000 whole hertz: as seconds, the rate would be 86 400 times that.
 pub fn is_serial(times: &[f64]) -> bool {
     let (Some(first), Some(last)) = (times.first(), times.last()) else { return false };
     let step = (last - first) / (times.len() as f64 - 1.0);
@@ -308,12 +312,12 @@ pub fn is_serial(times: &[f64]) -> bool {
     dated && rate > 0.99 || whole && *first >= 0.0 && *last < 1.0
 }
 
-/// What to say where a file declares another number of values than it holds.
+/// Finding that a file holds fewer values than it declares.
 pub fn fewer(declared: usize, n: usize) -> Finding {
     Finding::caution("fewer-values").count("declared", declared).count("n", n)
 }
 
-/// Six digits are enough for a sentence.
+/// Rounds to six significant digits, enough for a message.
 pub fn short(value: f64) -> f64 {
     format!("{value:.5e}").parse().unwrap_or(value)
 }
@@ -322,15 +326,15 @@ pub fn short(value: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// A logger of ten samples a second that prints whole ones, started within one.
+    /// A logger with 10 samples a second that prints whole seconds and starts within one.
     #[test]
     fn whole_seconds_of_a_faster_logger_give_its_rate() {
         for n in [34, 65, 1003] {
             let printed = (0..n).map(|i| (0.7 + 0.1 * f64::from(i)).floor()).collect();
             let JudgedAxis { axis, found, .. } =
                 from_values(AxisKind::Time, printed, 0.5, "column \"t\"", false);
-            // 0.7 + 0.1 i meets a whole second or just misses it by rounding: one sample in all that lie
-            // between.
+            // Rounding puts 0.7 + 0.1 i on a whole second or just below it: at most one sample off in all
+            // that lie between.
             assert!((axis.step().unwrap() - 0.1).abs() < 0.1 / f64::from(n - 20), "{n}: {:?}", axis.step());
             assert_eq!(found.unwrap().code, "axis-rounded");
         }
@@ -372,8 +376,8 @@ mod tests {
         }
     }
 
-    /// Instants off by up to 0.16 of a step have one even grid and nothing lost; a sample lost among them
-    /// leaves a step of 1.68 and more. Where every third is lost, the rest is near another grid.
+    /// Instants off by up to 0.16 of a step lie on one even grid with nothing lost; a lost sample leaves a
+    /// step of at least 1.68. With every third sample lost, the others lie near another even grid.
     #[test]
     fn a_clock_that_jitters_without_a_gap_is_even() {
         let off = |i: i32| 0.16 * (f64::from((i * 7919) % 1000) / 500.0 - 1.0);

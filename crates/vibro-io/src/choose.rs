@@ -1,4 +1,4 @@
-//! Records of a file as a person names them: one of a recording, or time traces block by block.
+//! Finds records as the user names them: one of a recording, or time traces to be read block by block.
 
 use crate::format::Format;
 use crate::held::rises;
@@ -12,8 +12,8 @@ use crate::wav::Wave;
 use std::path::Path;
 use vibro_record::{Error, Place, Record, Result, Spectrum, Stream as _, Trace, Traces, find_channel, lanes};
 
-/// Texts of fewer bytes are held, which saves reading them twice: their values take less than 256 MB, for a
-/// value takes two bytes with what ends it.
+/// Size in bytes from which a text is streamed. A shorter one is held in memory, which saves reading it
+/// twice: a value has at least two bytes with its separator, so its values take less than 256 MiB.
 const LONG: u64 = 64 << 20;
 
 impl Reader {
@@ -21,7 +21,7 @@ impl Reader {
     ///
     /// # Errors
     /// As [`Reader::from_path`]; if the file holds no trace, or its traces have no sampling rate, or
-    /// different rates, lengths or start times: [`Reader::stream_channels`] takes those that belong
+    /// different rates, lengths or start times. [`Reader::stream_channels`] reads only those that belong
     /// together.
     pub fn stream(&self, path: impl AsRef<Path>) -> Result<Traces> {
         self.stream_channels(path, &[])
@@ -35,7 +35,7 @@ impl Reader {
     pub fn stream_channels(&self, path: impl AsRef<Path>, channels: &[&str]) -> Result<Traces> {
         let source = self.source(path)?;
         let path = source.path().to_owned();
-        // What is packed is held.
+        // An archive or a workbook is read as a whole.
         if packed::is_packed(&source) {
             return self.held(&source, channels);
         }
@@ -49,7 +49,7 @@ impl Reader {
             let (findings, frames) = (wave.layout.findings.clone(), wave.frames());
             return Traces::of_stream(path, findings, &traces, frames, Box::new(wave));
         }
-        // What is wrong with a text is said where it is read as a whole.
+        // If streaming fails, reading the text as a whole below reports the error.
         let long = || text::stream(&source, &self.options, format).ok().flatten();
         if as_it_is
             && self.options.span.is_none()
@@ -65,7 +65,7 @@ impl Reader {
         self.held(&source, channels)
     }
 
-    /// Traces of a source that is read as a whole.
+    /// Traces of a source, read into memory as a whole.
     fn held(&self, source: &Source, channels: &[&str]) -> Result<Traces> {
         let path = source.path().to_owned();
         let asked = self.clone().only(channels.iter().map(|&name| name.to_owned()));
@@ -81,8 +81,8 @@ impl Reader {
         Traces::of_file(path, recording.findings, traces)
     }
 
-    /// One channel to be read block by block, behind the channel `reference` where there is one; a
-    /// `calibration` multiplies it. Where none is named it is the only one, or the only other one.
+    /// One channel to be read block by block, after the channel `reference` if there is one; `calibration`
+    /// multiplies its values. A channel that is not named must be the only one beside the reference.
     ///
     /// # Errors
     /// As [`Reader::stream_channels`]; if there are several channels and none was named.
@@ -123,8 +123,8 @@ impl Reader {
     }
 }
 
-/// The one of several traces that is most likely meant: of those in the unit of the first the one that moves
-/// most, and none that only counts or is a magnitude.
+/// Index of the trace that is most likely meant: the one with the largest sum of squares about its mean, in
+/// the unit of the first; no magnitude, and no trace that only rises, as a counter does.
 fn likeliest(traces: &[(usize, &Trace)]) -> usize {
     let suited = |i: &usize| !traces[*i].1.meta.has(MAGNITUDE) && !rises(&traces[*i].1.values);
     let Some(first) = (0..traces.len()).find(suited) else { return 0 };
@@ -138,8 +138,8 @@ fn likeliest(traces: &[(usize, &Trace)]) -> usize {
     all.max_by(|a, b| motion(a).total_cmp(&motion(b))).unwrap_or(first)
 }
 
-/// The complaint that none of several channels, each with its place in the file, was chosen, and the `best`
-/// of them to try; one whose name is not its own goes by its number.
+/// Error that none of several channels, each with its place in the file, was chosen. It suggests the one at
+/// `best`, by name or, where names repeat, by number.
 fn none_chosen(path: &Path, channels: &[(usize, &str)], best: usize) -> Error {
     let names: Vec<&str> = channels.iter().map(|channel| channel.1).collect();
     let found = format!("{} channels, and none was chosen", names.len());
@@ -175,7 +175,7 @@ impl Recording {
         calibrated(self.chosen(channel)?.1.clone(), calibration)
     }
 
-    /// As [`Recording::trace`], with the values taken out of the recording instead of held twice.
+    /// As [`Recording::trace`], but moves the values out of the recording, which saves memory.
     ///
     /// # Errors
     /// As there.
@@ -212,7 +212,7 @@ impl Recording {
         Ok(spectra[chosen.map_err(|e| e.setting("channel"))?])
     }
 
-    /// The trace that is meant, and its place among the records.
+    /// The chosen trace, and its index among the records.
     fn chosen(&self, channel: Option<&str>) -> Result<(usize, &Trace)> {
         let trace =
             |i: usize| if let Record::Trace(trace) = &self.records[i] { Some((i, trace)) } else { None };

@@ -1,4 +1,4 @@
-//! Names and bytes of a run: a folder on disk, or one in memory.
+//! File access of a run: a folder on disk, or one in memory.
 
 mod lock;
 mod manifest;
@@ -23,8 +23,8 @@ use vibro_record::{Error, Place, Result};
 /// A SHA-256.
 pub type Digest = [u8; 32];
 
-/// The only way of a run to names and bytes. Paths are those that a person sees: the folder's own path and a
-/// name in it.
+/// A folder; a run reaches files only through it. Paths are as the user sees them: the folder's own path
+/// joined with a name in it.
 ///
 /// ```
 /// use std::path::Path;
@@ -40,7 +40,7 @@ pub struct Folder {
     root: PathBuf,
     outside: bool,
     side: Side,
-    /// Files that were opened as measurements, by what tells them apart whatever their names are.
+    /// Files opened as measurements, by an identity that is the same under all their names.
     opened: Arc<Mutex<BTreeSet<PathBuf>>>,
 }
 
@@ -54,7 +54,7 @@ enum Side {
     Memory(Arc<Mutex<Files>>),
 }
 
-/// What has a path.
+/// What exists at a path.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Occupant {
     /// Nothing.
@@ -91,7 +91,7 @@ impl Folder {
         Folder { side: Side::Memory(Arc::new(Mutex::new(files))), ..Folder::from(root) }
     }
 
-    /// Another folder of the same disk or memory. Both know what was opened in either.
+    /// Another folder of the same disk or memory. Both share the record of opened files.
     pub fn at(&self, root: impl Into<PathBuf>) -> Folder {
         Folder { root: root.into(), ..self.clone() }
     }
@@ -110,9 +110,9 @@ impl Folder {
     /// link, unless that is allowed.
     ///
     /// # Errors
-    /// As said.
+    /// If the name leads outside and that is not allowed.
     pub fn path(&self, name: &Path) -> Result<PathBuf> {
-        // Lists come from DOS machines, too.
+        // Lists written on DOS separate folders by backslashes.
         let name = PathBuf::from(name.to_string_lossy().replace('\\', "/"));
         let path = self.root.join(&name);
         if self.outside {
@@ -137,8 +137,8 @@ impl Folder {
             .setting("allow_outside"))
     }
 
-    /// Where a path leads through links, if that is outside. A file that is yet to be written lies where its
-    /// folder does.
+    /// The target of a path that leads outside the folder through links; `None` if it stays inside. A file
+    /// not yet written counts as inside if its folder is.
     fn leads_outside(&self, path: &Path) -> Option<PathBuf> {
         let (Side::Disk, false) = (&self.side, self.outside) else { return None };
         let root = real(&self.root)?;
@@ -146,7 +146,7 @@ impl Folder {
         (!target.starts_with(root)).then_some(target)
     }
 
-    /// What has this path; links are not followed.
+    /// What exists at this path; links are not followed.
     pub fn occupant(&self, path: &Path) -> Occupant {
         self.occupant_by(path, |path| fs::symlink_metadata(path))
     }
@@ -170,13 +170,13 @@ impl Folder {
         }
     }
 
-    /// Whether there is anything of this path, at the end of links, or a file that may have such a part.
+    /// Whether anything exists at this path, links followed, or the path may name a part of an existing file.
     pub fn exists(&self, path: &Path) -> bool {
         self.occupant_by(path, |path| fs::metadata(path)) != Occupant::Nothing || self.part(path).is_some()
     }
 
-    /// Where a path means a part of a file, an archive's `walk.zip/Gyroscope.csv` or a workbook's
-    /// `walk.xlsx/Sheet 2`: the file, and the name of the part, which reading it looks for.
+    /// Splits a path that names a part of a file, an archive's `walk.zip/Gyroscope.csv` or a workbook's
+    /// `walk.xlsx/Sheet 2`, into file and part. Whether the part exists shows only on reading.
     pub fn part<'a>(&self, path: &'a Path) -> Option<(&'a Path, &'a Path)> {
         let file = path
             .ancestors()
@@ -185,7 +185,7 @@ impl Folder {
         self.is_file(file).then_some((file, name))
     }
 
-    /// The file in which a path lies: its own, or that of which it means a part.
+    /// The file at a path, or the file of which the path names a part.
     pub fn file<'a>(&self, path: &'a Path) -> &'a Path {
         self.part(path).map_or(path, |(file, _)| file)
     }
@@ -219,8 +219,8 @@ impl Folder {
         names
     }
 
-    /// Makes the folder, with those above it, and gives the right to write into it until that is dropped.
-    /// Memory needs neither.
+    /// Creates the folder with its parents and locks it for writing until the lock is dropped; temporary
+    /// files of killed programs are removed. A folder in memory needs neither: `None`.
     ///
     /// # Errors
     /// If the folder or the file of the lock cannot be made, or another program is writing there.
@@ -235,9 +235,9 @@ impl Folder {
         Ok(Some(lock))
     }
 
-    /// The bytes of a file, one after the other.
+    /// Opens a file to read its bytes in order.
     fn open(&self, path: &Path) -> Result<Box<dyn Read>> {
-        // A pipe of that name would wait for ever.
+        // Opening a pipe would block for ever.
         if self.exists(path) && !self.is_file(path) {
             return Err(Error::input(Place::file(path), "not a regular file", "a file"));
         }
@@ -261,13 +261,13 @@ impl Folder {
         Ok(bytes)
     }
 
-    /// The bytes of a file of this name in the folder itself; nothing where that is a link or cannot be read.
+    /// The bytes of a file of this name in the folder itself; `None` where it is a link or cannot be read.
     pub fn own_file(&self, name: &str) -> Option<Vec<u8>> {
         let path = self.root.join(name);
         if self.occupant(&path) == Occupant::File { self.read(&path).ok() } else { None }
     }
 
-    /// The SHA-256 of a regular file, whole where a part is named, of which only a part is held at a time.
+    /// The SHA-256 of a regular file, read 64 KiB at a time; of the whole file where the path names a part.
     ///
     /// # Errors
     /// As [`Folder::read`].
@@ -281,7 +281,8 @@ impl Folder {
         }
     }
 
-    /// A file to be read as a measurement, of which [`Folder::part`] says no part; `-` is standard input.
+    /// Opens a file as a measurement and remembers that; the path names no part of a file, see
+    /// [`Folder::part`]. `-` is standard input.
     ///
     /// # Errors
     /// As [`Source::file`].
@@ -293,18 +294,18 @@ impl Folder {
         }
     }
 
-    /// States that a run reads a file, be it that it knows the content from an earlier run.
+    /// Remembers that the run reads a file, even if its content is known from an earlier run.
     pub fn reads(&self, path: &Path) {
         locked(&self.opened).extend(self.identity(path));
     }
 
-    /// Whether a run reads a file, under this name or another.
+    /// Whether the run reads a file, under this name or another.
     pub fn opened(&self, path: &Path) -> bool {
         self.identity(path).is_some_and(|file| locked(&self.opened).contains(&file))
     }
 
-    /// What tells a file apart whatever its names are; nothing where there is none. `-` is the file that
-    /// standard input comes from.
+    /// Identity of a file under all its names: device and inode on Unix, else the canonical path; `None` if
+    /// there is no file. `-` is the file that standard input comes from.
     fn identity(&self, path: &Path) -> Option<PathBuf> {
         let path = self.file(path);
         if matches!(self.side, Side::Memory(_)) {
@@ -325,7 +326,7 @@ impl Folder {
         matches!(self.side, Side::Disk) && fs::metadata(path).is_ok_and(|meta| meta.permissions().readonly())
     }
 
-    /// Length and time of a file, of the whole where a part is named.
+    /// Length in bytes and time of the last change of a file; of the whole file where the path names a part.
     pub fn stamp(&self, path: &Path) -> Option<(u64, SystemTime)> {
         let path = self.file(path);
         match &self.side {
@@ -338,17 +339,17 @@ impl Folder {
     }
 }
 
-/// A path without `.` in it.
+/// A path without its `.` parts.
 pub fn plain(path: &Path) -> PathBuf {
     path.components().filter(|part| *part != Component::CurDir).collect()
 }
 
-/// The folder of the empty path is that in which the program runs.
+/// The path itself, or `.` (the current folder) for the empty path.
 fn or_here(path: &Path) -> &Path {
     if path.as_os_str().is_empty() { Path::new(".") } else { path }
 }
 
-/// The one true path of a file or folder, links followed.
+/// The canonical path of a file or folder, links followed; `None` if it does not exist.
 fn real(path: &Path) -> Option<PathBuf> {
     or_here(path).canonicalize().ok()
 }

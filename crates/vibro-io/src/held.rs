@@ -1,4 +1,4 @@
-//! What a reader holds of values: all of them, or, where a survey asks for no more, their ends.
+//! Values in memory: all of them, or only their extremes where a survey needs no more.
 
 use crate::assemble::{self, NOMINAL, Spectral};
 use crate::options::Options;
@@ -6,8 +6,8 @@ use vibro_record::code;
 use vibro_record::lanes::{Extremes, OPENING};
 use vibro_record::{Axis, AxisKind, Error, Finding, Meta, Record, Result, Values, units};
 
-/// Values, or the ends of real ones of which some fall and none is missing: they are no abscissa, and nothing
-/// is to be said of any of them.
+/// Values, or only the extremes of real values that do not all rise and of which none is missing: such values
+/// are no abscissa and need no finding.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Held {
     Values(Values),
@@ -32,7 +32,7 @@ impl Held {
         matches!(self, Held::Values(Values::Complex(_)))
     }
 
-    /// The values, where they rise.
+    /// The values, if there are several and they rise.
     pub fn rising(&self) -> Option<&[f64]> {
         match self {
             Held::Values(Values::Real(values)) if values.len() > 1 && rises(values) => Some(values),
@@ -48,7 +48,7 @@ impl Held {
         }
     }
 
-    /// The first real values, as many as of a survey.
+    /// The first real values, as many as a survey keeps.
     pub fn opening(&self) -> &[f64] {
         match self {
             Held::Ends(ends) => ends.opening(),
@@ -56,15 +56,15 @@ impl Held {
         }
     }
 
-    /// All values, where they may have gaps.
+    /// All values, where they were kept: only these can have missing ones.
     pub fn values_mut(&mut self) -> Option<&mut Values> {
         if let Held::Values(values) = self { Some(values) } else { None }
     }
 
-    /// Multiplies by the factor of a unit.
+    /// Multiplies values or extremes by the factor of a unit.
     ///
     /// # Errors
-    /// If a value becomes too large for a number.
+    /// If a value overflows a double.
     pub fn scale(&mut self, factor: f64) -> Result<()> {
         match self {
             Held::Values(values) => assemble::to_si(values, factor),
@@ -75,7 +75,7 @@ impl Held {
     /// The record of these values, see [`assemble::record`].
     ///
     /// # Errors
-    /// As there.
+    /// As [`assemble::record`].
     pub fn record(self, meta: Meta, axis: Axis, said: Spectral) -> Result<(Record, Option<Extremes>)> {
         let (values, ends) = match self {
             Held::Values(values) => (values, None),
@@ -95,10 +95,10 @@ pub fn rises(values: &[f64]) -> bool {
     values.is_sorted_by(|a, b| a < b)
 }
 
-/// What is said of instants with gaps until one of their stretches is used.
+/// Findings on gaps between samples: dropped once a single stretch is kept.
 const GAPS: [&str; 2] = [code::SAMPLES_LOST, code::AXIS_BACKWARDS];
 
-/// Records of a file, with the ends of those whose values were not kept.
+/// Records of a file, with the extremes of those whose values were not kept, and findings on the file.
 #[derive(Debug, Default)]
 pub struct Contents {
     pub records: Vec<(Record, Option<Extremes>)>,
@@ -106,12 +106,12 @@ pub struct Contents {
 }
 
 impl Contents {
-    /// Of a file of which all values were kept.
+    /// Contents of a file with all values kept.
     pub fn of(records: impl IntoIterator<Item = Record>, findings: Vec<Finding>) -> Contents {
         Contents { records: records.into_iter().map(|record| (record, None)).collect(), findings }
     }
 
-    /// The same with traces made even as a person states: one stretch of each, or interpolated.
+    /// Makes traces even as the user states: keeps one stretch of each, or resamples them.
     ///
     /// # Errors
     /// If there is no such stretch, or a trace cannot be interpolated.
@@ -140,11 +140,12 @@ impl Contents {
                 }
             }
         }
-        // The stretch that is used has no gaps.
+        // The stretch that is kept has no gaps.
         let kept = |found: &Finding| options.stretch.is_none() || !GAPS.contains(&&*found.code);
         self.findings.retain(kept);
         self.records.iter_mut().for_each(|(record, _)| record.meta_mut().findings.retain(kept));
-        // One channel of noise loses only itself, unless it is asked for.
+        // A channel that cannot be resampled is only reported, unless the user asked for it or no channel can
+        // be.
         let all = left_out.len() == self.records.len();
         for (number, error) in left_out {
             let meta = self.records[number].0.meta_mut();

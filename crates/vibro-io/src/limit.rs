@@ -1,4 +1,5 @@
-//! How much memory a reader may fill: asked before anything is held whose size a file says.
+//! Limit of the memory that a reader may fill: checked before memory is reserved for a size that a file
+//! declares.
 
 use std::sync::OnceLock;
 use vibro_record::units::notation::significant;
@@ -6,15 +7,16 @@ use vibro_record::{Error, Result};
 
 /// Bytes in a GB.
 const GB: f64 = 1e9;
-/// Memory in bytes of a machine that does not say how much it has.
+/// Memory in bytes that is assumed for a machine that does not tell its own.
 const UNKNOWN: f64 = 4.0 * GB;
-/// Part of the machine's memory that a hint names at most: the system and other programs need theirs.
+/// Largest part of the machine's memory that a hint suggests as limit: the system and other programs need the
+/// rest.
 const MOST_OF_MACHINE: f64 = 0.8;
 
-/// Stated for all readers of the program.
+/// Limit in bytes stated for all readers of the program.
 static STATED: OnceLock<f64> = OnceLock::new();
 
-/// The most memory in bytes that the values of a file may take, with what is made of them.
+/// The most memory in bytes for the values of a file and the results computed from them.
 ///
 /// ```
 /// use vibro_io::Limit;
@@ -33,7 +35,7 @@ impl Default for Limit {
 }
 
 impl Limit {
-    /// Makes it the default of all readers; the first one stated holds.
+    /// Makes it the default of all readers; only the first call has an effect.
     pub fn state(self) {
         let _ = STATED.set(self.0);
     }
@@ -47,15 +49,15 @@ impl Limit {
         (bytes.is_finite() && bytes > 0.0).then_some(Limit(bytes))
     }
 
-    /// Whether so many bytes may be held.
+    /// Checks that this many bytes may be held.
     ///
     /// # Errors
-    /// If they may not: with what they are, and the limit that they fit in where the machine has that memory.
+    /// If they may not: the error states the memory needed and, where the machine has it, the limit to set.
     pub(crate) fn hold(self, bytes: f64) -> Result<()> {
         self.hold_or(bytes, |error| error.hint("of several channels, name one").setting("channel"))
     }
 
-    /// As [`Limit::hold`], with what else to try where the machine has too little memory.
+    /// As [`Limit::hold`]; `advice` adds what else to try where the machine has too little memory.
     pub(crate) fn hold_or(self, bytes: f64, advice: impl FnOnce(Error) -> Error) -> Result<()> {
         if bytes <= self.0 {
             return Ok(());
@@ -67,7 +69,7 @@ impl Limit {
         };
         let found = format!("it needs {} of memory, the limit is {}", size(bytes), size(self.0));
         let error = Error::usage(found, "");
-        // A tenth more is for the program itself, and for rounding.
+        // A tenth more, for the program itself and for rounding.
         let enough = (1.1 * bytes / GB).max(0.1);
         Err(if enough * GB <= MOST_OF_MACHINE * machine() {
             error.set("max_memory", format!("{}GB", (enough * 10.0).ceil() / 10.0))

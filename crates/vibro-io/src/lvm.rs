@@ -14,8 +14,8 @@
 //!                 0.914018  1.204792
 //! ```
 //! Source: National Instruments, "Specification for the LabVIEW Measurement File". A later segment begins
-//! with a head of its own behind a blank line; its channels are records of their own. What stands between
-//! `***Start_Special***` and `***End_Special***` is passed over.
+//! with its own header after a blank line; its channels become separate records. Text between
+//! `***Start_Special***` and `***End_Special***` is skipped.
 
 use super::missing::{self, Missing};
 use super::text::decoded::in_line;
@@ -33,7 +33,7 @@ use vibro_record::{AxisKind, Error, Finding, Meta, Place, Record, Result, Values
 const BEGIN: &str = "LabVIEW Measurement";
 const END_OF_HEADER: &str = "***End_of_Header***";
 const SPECIAL: [&str; 2] = ["***Start_Special***", "***End_Special***"];
-/// Comments that are kept of a segment.
+/// Most comments kept of a segment: each record of it takes them all as notes.
 const MOST_COMMENTS: usize = 100;
 
 pub(super) fn sniff(head: &[u8], _: &Source) -> bool {
@@ -103,19 +103,19 @@ impl<'a> Iterator for NumberedLines<'a> {
     }
 }
 
-/// Whether the first cell of a line that is not blank holds a number.
+/// Whether the first cell with text in a line is a number or stands for a missing value.
 fn is_row(line: &str, separator: char) -> bool {
     let cell = line.split(separator).map(str::trim).find(|cell| !cell.is_empty()).unwrap_or_default();
     number::either(cell.as_bytes()).is_some() || number::is_missing(cell.as_bytes())
 }
 
-/// Tags in lower case, each with its values; those of a channel stand above its column.
+/// A header: tags in lower case, each with its values; a channel's values have the index of its column.
 #[derive(Debug, Default)]
 struct Head<'a> {
     tags: HashMap<String, Vec<&'a str>>,
-    /// Tags as they stand, for notes.
+    /// Tags as written in the file, for notes.
     notes: Vec<(String, String)>,
-    /// Whether it has an end: behind the last segment there is none.
+    /// Whether `***End_of_Header***` was found: after the last segment there is no header.
     ended: bool,
 }
 
@@ -127,7 +127,8 @@ impl<'a> Head<'a> {
                 head.ended = true;
                 break;
             }
-            // The separator is a tag itself; none of the others holds it in its name.
+            // The separator is given by a tag, so not known yet; no tag has any of these characters in its
+            // name.
             let mark = line.find(['\t', ',', ';']).unwrap_or(line.len());
             let (tag, values) = line.split_at(mark);
             let separator = values.chars().next().unwrap_or('\t');
@@ -141,7 +142,7 @@ impl<'a> Head<'a> {
         head
     }
 
-    /// The value of a tag that has one.
+    /// The first value of a tag that is not empty.
     fn tag_value(&self, tag: &str) -> Option<&'a str> {
         self.tags.get(tag)?.iter().copied().find(|value| !value.is_empty())
     }
@@ -157,7 +158,7 @@ impl<'a> Head<'a> {
 struct SegmentColumn {
     name: String,
     values: Vec<f64>,
-    /// Half a unit in the last digit.
+    /// Digits of the values as printed, from which their resolution follows.
     digits: super::text::Digits,
 }
 
@@ -173,7 +174,7 @@ struct Segment<'h, 'a> {
 }
 
 impl<'h, 'a> Segment<'h, 'a> {
-    /// Reads the names and the rows behind a head, up to a blank line that no row follows.
+    /// Reads the names and the rows after a header, up to a blank line that no row follows.
     fn read(
         lines: &mut NumberedLines<'a>,
         general: &'h Head<'a>,
@@ -200,7 +201,7 @@ impl<'h, 'a> Segment<'h, 'a> {
         let (mut row, mut blank, mut ahead) = (0, 0, lines.clone());
         while let Some(line) = ahead.next() {
             if line.trim().is_empty() {
-                // Between rows it is one whose values are missing.
+                // A blank line between rows is a row of missing values.
                 (blank, *lines) = (blank + 1, ahead.clone());
                 continue;
             }
@@ -226,7 +227,8 @@ impl<'h, 'a> Segment<'h, 'a> {
                         return Err(Error::input(in_line(lines.number), found, "a number"));
                     }
                 };
-                // A blank between values is one that is missing, one behind them is none.
+                // A blank cell between values is a missing value; blank cells after the last value do not
+                // count.
                 column.values.resize(row, f64::NAN);
                 column.values.push(value);
                 column.digits.take(field.as_bytes(), decimal, value);
@@ -236,8 +238,7 @@ impl<'h, 'a> Segment<'h, 'a> {
         Ok(Segment { general, head, columns, channels, comments })
     }
 
-    /// One record a channel that has values; those of a segment behind the first have its number behind their
-    /// names.
+    /// One record for each channel with values; after the first segment, names end with its number: `a (2)`.
     fn records(
         self,
         source: &Source,
@@ -277,7 +278,8 @@ impl<'h, 'a> Segment<'h, 'a> {
         Ok(records)
     }
 
-    /// The X column of a channel; where it is even, start and step as the head states them with more digits.
+    /// The abscissa of a channel: its X column, or X0 and Delta_X of the header, which have more digits,
+    /// where they agree with it or there is no column.
     fn abscissa(
         &self,
         channel: usize,
@@ -311,7 +313,7 @@ impl<'h, 'a> Segment<'h, 'a> {
                 meta.found(found.number("header", stated.1).number("step", step));
             }
         }
-        // Of an uneven one it is said where it becomes the axis.
+        // For an uneven column, `Abscissa::axis` adds the finding.
         meta.findings.extend(found.filter(|_| axis.step().is_some()));
         meta.clock = clock;
         Abscissa::of(axis)

@@ -1,26 +1,26 @@
-//! The complaint about values that are missing.
+//! Errors and findings on missing values.
 
 use num_complex::Complex64;
 use rayon::prelude::*;
 use vibro_record::units::notation::counted;
 use vibro_record::{Error, Finding, Place, Result, Values, lanes};
 
-/// How many places a complaint lists.
+/// Most places of missing values that an error lists.
 pub(super) const LISTED: usize = 8;
 
-/// Refuses missing values; `found` says which.
+/// Error that refuses missing values; `found` says which.
 pub(super) fn refusal(place: Place, found: impl Into<String>) -> Error {
     Error::input(place, found, "a finite number in every place")
         .hint("allow missing values to keep them as such")
         .setting("allow_missing")
 }
 
-/// What is said where `count` of them are kept; nothing where there are none.
+/// Finding that `count` missing values were kept; `None` for 0.
 pub(super) fn kept(count: usize) -> Option<Finding> {
     (count > 0).then(|| Finding::caution("missing-kept").count("n", count))
 }
 
-/// Makes values that are not finite missing; gives their indices.
+/// Sets values that are not finite to NaN (missing) and returns their indices.
 pub(super) fn mark(values: &mut Values) -> Vec<usize> {
     fn of<T: Copy>(values: &mut [T], finite: impl Fn(&T) -> bool, gap: T) -> Vec<usize> {
         let odd: Vec<usize> = (0..values.len()).filter(|i| !finite(&values[*i])).collect();
@@ -36,8 +36,8 @@ pub(super) fn mark(values: &mut Values) -> Vec<usize> {
     }
 }
 
-/// Makes values of records that are not finite missing; where they are not `allowed`, their names and numbers
-/// are in the refusal.
+/// Sets values of records that are not finite to NaN (missing). Unless they are `allowed`, they are refused
+/// with their names and numbers.
 ///
 /// # Errors
 /// If there are any and they are not `allowed`.
@@ -53,17 +53,17 @@ pub(super) fn checked<'a>(
     Ok(kept(missing.check("value", "NaN or infinite:", allowed)?))
 }
 
-/// Values that are missing: how many, and where the first of them stand.
+/// Missing values: how many, and where the first of them are.
 #[derive(Debug, Default)]
 pub(super) struct Missing {
     count: usize,
-    /// Where the first of them stands.
+    /// Place of the first one.
     first: Place,
     listed: Vec<String>,
 }
 
 impl Missing {
-    /// Counts one value at `place`, which a complaint lists as `listed`.
+    /// Counts a missing value at `place`, which the error lists as `listed`.
     pub fn take(&mut self, place: &Place, listed: String) {
         if self.count == 0 {
             self.first = place.clone();
@@ -74,7 +74,8 @@ impl Missing {
         }
     }
 
-    /// Refuses all of them at once; behind their number stands a `noun`, before their places `what`.
+    /// Refuses all of them in one error, count, `noun`, `what`, places, as in `1 missing value at 2 of "a"`.
+    /// Returns their number.
     ///
     /// # Errors
     /// If there are any and they are not `allowed`.

@@ -1,7 +1,8 @@
 //! Numbers as instruments print them.
 //!
-//! Beside what Rust's own parser reads: Fortran's `1.0D+03`, exponents without a letter (`1.234-101`),
-//! three-digit exponents, a decimal comma, blanks around and between sign and digits of a fixed-width field.
+//! In addition to what Rust's own parser reads: Fortran's `1.0D+03`, exponents without a letter
+//! (`1.234-101`), three-digit exponents, a decimal comma, blanks around and between sign and digits of a
+//! fixed-width field.
 //!
 //! Results are correctly rounded: up to 19 digits are gathered in a 64-bit integer; where that integer is
 //! below 2⁵³ and the power of ten at most 10²², one multiplication or division of exact numbers gives the
@@ -18,7 +19,7 @@ const POWERS: [f64; 23] = [
 const MISSING: &str = "novalue|nan|nat|inf|infinity|∞|na|n/a|null|none|ol|over|overload|overrange|over range|ovld|burnout|fffffff\
                        |#div/0!|#n/a|#num!|#value!|#ref!|#name?|#null!";
 
-/// What instruments print for infinity and for no number (SCPI-1999, volume 1, 7.2.1.4 and 7.2.1.5).
+/// What instruments print for infinity and for "not a number" (SCPI-1999, volume 1, 7.2.1.4 and 7.2.1.5).
 const OVERLOAD: [f64; 2] = [9.9e37, 9.91e37];
 
 /// Parses one number with a decimal point. Blanks around it are allowed; anything else left over gives
@@ -58,8 +59,8 @@ pub(crate) fn parse_stated(text: &[u8], decimal: u8) -> Option<f64> {
     parse_with(text, decimal).or_else(|| ungrouped(text.trim_ascii(), decimal, true))
 }
 
-/// Whether `text` is a whole number in groups of three digits between the marks that decimals have, too:
-/// `1,000`.
+/// Whether `text` may be a whole number in groups of three digits, between marks that may also be decimal
+/// marks: `1,000`.
 pub(crate) fn may_be_grouped(text: &[u8]) -> bool {
     [b'.', b','].iter().any(|decimal| {
         !text.contains(decimal)
@@ -68,8 +69,8 @@ pub(crate) fn may_be_grouped(text: &[u8]) -> bool {
     })
 }
 
-/// A number whose digits stand in groups of three: between apostrophes or narrow blanks, or between the other
-/// mark where its own mark shows that it is the other or a person `stated` that.
+/// A number with digits in groups of three: between apostrophes or narrow blanks; or between the other mark,
+/// if the number also has its own decimal mark or the user `stated` that.
 #[cold]
 fn ungrouped(text: &[u8], decimal: u8, stated: bool) -> Option<f64> {
     let text = std::str::from_utf8(text).ok()?;
@@ -79,7 +80,7 @@ fn ungrouped(text: &[u8], decimal: u8, stated: bool) -> Option<f64> {
     let group =
         text[group..].chars().next().filter(|group| *group != mark || stated || text.contains(own))?;
     let whole = text.split(own).next()?.trim_start_matches(['-', '+']);
-    // Nobody groups `0.123`.
+    // A grouped number does not begin with 0: `0.123` is a decimal.
     if group == mark && whole.starts_with('0') {
         return None;
     }
@@ -111,7 +112,8 @@ pub(crate) fn is_missing(text: &[u8]) -> bool {
 /// An exponent that would overflow gives `None`; one that underflows gives 0 or a subnormal, as it should.
 #[inline]
 pub fn prefix(text: &[u8], decimal: u8) -> Option<(f64, usize)> {
-    // Signs come at random: no branch on them, a wrong guess costs more than the whole number.
+    // No branch on the sign: signs come at random, and a wrong branch prediction costs more than the whole
+    // number.
     let first = *text.first()?;
     let negative = first == b'-';
     let mut at = usize::from(negative) + usize::from(first == b'+');
@@ -182,7 +184,8 @@ pub fn exponential(field: &[u8]) -> Option<f64> {
         return None;
     }
     let digit = |at: usize| field[at].wrapping_sub(b'0');
-    // `d.dddddd`, the point replaced by its digit and that by a zero, is eight digits at once.
+    // `d.dddddd` is read as eight digits at once: the point becomes the digit before it, and that digit a
+    // zero.
     let (mut mantissa, mut worst, mut at) = (u64::from(digit(0)), digit(0), 2);
     if w >= 12 {
         let mut eight = *field.first_chunk::<8>()?;
@@ -208,13 +211,13 @@ pub fn exponential(field: &[u8]) -> Option<f64> {
     Some(if exponent < 0 { mantissa as f64 / power } else { mantissa as f64 * power })
 }
 
-/// Eight digits as a number: pairs, fours and eight are joined side by side in one register.
+/// Eight ASCII digits as a number: joined to pairs, fours and eight side by side in one register.
 #[inline]
 fn eight_digits(text: [u8; 8]) -> Option<u64> {
     const ZEROS: u64 = 0x3030_3030_3030_3030;
     const HIGH: u64 = 0xf0f0_f0f0_f0f0_f0f0;
     let v = u64::from_le_bytes(text);
-    // A digit has the high half 3, also after 6 is added to it.
+    // A byte is a digit if its high half is 3, and stays 3 when 6 is added.
     let other = ((v & HIGH) ^ ZEROS) | ((v.wrapping_add(0x0606_0606_0606_0606) & HIGH) ^ ZEROS);
     if other != 0 {
         return None;
@@ -224,11 +227,11 @@ fn eight_digits(text: [u8; 8]) -> Option<u64> {
     Some((v & 0x0000_ffff_0000_ffff).wrapping_mul(10_000 * 4_294_967_296 + 1) >> 32)
 }
 
-/// A parser of fields of one length, made for that length.
+/// A parser compiled for fields of one length.
 pub type Exponential = fn(&[u8]) -> Option<f64>;
 
-/// [`exponential`] for fields of `width` characters, made for that width; `None` for widths that instruments
-/// do not print.
+/// [`exponential`] compiled for fields of `width` characters; `None` outside 8 to 20, which instruments do
+/// not print.
 pub(crate) fn exponential_of(width: usize) -> Option<Exponential> {
     fn of<const W: usize>(field: &[u8]) -> Option<f64> {
         field.first_chunk::<W>().and_then(|field| exponential(field))
@@ -240,7 +243,8 @@ pub(crate) fn exponential_of(width: usize) -> Option<Exponential> {
     FROM_8.get(width.checked_sub(8)?).copied()
 }
 
-/// `E+03`, `D-3`, `e5`, or a bare sign followed by digits; `None` where no exponent stands.
+/// An exponent and the bytes it takes: `E+03`, `D-3`, `e5`, or a bare sign and digits; `None` where there is
+/// none.
 #[inline]
 fn exponent_part(text: &[u8]) -> Option<(i32, usize)> {
     let lettered = matches!(text.first()?, b'e' | b'E' | b'd' | b'D' | b'q' | b'Q');

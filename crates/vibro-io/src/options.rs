@@ -1,26 +1,26 @@
-//! What a person states of a file.
+//! What the user states about a file.
 
 use crate::limit::Limit;
 use std::path::Path;
 use vibro_record::units::Unit;
 use vibro_record::{Axis, Meta, Result, find_channel};
 
-/// Rates, bands and line widths in Hz of any instrument lie far inside; steps made of them are finite and
-/// positive.
+/// Accepted range in Hz of rates, bands and line widths: any instrument lies far inside, and steps computed
+/// from it are finite and positive.
 pub const POSSIBLE: std::ops::RangeInclusive<f64> = 1e-12..=1e15;
 
 /// Bytes of a value in memory.
 const VALUE: f64 = 8.0;
 
-/// What a person knows of a file that the file does not say. A statement here that contradicts the file wins,
-/// with a finding in the record.
+/// What the user states about a file because the file does not say it. A statement that contradicts the file
+/// wins, with a finding in the record.
 #[derive(Debug, Clone, Default)]
 pub struct Options {
     /// Keep NaN, Inf, over-range and blank values as missing (NaN) instead of refusing them.
     pub allow_missing: bool,
     /// Sampling rate in Hz: the values are a time trace.
     pub rate: Option<f64>,
-    /// Whether that rate follows from a base band.
+    /// Whether `rate` was computed from a base band.
     pub rate_of_band: bool,
     /// Base band in Hz: the values are a spectrum from 0 to it.
     pub base_band: Option<f64>,
@@ -32,22 +32,22 @@ pub struct Options {
     pub complex: bool,
     /// Whether rows continue each other as one series; `None` to find out.
     pub wrapped: Option<bool>,
-    /// Part of the time traces in s, from its first value on and before its second.
+    /// Part of the time traces that is read, in s: from the first time (included) to the second (excluded).
     pub span: Option<(f64, f64)>,
-    /// Which stretch between lost samples is used, from 1.
+    /// Number, from 1, of the stretch between lost samples that is kept.
     pub stretch: Option<usize>,
-    /// Rate in Hz at which samples of uneven times are interpolated.
+    /// Rate in Hz to which traces are resampled by interpolation.
     pub resample: Option<f64>,
     /// Memory that may be filled.
     pub limit: Limit,
-    /// What is held beside the values by what is made of them, in their size.
+    /// Memory for results computed from the values, as a multiple of the values' own size.
     pub beside: f64,
-    /// Channels whose values are asked for; all where none is named.
+    /// Channels whose values are needed, by name or number from 1; all where none is named.
     pub only: Vec<String>,
 }
 
 impl Options {
-    /// Whether so many values may be held, with what is made of them.
+    /// Checks that this many values fit into memory, with the results computed from them.
     ///
     /// # Errors
     /// As [`Limit::hold`].
@@ -55,7 +55,7 @@ impl Options {
         self.limit.hold(VALUE * values * (1.0 + self.beside))
     }
 
-    /// As [`Options::hold`], of so many channels over `time`: a part of them fits.
+    /// As [`Options::hold`], for this many channels over `time`; the error suggests a span that fits.
     ///
     /// # Errors
     /// As [`Limit::hold`].
@@ -69,7 +69,7 @@ impl Options {
     }
 }
 
-/// Indices of the channels named; of all where none is.
+/// Indices of the named channels; of all channels where none is named.
 pub fn named<'a>(
     path: &Path,
     named: &[impl AsRef<str>],

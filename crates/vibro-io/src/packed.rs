@@ -1,8 +1,8 @@
-//! Files that hold the file to read: a zip archive of files, a workbook of sheets.
+//! Files that contain other files: a zip archive of files, a workbook of sheets.
 //!
-//! The part with by far the most rows is read, a sheet as the text that a program of sheets exports
-//! ([`sheets`]); a hidden sheet only where no other has a table. Any other part has a path as in a folder:
-//! `walk.zip/Gyroscope.csv`, `walk.xlsx/Sheet 2`.
+//! The part with by far the most rows is read; a sheet is read as the text that a spreadsheet program would
+//! export ([`sheets`]). A hidden sheet is read only if no visible one has a table. Any other part has a path
+//! as in a folder: `walk.zip/Gyroscope.csv`, `walk.xlsx/Sheet 2`.
 
 #[cfg(feature = "sheets")]
 mod sheets;
@@ -19,9 +19,9 @@ use vibro_record::{Error, Finding, Place, Result};
 #[cfg(feature = "zip")]
 use zip::result::ZipError;
 
-/// First bytes of a zip archive, as are the newer workbooks of Excel and those of `OpenDocument`.
+/// First bytes of a zip archive; newer Excel workbooks and those of `OpenDocument` are such archives.
 const ZIP: &[u8] = b"PK\x03\x04";
-/// First bytes of a compound file, as are the older workbooks of Excel.
+/// First bytes of a compound file; older Excel workbooks (`.xls`) are such files.
 const COMPOUND: &[u8] = b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1";
 
 /// How a workbook is stored.
@@ -41,7 +41,7 @@ enum Workbook {
 struct Member {
     name: String,
     source: Source,
-    /// Whether the program of sheets does not show it.
+    /// Whether the spreadsheet program hides it.
     hidden: bool,
 }
 
@@ -54,7 +54,7 @@ impl Member {
         self.bytes().starts_with(ZIP) || self.bytes().starts_with(COMPOUND)
     }
 
-    /// Rows of numbers of a text; bytes of a format that is no text, and 0 of a file of no known format.
+    /// Rows of numbers in a text; bytes of a file of a known binary format; 0 of any other file.
     fn rows(&self) -> usize {
         if text::encoding::is_text(self.bytes()) {
             return text::count_rows(self.bytes());
@@ -63,10 +63,10 @@ impl Member {
     }
 }
 
-/// Parts with their rows, the longest first, and how many of them compare with it.
+/// Parts with their rows, longest first, and how many have more than 1/`LONGER` of the rows of the longest.
 type Ranked = (Vec<(usize, Member)>, usize);
 
-/// All parts of an archive or a workbook; `None` of other files.
+/// All parts of an archive or a workbook; `None` for other files.
 fn ranked(source: &Source, limit: Limit) -> Result<Option<Ranked>> {
     let Some(parts) = parts(source, None, limit)? else { return Ok(None) };
     let mut parts: Vec<(usize, Member)> = parts.into_iter().map(|part| (part.rows(), part)).collect();
@@ -78,10 +78,10 @@ fn ranked(source: &Source, limit: Limit) -> Result<Option<Ranked>> {
     Ok(Some((parts, long)))
 }
 
-/// The part of an archive or a workbook that is to be read, and what was left out; `None` of other files.
+/// The part of an archive or a workbook that is read, and a note on those left out; `None` for other files.
 ///
 /// # Errors
-/// If it is damaged or encrypted, unpacks to more than the limit, or several parts compare.
+/// If it is damaged or encrypted, unpacks to more than the limit, or several parts are of comparable length.
 pub fn main_part(source: &Source, limit: Limit) -> Result<Option<(Source, Option<Finding>)>> {
     let Some((mut parts, long)) = ranked(source, limit)? else { return Ok(None) };
     if long > 1 || long == 0 && parts.len() != 1 {
@@ -108,7 +108,7 @@ pub fn main_part(source: &Source, limit: Limit) -> Result<Option<(Source, Option
     Ok(Some((parts.swap_remove(0).1.source, found)))
 }
 
-/// The paths of the parts that compare, where no one of them is the main part; none of other files.
+/// Paths of the parts of comparable length, where none of them is clearly the longest; empty for other files.
 ///
 /// # Errors
 /// If it is damaged or encrypted, or unpacks to more than the limit.
@@ -130,7 +130,7 @@ fn listed<'a>(parts: impl Iterator<Item = &'a (usize, Member)>) -> String {
     parts.map(rows).collect::<Vec<_>>().join(", ")
 }
 
-/// What to type where a file holds no table, but perhaps another one that does.
+/// Hint for a file without a table: unpack it, and name the packed file in it that may hold one.
 fn unpack(packed: Option<&(usize, Member)>) -> String {
     let name = packed.map_or("the file with the samples", |(_, part)| part.name.as_str());
     format!("unpack it, and name {name}")
@@ -164,8 +164,8 @@ fn part(source: &Source, name: &Path, limit: Limit) -> Result<Source> {
     Err(Error::input(Place::file(source.path()), found, expected))
 }
 
-/// What is to be said of a sheet with a column in percent: its cells are stored as parts of one where they
-/// are formatted as percent, and as they read where they are not, which the crate does not tell.
+/// Finding on a sheet with a column in percent. Cells formatted as percent are stored as fractions of one,
+/// other cells as shown; the crate that reads sheets does not tell which.
 pub fn percent(source: &Source) -> Option<Finding> {
     let text = source.in_memory().filter(|_| source.is_sheet())?;
     let in_percent = |cell: &&str| {
@@ -175,14 +175,14 @@ pub fn percent(source: &Source) -> Option<Finding> {
     Some(Finding::caution("sheet-in-percent").name("column", cell.trim()))
 }
 
-/// Whether a file holds others.
+/// Whether a file is an archive or a workbook that can be unpacked.
 pub fn is_packed(source: &Source) -> bool {
     cfg!(feature = "zip") && source.head().starts_with(ZIP)
         || cfg!(feature = "sheets") && source.head().starts_with(COMPOUND)
 }
 
-/// All parts that are not empty, or the one of this name; `None` where the file has none, or its kind is not
-/// built in.
+/// All parts that are not empty, or the one of this name; `None` if the file is neither archive nor workbook,
+/// or the support for it is not compiled in.
 #[cfg_attr(not(feature = "zip"), allow(clippy::unnecessary_wraps))]
 fn parts(source: &Source, named: Option<&Path>, limit: Limit) -> Result<Option<Vec<Member>>> {
     #[cfg(feature = "zip")]
@@ -197,7 +197,7 @@ fn parts(source: &Source, named: Option<&Path>, limit: Limit) -> Result<Option<V
     Ok(None)
 }
 
-/// What is said of an archive or a workbook that cannot be read.
+/// Error for an archive or a workbook that cannot be read.
 #[cfg(feature = "zip")]
 fn damaged(source: &Source, why: impl std::fmt::Display) -> Error {
     let hint = "unpack it with the program that wrote it, and export CSV";
@@ -205,7 +205,7 @@ fn damaged(source: &Source, why: impl std::fmt::Display) -> Error {
         .hint(hint)
 }
 
-/// What is said of one that a password protects.
+/// Error for a file that a password protects.
 #[cfg(feature = "zip")]
 fn locked(source: &Source) -> Error {
     let error =
@@ -213,7 +213,7 @@ fn locked(source: &Source) -> Error {
     error.hint("unpack it, or save it without the password")
 }
 
-/// What is said of a zip archive.
+/// Error for a zip archive that cannot be read.
 #[cfg(feature = "zip")]
 fn unreadable(source: &Source, why: ZipError) -> Error {
     match why {
@@ -228,7 +228,7 @@ fn members(source: &Source, named: Option<&Path>, limit: Limit) -> Result<Vec<Me
     use std::io::{BufReader, Read};
     let archive = zip::ZipArchive::new(BufReader::new(source.open()?));
     let mut archive = archive.map_err(|why| match why {
-        // Its list of files is its end.
+        // The list of files is at the end of an archive.
         ZipError::InvalidArchive(_) => {
             let found = "its end is missing: it is no whole archive";
             Error::input(Place::file(source.path()), found, "a whole file").hint("copy or download it again")
@@ -242,7 +242,7 @@ fn members(source: &Source, named: Option<&Path>, limit: Limit) -> Result<Vec<Me
     for i in 0..archive.len() {
         let mut member = archive.by_index(i).map_err(|why| unreadable(source, why))?;
         let name = member.name().map_err(|why| damaged(source, why))?.into_owned();
-        // Programs of Apple add files of their own.
+        // macOS adds hidden files and a folder `__MACOSX` of its own.
         let own = name.split('/').any(|name| name.starts_with('.') || name == "__MACOSX");
         let other = own || named.is_some_and(|named| named != Path::new(&name));
         if !member.is_file() || book.is_none() && other {
@@ -250,8 +250,8 @@ fn members(source: &Source, named: Option<&Path>, limit: Limit) -> Result<Vec<Me
         }
         held += member.size() as f64;
         limit.hold(held)?;
-        // More than declared is an error of the crate. Those of a workbook are unpacked for that alone: what
-        // reads sheets checks no size.
+        // The crate zip fails on a file that unpacks to more than it declares. The files of a workbook are
+        // unpacked only for this check: the crate that reads sheets checks no sizes.
         let mut bytes = Vec::new();
         let unpacked = match book {
             Some(_) => std::io::copy(&mut member, &mut std::io::sink()),

@@ -25,9 +25,9 @@ pub struct Recording {
     pub path: PathBuf,
     /// Its format.
     pub format: Format,
-    /// Its records in order.
+    /// Its records, in the order of the file.
     pub records: Vec<Record>,
-    /// What was passed over or assumed of the file as a whole.
+    /// Findings on the file as a whole: what was skipped or assumed.
     pub findings: Vec<Finding>,
 }
 
@@ -51,7 +51,7 @@ pub struct Reader {
 }
 
 impl Reader {
-    /// A reader that finds out the format and refuses missing values.
+    /// A reader that detects the format and refuses missing values.
     pub fn new() -> Reader {
         Reader::default()
     }
@@ -62,7 +62,7 @@ impl Reader {
         self
     }
 
-    /// A file of the reader's folder, or a part of one that is packed, by the path that it had in a folder.
+    /// Opens a file of the reader's folder, or a part of an archive or workbook (`walk.zip/Gyroscope.csv`).
     ///
     /// # Errors
     /// As [`packed::file_or_part`].
@@ -70,8 +70,8 @@ impl Reader {
         packed::file_or_part(&self.folder, path.as_ref(), self.options.limit)
     }
 
-    /// The paths of the tables of an archive or a workbook whose lengths compare, so that one has to be
-    /// named; none of any other file.
+    /// Paths of the tables of an archive or a workbook that holds several of comparable length, so that one
+    /// must be named; empty for every other file.
     ///
     /// # Errors
     /// If it cannot be opened or unpacked.
@@ -79,7 +79,7 @@ impl Reader {
         packed::alike(&self.source(path)?, self.options.limit)
     }
 
-    /// Forces a format. Default: found out from the first bytes.
+    /// Forces a format. Default: detected from the first bytes.
     pub fn format(mut self, format: Option<Format>) -> Reader {
         self.format = format;
         self
@@ -104,8 +104,8 @@ impl Reader {
         self
     }
 
-    /// Takes a stated base band for that of a time trace, which analysers sample at 2.56 times their base
-    /// band. Default: it is that of a spectrum.
+    /// Turns a stated base band into the sampling rate of a time trace: 2.56 times the base band, as
+    /// analysers sample. A stated rate wins. Default: a base band means a spectrum.
     pub fn rate_of_base_band(mut self) -> Reader {
         self.options.rate_of_band = self.options.rate.is_none();
         self.options.rate = self.options.rate.or(self.options.base_band.take().map(|band| 2.56 * band));
@@ -118,7 +118,7 @@ impl Reader {
         self
     }
 
-    /// States whether a comma is the decimal mark. Default: found out, and asked for where it is ambiguous.
+    /// States whether a comma is the decimal mark. Default: detected; an ambiguous file is refused.
     pub fn decimal_comma(mut self, comma: Option<bool>) -> Reader {
         self.options.decimal_comma = comma;
         self
@@ -131,27 +131,27 @@ impl Reader {
     }
 
     /// States whether rows of several columns continue each other as one series. Default: the header says it;
-    /// where it does not and they look so, it is asked.
+    /// rows that look continued without such a header are refused.
     pub fn wrapped(mut self, wrapped: Option<bool>) -> Reader {
         self.options.wrapped = wrapped;
         self
     }
 
-    /// States the part of time traces that is read, in s: from the first value on and before the second.
-    /// Default: all.
+    /// States the part of time traces that is read, in s: from the first time (included) to the second
+    /// (excluded). Default: all.
     pub fn span(mut self, span: Option<(f64, f64)>) -> Reader {
         self.options.span = span;
         self
     }
 
-    /// Takes, of traces whose samples have gaps, the stretch of this number from 1. Default: all samples,
-    /// which have no rate then.
+    /// Keeps only the even stretch with this number, from 1, of traces with gaps. Default: all samples; a
+    /// trace with gaps then has no sampling rate.
     pub fn stretch(mut self, stretch: Option<usize>) -> Reader {
         self.options.stretch = stretch;
         self
     }
 
-    /// Interpolates traces at this rate in Hz. Default: the samples at their own times.
+    /// Resamples traces to this rate in Hz by interpolation. Default: samples keep their own times.
     pub fn resample(mut self, rate: Option<f64>) -> Reader {
         self.options.resample = rate;
         self
@@ -163,15 +163,15 @@ impl Reader {
         self
     }
 
-    /// What is held beside the values by what is made of them, in their size: it counts for the memory that
-    /// may be filled. Default: 0.
+    /// States the memory for results computed from the values, as a multiple of the values' own size: it
+    /// counts towards the memory limit. Default: 0.
     pub fn beside(mut self, times: f64) -> Reader {
         self.options.beside = times;
         self
     }
 
-    /// Asks for the values of these channels, by name or number from 1: others may come without. Default:
-    /// all.
+    /// Names the channels whose values are needed, by name or number from 1; other channels may be returned
+    /// without values. Default: all.
     pub fn only(mut self, channels: impl IntoIterator<Item = String>) -> Reader {
         self.options.only = channels.into_iter().collect();
         self
@@ -188,8 +188,8 @@ impl Reader {
     /// Reads many files, in parallel, in the order given.
     ///
     /// # Errors
-    /// As [`Reader::from_path`], for the first file at fault; where its content is at fault, the others are
-    /// named too.
+    /// As [`Reader::from_path`], for the first file that fails; where several fail because of their content,
+    /// the error names the others too.
     pub fn from_paths<P: AsRef<Path> + Sync>(&self, paths: &[P]) -> Result<Vec<Recording>> {
         let results: Vec<Result<Recording>> = paths.par_iter().map(|p| self.from_path(p)).collect();
         let failed = paths.iter().zip(&results).filter(|(_, result)| result.is_err());
@@ -205,7 +205,7 @@ impl Reader {
         whole.map_err(|error| if n > 1 { error.aside(many) } else { error })
     }
 
-    /// Reads bytes; `name` stands for the path in messages and helps to tell the format.
+    /// Reads bytes; `name` is the path shown in messages, and helps to detect the format.
     ///
     /// # Errors
     /// As [`Reader::from_path`].
@@ -226,8 +226,8 @@ impl Reader {
         Ok(Recording { path: source.path().to_owned(), format, records, findings })
     }
 
-    /// The records of a file without their values; memory does not grow with the file where the format
-    /// allows.
+    /// Headers of the records of a file, without values; memory use does not grow with the file where the
+    /// format allows.
     ///
     /// # Errors
     /// As [`Reader::from_path`].
@@ -255,10 +255,10 @@ impl Reader {
 
     fn contents_of(&self, source: &Source, survey: bool) -> Result<(Format, Contents)> {
         let entry = self.entry(source)?;
-        // These hold their bytes beside the values, which take no less.
+        // These readers hold all bytes of the file beside the values, which take at least as much memory.
         let whole = matches!(entry.format, Format::Mat | Format::Lvm | Format::Uff);
         let room = self.options.limit.hold(if whole { 2.0 * source.len() as f64 } else { 0.0 });
-        // A wave file is read from there on.
+        // The wave reader reads only the span: nothing is left to cut.
         let span = self.options.span.filter(|_| entry.format != Format::Wav);
         let read = |survey| (entry.read)(source, &self.options, survey);
         let changes = span.is_some() || self.options.stretch.is_some() || self.options.resample.is_some();
@@ -274,7 +274,8 @@ impl Reader {
         Ok((format, contents.map_err(placed)?))
     }
 
-    /// The format of a source.
+    /// The table entry for a source's format, forced or detected. Impossible spans, rates and base bands are
+    /// refused.
     pub(super) fn entry(&self, source: &Source) -> Result<&'static Entry> {
         if let Some((from, to)) =
             self.options.span.filter(|(from, to)| from.is_nan() || from >= to || to.is_nan())
@@ -301,10 +302,10 @@ impl Reader {
     }
 }
 
-/// Bytes of a list of a sweep: ten thousand points.
+/// Largest file in bytes that is tried as a sweep list: 10 000 points of about 100 bytes.
 const LONGEST_LIST: u64 = 1 << 20;
 
-/// What to say where reading failed with `error`: a list of a sweep is a likely thing to be taken for a
+/// Adds to a reading `error` that the file is a sweep list, if it is one: users easily take a list for a
 /// measurement.
 fn no_list(source: &Source, error: Error) -> Error {
     let short = source.len() <= LONGEST_LIST;
@@ -334,23 +335,23 @@ pub struct Header {
     pub x0: f64,
     /// `s` or `Hz`; empty where the file does not say what the abscissa is.
     pub x_unit: &'static str,
-    /// Distance of abscissa values; `None` if uneven.
+    /// Step of the abscissa, in `x_unit`; `None` if uneven.
     pub dx: Option<f64>,
-    /// Sampling rate in Hz and duration in s of an even trace.
+    /// Sampling rate in Hz of an even time axis.
     pub rate: Option<f64>,
-    /// See `rate`.
+    /// Duration in s of an even time axis.
     pub duration: Option<f64>,
     /// Whether values are complex.
     pub complex: bool,
-    /// Least and largest value in SI units; `None` of complex values, or as `max_abs`.
+    /// Smallest value, in SI units; `None` for complex values, and wherever `max_abs` is.
     pub min: Option<f64>,
-    /// See `min`.
+    /// Largest value, in SI units; `None` as for `min`.
     pub max: Option<f64>,
     /// Largest magnitude in SI units; `None` where the values were not read or are all missing.
     pub max_abs: Option<f64>,
     /// Abscissa of the largest magnitude.
     pub max_at: Option<f64>,
-    /// Header lines that were kept and not understood, and what the text was read as: encoding, decimal
+    /// Header lines that were kept but not interpreted; for text files also the encoding and the decimal
     /// mark.
     pub notes: Vec<String>,
     /// What a person must know before trusting the values.
@@ -363,7 +364,7 @@ impl Header {
         Header::with(record, &record.extremes())
     }
 
-    /// Header of a record that has, or would have, these values.
+    /// Header of a record whose values have these extremes; the values themselves may have been dropped.
     pub(super) fn with(record: &Record, extremes: &Extremes) -> Header {
         let (meta, axis, largest) = (record.meta(), record.axis(), extremes.largest());
         let ends = extremes.range().filter(|_| !record.is_complex());
@@ -391,7 +392,7 @@ impl Header {
     }
 }
 
-/// Header lines, then the arguments of the step `read` that say how text was read.
+/// Header lines, then encoding and decimal mark from the history step `read`.
 fn notes(meta: &Meta) -> Vec<String> {
     let how = meta.history.iter().filter(|step| step.name == "read").flat_map(|step| &step.arguments);
     let how = how.filter(|(key, _)| matches!(key.as_str(), "encoding" | "decimal mark"));

@@ -7,13 +7,13 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 use vibro_record::{Error, Place, Result};
 
-/// How many bytes [`Source::head`] gives at most: enough to tell every format apart.
+/// Most bytes that [`Source::head`] gives: enough to tell every format apart.
 const HEAD: usize = 64 * 1024;
 
 /// The name of standard input.
 const PIPE: &str = "-";
 
-/// What has come from it: a second look finds the same bytes.
+/// Bytes read from standard input so far: a second reader gets the same bytes.
 static STDIN: Mutex<Vec<u8>> = Mutex::new(Vec::new());
 
 /// Bytes that can be opened several times, by several threads.
@@ -23,7 +23,7 @@ pub(crate) struct Source {
     len: u64,
     /// All bytes of a small file or a buffer, the first ones of a larger file.
     bytes: Vec<u8>,
-    /// First column, from 0, where it is the sheet of a workbook as text.
+    /// If it is a sheet of a workbook as text: the sheet's first column, counted from 0.
     sheet: Option<u32>,
 }
 
@@ -78,18 +78,18 @@ impl Source {
         Source { path: name.into(), len: bytes.len() as u64, bytes, sheet: None }.not_empty()
     }
 
-    /// The same, as the sheet of a workbook whose cells begin in column `first` from 0.
+    /// Marks the text as the sheet of a workbook whose cells begin in column `first`, counted from 0.
     #[cfg(feature = "sheets")]
     pub fn of_sheet(self, first: u32) -> Source {
         Source { sheet: Some(first), ..self }
     }
 
-    /// Whether it is the sheet of a workbook, which calls itself a table as CSV does.
+    /// Whether it is the sheet of a workbook, which is read as a table like CSV.
     pub fn is_sheet(&self) -> bool {
         self.sheet.is_some()
     }
 
-    /// The name of the cell of a sheet, `B2`, in which a character stands; both counted from 1.
+    /// Name of the cell of a sheet, such as `B2`, at a character of its text; line and column count from 1.
     pub fn cell(&self, line: u64, column: u64) -> Option<String> {
         let first = self.sheet?;
         let text = str::from_utf8(self.in_memory()?).ok()?.lines().nth(line.checked_sub(1)? as usize)?;
@@ -103,7 +103,7 @@ impl Source {
         Some(letters.iter().rev().collect::<String>() + &line.to_string())
     }
 
-    /// Other bytes in place of its own.
+    /// The same source with other bytes.
     ///
     /// # Errors
     /// As [`Source::memory`].

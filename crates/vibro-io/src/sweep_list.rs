@@ -1,4 +1,4 @@
-//! The thesis' list file, and the hand-over file of its script sineswpf.
+//! The list of files of a stepped-sine sweep in the thesis, and the hand-over file of its script sineswpf.
 //!
 //! ```text
 //! 12                 number of points N
@@ -32,15 +32,14 @@ pub struct SweepList {
     pub excitation: Vec<f64>,
     /// Response files.
     pub response: Vec<PathBuf>,
-    /// Where the names stand, of the force files and then of the response files; none where they were not
-    /// read from a list.
+    /// Place of each name in the list, force files first; empty where the names were not read from a list.
     pub places: Vec<Place>,
 }
 
 /// Length of a name in a hand-over file: eight characters, a point, three characters.
 const NAME: usize = 11;
 
-/// What stands in a list file.
+/// Hint on what a list file holds.
 const HOLDS: &str = "a list holds: number of points, lines, base band in Hz, force names, response names, one a line; \
                      time traces, one file a step, go to a campaign: [[sweep]] with name, traces = \"step_*.csv\", force and response";
 
@@ -74,15 +73,14 @@ impl SweepList {
         Ok(list)
     }
 
-    /// The list that a source holds; `None` where it is anything else, or larger than a list of ten thousand
-    /// points.
+    /// The list that a source holds; `None` where it is anything else, or larger than 1 MiB (ten thousand
+    /// points).
     pub(super) fn of(source: &Source) -> Option<SweepList> {
         let bytes = source.all().ok().filter(|_| source.len() < 1 << 20)?;
         parse(source.path(), &encoding::decode(&bytes)).ok()
     }
 
-    /// A complaint about all files that do not exist, each with the line that names it; `None` where all
-    /// exist.
+    /// Error that names all files that do not exist, each with its line in the list; `None` where all exist.
     pub(super) fn missing(&self, folder: &Folder) -> Option<Error> {
         let files: Vec<&PathBuf> = self.force.iter().chain(&self.response).collect();
         let missing: Vec<usize> = (0..files.len()).filter(|i| !folder.exists(files[*i])).collect();
@@ -109,7 +107,7 @@ impl SweepList {
     }
 }
 
-/// The pattern of the steps of a sweep in place of one of them, where there are others.
+/// Hint to name the pattern of a sweep's steps instead of one step, where the folder holds others.
 fn steps(path: &Path) -> Option<Hint> {
     let all = pattern(path.file_name()?.to_str()?);
     let folder = path.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new("."));

@@ -6,9 +6,9 @@
 //!   raw data: channel after channel, sample after sample of all, or DAQmx buffers
 //! ```
 //! Source: National Instruments, "TDMS File Format Internal Structure". Every numeric channel is a record: a
-//! trace, or a spectrum where its abscissa is in Hz. Raw values are taken through the channel's scales
-//! ([`scale`]); one whose scale is not known is left out, for its raw values are no measurement. The file
-//! `_index` beside it is not needed.
+//! trace, or a spectrum where its abscissa is in Hz. The channel's scales ([`scale`]) convert raw values; a
+//! channel with an unknown scale is left out, for its raw values are no measurement. The file `_index` beside
+//! it is not needed.
 
 mod axes;
 mod description;
@@ -37,15 +37,14 @@ use vibro_record::{Error, Finding, Meta, Result, Values};
 
 /// Bytes that are read at a time.
 const BLOCK: usize = if cfg!(test) { 64 } else { 1 << 20 };
-/// Values of a channel that are looked at together: taking a few at a time through its scales would take
-/// long.
+/// Values of a channel that are scaled and reduced to extremes together: a few at a time would be slow.
 const LOOK: usize = if cfg!(test) { 4 } else { 1 << 16 };
 
 pub(super) fn sniff(head: &[u8], _: &Source) -> bool {
     head.starts_with(b"TDSm") || head.starts_with(b"TDSh")
 }
 
-/// All records, or, for a `survey`, the ends of their values where these are enough.
+/// All records; for a `survey`, only the extremes of their values where these are enough.
 pub(super) fn read(source: &Source, options: &Options, survey: bool) -> Result<Contents> {
     if source.head().starts_with(b"TDSh") {
         return Err(Error::usage("the index of a TDMS file", "the file with the values")
@@ -59,12 +58,12 @@ pub(super) fn read(source: &Source, options: &Options, survey: bool) -> Result<C
     let mut above: Vec<&Object> = objects.iter().filter(|object| object.path.len() < 2).collect();
     above.sort_by_key(|object| Reverse(object.path.len()));
     let raw = objects.iter().map(|object| {
-        // The slots of one value need not lie side by side.
+        // Values of several slots, which need not lie side by side, are all kept.
         let kept = if survey && object.slots.len() == 1 { KeptValues::Undecided } else { KeptValues::Values };
         Raw { object, scales: Scales::of(&above, object), columns: Vec::new(), kept }
     });
     let mut raw: Vec<Raw> = raw.collect();
-    // Channels that lie one after the other are read side by side.
+    // Channels stored one after the other are read in parallel.
     let apart = layouts.iter().flat_map(|layout| layout.parts.iter()).all(|part| part.fields.len() <= 1);
     let each = raw.len().div_ceil(if apart { rayon::current_num_threads() } else { 1 }).max(1);
     let fill = |(i, raw): (usize, &mut [Raw])| {
@@ -110,7 +109,8 @@ pub(super) fn read(source: &Source, options: &Options, survey: bool) -> Result<C
     Ok(Contents { records, findings })
 }
 
-/// The channels with numbers; of the others, findings, and words for the first whose scale is not known.
+/// Channels with numbers. The others give findings, and the first with an unknown scale also the text of an
+/// error.
 fn measured<'a>(
     objects: &'a [Object],
     raw: Vec<Raw<'a>>,
@@ -152,7 +152,7 @@ struct Channel<'a> {
     clock: Option<Arc<AbscissaChannel>>,
 }
 
-/// The unit or scale that changes between values of a channel: no single one holds for all.
+/// Says which unit or scale changes between values of a channel, so that none holds for all.
 fn changed(object: &Object) -> Option<String> {
     let text = |value: &Value| value.text().unwrap_or_default();
     let scales = |key: &str| UNITS.contains(&key) || key == "wf_xunit_string" || key.starts_with("NI_");
@@ -167,7 +167,7 @@ fn changed(object: &Object) -> Option<String> {
 enum KeptValues {
     /// All of them.
     Values,
-    /// Both ends are enough, unless the first values rise.
+    /// Not decided yet: extremes are enough, unless the first values rise and may be an abscissa.
     Undecided,
     Ends(Extremes),
 }
@@ -182,7 +182,7 @@ struct Raw<'a> {
 }
 
 impl Raw<'_> {
-    /// Keeps what is needed of the values so far, where there are more than so many.
+    /// Once there are more than `many` values, reduces them to their extremes where these are enough.
     fn look(&mut self, many: usize) {
         if self.columns.iter().all(|column| column.len() <= many) {
             return;
@@ -219,7 +219,7 @@ impl Raw<'_> {
     }
 }
 
-/// Reads what a segment has of the objects from `first` on behind what `raw` holds of them.
+/// Appends the values that a segment holds of the objects from index `first` on to `raw`.
 fn values(
     file: &mut BufReader<impl Read + Seek>,
     layout: &RawData,
@@ -231,7 +231,7 @@ fn values(
     let (mut left, mut block) = (layout.len, Vec::new());
     while left > 0 {
         for part in layout.parts.iter() {
-            // What a file that ends early holds of a part are whole rows.
+            // Of a part that the end of the file cuts short, only whole rows are read.
             let mut rows = part.rows.min(left / part.width.max(1));
             left = if rows < part.rows { 0 } else { left - rows * part.width };
             let most = (BLOCK as u64 / part.width.max(1)).max(1);

@@ -33,10 +33,10 @@ use vibro_record::{Axis, Error, Finding, Meta, Place, Record, Result, Stream, Tr
 /// The unit of values without a calibration.
 const FULL_SCALE: &str = "FS";
 
-/// Bytes of one block, more or less: large enough for the disk, small enough for the cache.
+/// Bytes read at a time, about: large enough for the disk, small enough for the processor's cache.
 const BLOCK: usize = 256 * 1024;
 
-/// Goes over the samples a block at a time; a survey keeps none of them.
+/// Reads the samples block by block; a survey keeps only their extremes.
 pub(super) fn read(source: &Source, options: &Options, survey: bool) -> Result<Contents> {
     let mut wave = Wave::open(source, options)?;
     let n = wave.channels.len();
@@ -71,10 +71,10 @@ pub(crate) struct Wave {
     reader: Box<dyn ReadSeek>,
     path: PathBuf,
     bytes: Vec<u8>,
-    /// Frame of the file at which the part that is read begins.
+    /// Frame of the file at which the part to read begins.
     first: u64,
     left: u64,
-    /// Times of the part that is read.
+    /// Time axis of the part to read.
     axis: Axis,
     /// Every channel of the file without its values.
     pub channels: Vec<Trace>,
@@ -87,7 +87,7 @@ pub(crate) struct Wave {
 }
 
 impl Wave {
-    /// Reads the chunks of a file up to and behind its samples, and stands before the first of them.
+    /// Reads all chunks of a file but its samples, and goes to the first sample to read.
     ///
     /// # Errors
     /// If its samples are of a kind that is not read here, or there are none; if a base band was stated.
@@ -130,8 +130,8 @@ impl Wave {
         Ok(wave)
     }
 
-    /// A channel without its values, and the factor that takes these to SI: what a person states or what the
-    /// file carries.
+    /// A channel without its values, and the factor of these to SI: as the user states it, or as the file's
+    /// comment does.
     fn describe(&self, source: &Source, options: &Options, channel: usize) -> Result<(Trace, f64)> {
         let layout = &self.layout;
         let scale = layout.scales.as_ref().and_then(|s| s.channels.get(channel));
@@ -160,7 +160,7 @@ impl Wave {
             (None, None) => return Ok((trace, 1.0)),
         };
         trace.calibrate(full_scale, &unit)?;
-        // Where only the level was kept there never was a calibration.
+        // A comment with the unit FS keeps only the level of values that never were calibrated.
         let calibrated = options.unit.is_some() || unit.symbol() != FULL_SCALE;
         let said = said.name("unit", unit.symbol());
         trace.meta.found(if calibrated { said } else { Finding::caution(Trace::UNCALIBRATED) });
@@ -173,7 +173,8 @@ impl Wave {
     }
 }
 
-/// Zero of integer samples, and how far full scale is from it; floats are fractions of full scale.
+/// The integer that means zero, and the distance of full scale from it; floats are fractions of full scale:
+/// (0, 1).
 fn full_scale(sample: NumberType) -> (f64, f64) {
     match sample {
         NumberType::U8 => (128.0, 128.0),
@@ -204,7 +205,7 @@ impl Stream for Wave {
             let from = column.len();
             sample.take(&self.bytes, channel * size, frame, false, column);
             let values = &mut column[from..];
-            // Floats are what they are.
+            // Floats are fractions of full scale already.
             if full != 1.0 {
                 for v in &mut *values {
                     *v = (*v - zero) / full;
@@ -235,7 +236,7 @@ impl Stream for Wave {
     }
 
     fn finish(&self, metas: &mut [Meta]) {
-        // Without a calibration a fraction of full scale cannot have such values.
+        // Values without a calibration are fractions of full scale, which cannot exceed 1.
         for (meta, largest) in metas.iter_mut().zip(&self.largest).filter(|(_, largest)| **largest > 1.0) {
             if !self.scaled {
                 meta.found(Finding::caution("beyond-full-scale").number("max", *largest));

@@ -1,7 +1,7 @@
-//! Records to files that other programs read.
+//! Writes records to files that other programs read.
 //!
-//! Values are written in the SI units that the records hold. What a format has no place for is lost or
-//! refused: see each writer. History, notes and doubts are written by none of them.
+//! Values are written in the SI units of the records. What a format has no place for is lost or refused: see
+//! each writer. History and findings are never written, notes only as header lines of universal files.
 //!
 //! ```
 //! use vibro_io::Reader;
@@ -41,7 +41,7 @@ pub enum Target {
     Npy,
 }
 
-/// Formats, the endings that stand for them, and their names.
+/// Formats, their file endings, and their names.
 const TARGETS: [(Target, &str, &str); 8] = [
     (Target::Uff, "uff", "uff"),
     (Target::Uff, "unv", "uff"),
@@ -54,7 +54,7 @@ const TARGETS: [(Target, &str, &str); 8] = [
 ];
 
 impl Target {
-    /// The format that the ending of a file name stands for; upper or lower case does not count.
+    /// The format of a file name by its ending, in upper or lower case.
     ///
     /// # Errors
     /// If no format has this ending.
@@ -76,8 +76,8 @@ impl Target {
         TARGETS.iter().find(|row| row.0 == self).map_or("", |row| row.2)
     }
 
-    /// Writes records in this format; `storage` says how a universal file keeps its numbers, and how exact a
-    /// wave file is.
+    /// Writes records in this format; `storage` sets how a universal file stores its numbers, and the
+    /// precision of a wave file.
     ///
     /// # Errors
     /// If the format cannot hold the records together, with the reason, or the output cannot be written.

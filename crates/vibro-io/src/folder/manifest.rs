@@ -1,11 +1,11 @@
-//! What vibro wrote into a folder.
+//! The list of files that vibro wrote into a folder.
 
 use super::{Digest, Folder};
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
-/// Files that vibro wrote into a folder, with what they held then. It lies in the folder as
-/// [`Manifest::FILE`], in lines that `sha256sum -c` takes:
+/// Files that vibro wrote into a folder, with the SHA-256 of each as written. The list is stored in the
+/// folder as [`Manifest::FILE`], in lines that `sha256sum -c` reads:
 ///
 /// ```text
 /// # Files that vibro wrote here, as it left them. A file changed since is never replaced.
@@ -17,7 +17,7 @@ use std::fmt::Write as _;
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Manifest(BTreeSet<(Owner, String, Digest)>);
 
-/// What files were written as.
+/// The role in which a file was written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Owner {
     /// The results of a campaign: the next run replaces them all, and removes what it does not write again.
@@ -26,7 +26,7 @@ pub enum Owner {
     Results,
     /// Recordings that were converted or made: input of what comes next.
     Recordings,
-    /// A file for a person to change. It is not remembered, so nothing replaces it.
+    /// A file for the user to change. It is not listed, so nothing replaces it.
     Person,
 }
 
@@ -39,16 +39,16 @@ const HEAD: &str =
     "# Files that vibro wrote here, as it left them. A file changed since is never replaced.\n";
 
 impl Manifest {
-    /// Name of its file.
+    /// Name of the file that holds the list.
     pub const FILE: &str = ".vibro.sha256";
 
-    /// That of a folder; empty where it has none, or none of ours.
+    /// The list of a folder; empty where there is none, or the file of that name is not vibro's.
     pub fn of(folder: &Folder) -> Manifest {
         let bytes = folder.own_file(Manifest::FILE).unwrap_or_default();
         Manifest::parse(&String::from_utf8(bytes).unwrap_or_default())
     }
 
-    /// Whether the file of a folder that has its name is one.
+    /// Whether the folder has a file of that name that vibro wrote.
     pub fn is_of(folder: &Folder) -> bool {
         folder.own_file(Manifest::FILE).is_some_and(|bytes| bytes.starts_with(HEAD.as_bytes()))
     }
@@ -65,7 +65,7 @@ impl Manifest {
         manifest
     }
 
-    /// As its file has it.
+    /// The list as text of its file.
     pub fn text(&self) -> String {
         let (mut text, mut owner) = (HEAD.to_owned(), None);
         for (of, name, digest) in &self.0 {
@@ -79,7 +79,7 @@ impl Manifest {
         text
     }
 
-    /// What files of this name held that were written as a recording, or else as a result.
+    /// Digests of files of this name that were written as a recording, or else as a result.
     fn held_by(&self, recording: bool, name: &str) -> impl Iterator<Item = &Digest> {
         let owners: &[Owner] = if recording { &[Owner::Recordings] } else { &[Owner::Run, Owner::Results] };
         let of = |owner: &Owner| {
@@ -98,26 +98,26 @@ impl Manifest {
         self.held_by(owner == Owner::Recordings, name).any(|known| known == digest)
     }
 
-    /// Adds a file, beside what is known of its name.
+    /// Adds a file; digests known for its name stay.
     pub fn add(&mut self, owner: Owner, name: impl Into<String>, digest: Digest) {
         if owner != Owner::Person {
             self.0.insert((owner, name.into(), digest));
         }
     }
 
-    /// Forgets a name.
+    /// Removes a name from the list.
     pub fn forget(&mut self, name: &str) {
         self.0.retain(|(_, known, _)| known != name);
     }
 
-    /// Files of one owner, each with what it may hold.
+    /// Files of one owner, each with a digest that it may have.
     pub fn owned(&self, owner: Owner) -> impl Iterator<Item = (&str, &Digest)> {
         self.0.iter().filter(move |(of, ..)| *of == owner).map(|(_, name, digest)| (name.as_str(), digest))
     }
 }
 
-/// A line of `sha256sum`: a name with a line break or a backslash is escaped, as a mark before the digest
-/// tells.
+/// A line as `sha256sum` writes it: a name with a line break or a backslash is escaped, which a backslash
+/// before the digest marks.
 pub fn listed(digest: &Digest, name: &str) -> String {
     let escaped = name.replace('\\', "\\\\").replace('\n', "\\n").replace('\r', "\\r");
     let mut line = if escaped == name { String::new() } else { "\\".to_owned() };

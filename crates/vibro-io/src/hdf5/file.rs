@@ -1,7 +1,7 @@
 //! What the groups, datasets and attributes of a file hold.
 //!
-//! The crate gives integers and floats their size alone; one whose bits lie otherwise, as the message of its
-//! datatype says, is not read as a number.
+//! The crate hdf5-reader tells only the size of integers and floats. Numbers of another bit layout, as the
+//! message of their datatype shows, are not read.
 
 use super::lzf;
 use crate::assemble::fewer;
@@ -28,33 +28,33 @@ use std::sync::{Arc, Mutex};
 use vibro_record::lanes::Extremes;
 use vibro_record::{Error, Finding, Result, Values};
 
-/// No filter makes more of a byte: deflate gives 258 for two bits.
+/// Most bytes that any filter unpacks from one: deflate gives 258 bytes for two bits.
 const MOST_UNPACKED: u64 = 1032;
-/// From so many times the bytes of the file on, what a dataset declares may not have been written.
+/// Ratio of declared to file bytes from which part of a dataset may never have been written.
 const MANY: u64 = 16;
-/// Groups within each other are read to this depth, and paths to this length.
+/// Deepest nesting of groups, and longest path in bytes, that are read.
 const MOST_DEPTH: usize = 32;
 pub const MOST_PATH: usize = 512;
-/// Values that are read at a time; fewer where the files of the tests are to have several.
+/// Values read at a time; few in tests, so that small fixtures have several blocks.
 const BLOCK: usize = if cfg!(test) { 8 } else { 1 << 15 };
 
-/// Fields of complex numbers.
+/// Names of the real and the imaginary field of complex numbers.
 const COMPLEX: &[(&str, &str)] = &[("r", "i"), ("real", "imag"), ("re", "im")];
 
 /// What a dataset or an attribute holds.
 #[derive(Debug)]
 pub enum Data {
     Numbers(Held),
-    /// The fields of rows; `None` for one that is no number.
+    /// Columns by the name of their field; `None` for a field that is no number.
     Table(Vec<(String, Option<Vec<f64>>)>),
     Texts(Vec<String>),
     /// Addresses of other objects.
     References(Vec<u64>),
-    /// Of a class that is passed over.
+    /// A class that is skipped, by its name.
     Other(&'static str),
 }
 
-/// What stands in a group.
+/// A member of a group.
 pub enum Member {
     Group(Group),
     Dataset(Box<Dataset>),
@@ -76,22 +76,22 @@ impl Member {
     }
 }
 
-/// An open file, and what was passed over in it.
+/// An open file, with findings on what was skipped in it.
 pub struct File {
     open: Hdf5File,
     len: u64,
     outside: Arc<Outside>,
-    /// Addresses of what was given out.
+    /// Addresses of groups and datasets already returned: a second link to one is skipped.
     seen: HashSet<u64>,
     options: Options,
-    /// Values held so far.
+    /// Number of values in memory so far.
     held: Cell<f64>,
-    /// Why values are more than may be held.
+    /// The error, if more values are needed than may be held.
     pub refused: OnceCell<Error>,
     pub findings: Vec<Finding>,
 }
 
-/// Files that links lead to. None of them is opened.
+/// Names of other files that links lead to. None of them is opened.
 #[derive(Default)]
 struct Outside(Mutex<BTreeSet<String>>);
 
@@ -125,7 +125,7 @@ impl File {
         Ok(File { open, len: source.len(), outside, seen, options: limit, held, refused, findings })
     }
 
-    /// Asks for room for so many values beside those held.
+    /// Reserves memory for this many more values; fails beyond the limit.
     fn hold(&self, values: f64) -> std::result::Result<(), Fault> {
         self.held.set(self.held.get() + values);
         self.options.hold(self.held.get()).map_err(|error| {
@@ -141,7 +141,7 @@ impl File {
         Ok(root)
     }
 
-    /// What stands in a group by its names, apart from what another name led to before.
+    /// Members of a group by name, without those already reached under another name.
     pub fn members(&mut self, group: &Group, path: &str) -> Result<Vec<(String, Member)>> {
         if path.len() > MOST_PATH || path.split(['/', '.']).count() > MOST_DEPTH {
             self.pass(path, "group too deep in others");
@@ -181,8 +181,8 @@ impl File {
         self.findings
     }
 
-    /// What a dataset holds, of numbers only their `ends` where these are enough; where it cannot be read, a
-    /// finding says why.
+    /// What a dataset holds; with `ends`, of numbers only the extremes where these are enough. A dataset that
+    /// cannot be read gives a finding.
     pub fn data(&mut self, name: &str, dataset: &Dataset, ends: bool) -> Option<Data> {
         match self.held(dataset, ends) {
             Ok(Data::Other(class)) => self.pass(name, class),
@@ -206,10 +206,10 @@ impl File {
         let (declared, most) = (dataset.raw_byte_len()? as u64, if packed { MOST_UNPACKED } else { 1 });
         let layout = dataset.raw_datatype()?;
         if declared > self.len.saturating_mul(most.min(MANY)) && dataset.ndim() == 1 {
-            // The bytes, and the numbers that they are.
+            // Counted in values of 8 bytes: the bytes read, and the numbers decoded from them.
             let values = |bytes: usize| self.held.get() + bytes as f64 / 4.0;
             let room = |bytes: usize| {
-                // All that is declared would be needed.
+                // Beyond the limit, the error states the memory that the declared size needs.
                 self.options.hold(values(bytes)).or_else(|_| self.hold(declared as f64 / 4.0))
             };
             let there = match written(dataset, room) {
@@ -269,7 +269,7 @@ fn written(
     Ok(bytes)
 }
 
-/// A number of any kind.
+/// A number of any integer or float type, as a double.
 #[derive(Clone)]
 struct Number(f64);
 
@@ -298,8 +298,8 @@ impl H5Type for Number {
     }
 }
 
-/// The numbers of a dataset, some rows at a time: what is read needs no room of its size beside them, and of
-/// the `ends` alone none.
+/// Reads the numbers of a dataset in blocks of rows: little memory is needed beside the values. With `ends`,
+/// only the extremes are kept if the first block does not rise.
 fn by_rows(
     dataset: &Dataset,
     ends: bool,
@@ -317,10 +317,10 @@ fn by_rows(
         Ok(numbers.into_iter().map(|Number(value)| value).collect::<Vec<f64>>())
     };
     let blocks = n.div_ceil(rows * row);
-    // Each thread unpacks a block.
+    // Room for one block in each thread.
     let threads = rayon::current_num_threads().clamp(1, blocks);
     hold((threads * rows * row) as f64)?;
-    // Of a matrix each column is copied.
+    // Columns of a matrix are copied later: twice the room.
     let held = if row > 1 { 2 * n } else { n } as f64;
     if ends && blocks > 1 && !rises(&block(0)?) {
         let parts = (0..blocks).into_par_iter().map(|k| block(k).map(|values| Extremes::of(&values)));
@@ -350,7 +350,7 @@ pub fn attribute(attribute: &Attribute) -> Option<Data> {
     decoded(kind, &layout, size, || Ok(attribute.raw_data.clone())).ok()
 }
 
-/// Numbers of the bytes that `read` gives: elements of `size` bytes, whose datatype is described by `layout`.
+/// Decodes the bytes that `read` gives: elements of `size` bytes, whose datatype message is `layout`.
 fn decoded(
     kind: &Datatype,
     layout: &[u8],
@@ -390,9 +390,9 @@ fn decoded(
     })
 }
 
-/// Which numbers those of a datatype are, and whether big-endian.
+/// Number type of a datatype, and whether it is big-endian; `None` if it is no number.
 fn number(kind: &Datatype) -> Option<(NumberType, bool)> {
-    /// Beside the bytes of an integer without a sign, and of a float.
+    /// Added to the size in bytes: an unsigned integer, a float.
     const UNSIGNED: u32 = 0x100;
     const FLOAT: u32 = 0x200;
     let (code, order) = match kind {
@@ -406,7 +406,7 @@ fn number(kind: &Datatype) -> Option<(NumberType, bool)> {
     Some((kind, *order == ByteOrder::BigEndian))
 }
 
-/// The numbers at byte `offset` of each row of `width` bytes; `None` where they are none or do not fit.
+/// The numbers at byte `offset` of each row of `width` bytes; `None` if they are no numbers or do not fit.
 fn column(bytes: &[u8], offset: usize, width: usize, of: &Datatype) -> Option<Vec<f64>> {
     let ((kind, big_endian), mut column) = (number(of)?, Vec::new());
     (offset as u64 + kind.size() <= width as u64).then_some(())?;
@@ -414,8 +414,7 @@ fn column(bytes: &[u8], offset: usize, width: usize, of: &Datatype) -> Option<Ve
     Some(column)
 }
 
-/// How the message of a datatype describes an integer that fills its bytes, or a float of IEEE 754, behind
-/// the byte of its class.
+/// The datatype message, without its class byte, of an integer that fills its bytes or of an IEEE 754 float.
 fn description(kind: &Datatype) -> Option<Vec<u8>> {
     let (number, big_endian) = number(kind)?;
     let (flags, sign, properties): (u8, u8, &[u8]) = match (number, kind) {
@@ -429,7 +428,7 @@ fn description(kind: &Datatype) -> Option<Vec<u8>> {
     Some([&[flags, sign, 0, size, 0, 0, 0, 0, 0, size * 8, 0], properties].concat())
 }
 
-/// Whether the datatypes are described so, one after the other, in the message `layout`.
+/// Whether the message `layout` holds the description above of each datatype, one after the other.
 fn described(layout: &[u8], kinds: &[&Datatype]) -> Vec<bool> {
     let mut rest = layout;
     let mut next = |kind: &&Datatype| {

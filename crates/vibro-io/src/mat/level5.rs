@@ -11,10 +11,10 @@ use vibro_record::{Error, Place, Result, Values};
 
 /// Bytes before the first variable, of which the last two are IM (little endian) or MI.
 const HEADER: usize = 128;
-/// Bytes that zlib makes of one at most: 258 of two bits.
+/// Most bytes that zlib unpacks from one: 258 bytes of two bits.
 const MOST_UNPACKED: u64 = 1032;
-/// Structs and cell arrays within each other are read to this depth, and to names of this length: both bound
-/// what one byte of a file can cost.
+/// Deepest nesting of structs and cell arrays, and longest name in bytes, that are read: both bound what one
+/// byte of a file can cost.
 const MOST_DEPTH: usize = 32;
 const MOST_NAME: usize = 512;
 
@@ -36,7 +36,7 @@ impl<'a> Elements<'a> {
         if self.big_endian { u32::from_be_bytes(bytes) } else { u32::from_le_bytes(bytes) }
     }
 
-    /// What stands within an element of these.
+    /// The elements inside the content of an element.
     fn within<'b>(&self, rest: &'b [u8]) -> Elements<'b> {
         Elements { rest, big_endian: self.big_endian, place: self.place.clone() }
     }
@@ -45,7 +45,7 @@ impl<'a> Elements<'a> {
         bytes.as_chunks().0.iter().map(|b| self.word(*b))
     }
 
-    /// Kind and content of the next element; `None` behind the last.
+    /// Kind and content of the next element; `None` after the last.
     fn next(&mut self) -> Result<Option<(u32, &'a [u8])>> {
         if self.rest.is_empty() {
             return Ok(None);
@@ -67,7 +67,7 @@ impl<'a> Elements<'a> {
         }
         let size = self.word(*small);
         let content = behind.get(..size as usize).ok_or_else(|| ends_early(behind.len(), size))?;
-        // What is packed is not padded.
+        // A compressed element is not padded.
         let padded = if word == 15 { content.len() } else { content.len().next_multiple_of(8) };
         self.rest = behind.get(padded..).unwrap_or_default();
         Ok(Some((word, content)))
@@ -92,7 +92,7 @@ impl<'a> Elements<'a> {
     }
 }
 
-/// Numbers of a kind; `None` for one that is not of numbers.
+/// Numbers of an element of this kind; `None` for a kind that holds no numbers.
 pub fn numbers(kind: u32, bytes: &[u8], big: bool) -> Option<Vec<f64>> {
     let kind = NumberType::coded(kind, [1, 3, 5, 12, 2, 4, 6, 13, 7, 9])?;
     let (width, mut values) = (kind.size() as usize, Vec::new());
@@ -100,8 +100,8 @@ pub fn numbers(kind: u32, bytes: &[u8], big: bool) -> Option<Vec<f64>> {
     Some(values)
 }
 
-/// All variables of a file behind its header, with their names. What stands in structs and cell arrays is
-/// named as MATLAB writes it.
+/// All variables of a file after its header, with their names. Members of structs and cell arrays are named
+/// as MATLAB writes them.
 pub fn all(bytes: &[u8], options: &Options) -> Result<Vec<(String, Content)>> {
     let mut held = 0.0;
     let mut variables = Vec::new();
@@ -117,15 +117,15 @@ pub fn all(bytes: &[u8], options: &Options) -> Result<Vec<(String, Content)>> {
                 None,
                 &mut variables,
             )?,
-            // Zeros that fill up a block.
+            // Zeros that pad the file.
             0 if content.is_empty() => {}
             kind => return Err(file.fault(format!("an element of kind {kind}"), "a variable")),
         }
     }
 }
 
-/// The content of the variable that `packed` holds. No more is unpacked than the variable declares, nor than
-/// may be held as numbers beside it and what was `held` before.
+/// Unpacks a compressed variable: no more bytes than it declares, and no more than the memory limit allows,
+/// with its numbers and what was `held` before.
 fn unpacked(file: &Elements, packed: &[u8], options: &Options, held: &mut f64) -> Result<Vec<u8>> {
     let damaged = |e: std::io::Error| {
         let found = format!("a packed variable that is damaged: {e}");
@@ -134,10 +134,11 @@ fn unpacked(file: &Elements, packed: &[u8], options: &Options, held: &mut f64) -
     let (mut zlib, mut tag, mut inflated) = (ZlibDecoder::new(packed), [0; 8], Vec::new());
     zlib.read_exact(&mut tag).map_err(damaged)?;
     let declared = u64::from(file.words(&tag[4..]).next().unwrap_or(0));
-    // A variable that lies is told by its end.
+    // A wrong declared size shows below: the variable ends early or late.
     *held += declared.min(MOST_UNPACKED * packed.len() as u64) as f64 / 4.0;
     options.hold(*held)?;
-    // Up to its end the stream is not compared with its checksum: eight bytes are more than any padding.
+    // zlib compares the checksum only at the end of the stream: eight bytes more are read, which is more than
+    // any padding.
     zlib.by_ref().take(declared + 8).read_to_end(&mut inflated).map_err(damaged)?;
     let behind = packed.get(zlib.total_in() as usize..).unwrap_or_default();
     let there = inflated.len() as u64;
@@ -150,8 +151,8 @@ fn unpacked(file: &Elements, packed: &[u8], options: &Options, held: &mut f64) -
     Ok(inflated)
 }
 
-/// Adds what a matrix element holds: itself or, where it is a struct or a cell array, what stands in it.
-/// `inside` is its name and depth there.
+/// Adds the variable of a matrix element or, for a struct or cell array, its members. `inside` is the name
+/// and depth of a member.
 fn variable(
     elements: &mut Elements,
     inside: Option<(String, usize)>,
@@ -176,7 +177,7 @@ fn variable(
         return Err(elements.fault(format!("{name:?} with dimensions {dimensions:?}"), "a countable array"));
     };
     let content = match class {
-        // A field without a value is no loss.
+        // An empty member is skipped without a finding.
         _ if count == 0 && is_inside => return Ok(()),
         _ if logical => Content::Other("logical array"),
         1 | 2 if depth >= MOST_DEPTH || name.len() > MOST_NAME => {

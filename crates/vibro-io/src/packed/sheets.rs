@@ -1,4 +1,4 @@
-//! Sheets of workbooks as text: cells between tabs, numbers with all their digits, dates as clocks.
+//! Sheets of workbooks as text: cells between tabs, numbers with all their digits, dates as date and time.
 
 use super::{Member, Workbook, damaged, locked};
 use crate::limit::Limit;
@@ -15,14 +15,14 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 use vibro_record::Result;
 
-/// Row and column from 0, and what stands there.
+/// Row and column, counted from 0, and content.
 type Cell = (u32, u32, Data);
 
-/// Microseconds of a day: a double holds the instants of this century to 0.6 of them.
+/// Microseconds of a day: a double of days resolves the times of this century to 0.6 µs.
 const DAY: i64 = 86_400_000_000;
-/// Decimals of a second that are looked at.
+/// Most decimals of a second that are recognised.
 const DECIMALS: usize = 6;
-/// How far an instant in µs may be from what was printed, by the rounding of its days.
+/// Largest difference in µs between a time and its printed form: days are rounded to a double.
 const ROUNDING: i64 = 1;
 
 /// All sheets with cells, or the one of this name.
@@ -30,7 +30,7 @@ const ROUNDING: i64 = 1;
 /// # Errors
 /// If the workbook is damaged or encrypted, or takes more than the limit.
 pub fn of(source: &Source, kind: Workbook, named: Option<&Path>, limit: Limit) -> Result<Vec<Member>> {
-    // The crate subtracts the ends of a sheet, and panics where the larger comes first.
+    // The crate calamine panics on a sheet that ends before it begins: the panic becomes an error.
     let read = AssertUnwindSafe(|| match kind {
         Workbook::Compound => {
             let book = Xls::new(checked(source, limit)?).map_err(|why| match why {
@@ -51,8 +51,8 @@ pub fn of(source: &Source, kind: Workbook, named: Option<&Path>, limit: Limit) -
     catch_unwind(read).unwrap_or_else(|_| Err(damaged(source, "its records contradict each other")))
 }
 
-/// The stream of an older workbook in a compound file of its own. Its cells are looked through before, since
-/// the crate makes room for all between the first and the last.
+/// Copies the stream of an `.xls` workbook to a compound file of its own. Its cells are checked first, since
+/// the crate reserves memory for all cells between the first and the last.
 fn checked(source: &Source, limit: Limit) -> Result<Cursor<Vec<u8>>> {
     let failed = |why| damaged(source, why);
     let mut file = cfb::CompoundFile::open(BufReader::new(source.open()?)).map_err(failed)?;
@@ -69,7 +69,7 @@ fn checked(source: &Source, limit: Limit) -> Result<Cursor<Vec<u8>>> {
         room += extent(stream.get(at..).unwrap_or_default())
             .ok_or_else(|| damaged(source, "a cell lies outside"))?;
     }
-    // Values and formulas.
+    // Twice, for values and formulas.
     limit.hold(room * 2.0 * size_of::<Cell>() as f64)?;
     let mut own =
         cfb::CompoundFile::create_with_version(cfb::Version::V3, Cursor::new(Vec::new())).map_err(failed)?;
@@ -78,14 +78,14 @@ fn checked(source: &Source, limit: Limit) -> Result<Cursor<Vec<u8>>> {
     Ok(own.into_inner())
 }
 
-/// Kinds of records: the place of a sheet, its dimensions, the end of a part.
+/// Kinds of records in `.xls`: the place of a sheet, its dimensions, the end of a part.
 const BOUND_SHEET: u16 = 0x85;
 const DIMENSIONS: u16 = 0x200;
 const END: u16 = 0x0a;
-/// Those of cells: formulas, texts, numbers; of several in a row, which end with the last column.
+/// Kinds of cells: formulas, texts, numbers; and of several cells in a row, which end with the last column.
 const CELLS: [u16; 7] = [0x06, 0xd6, 0xfd, 0x203, 0x204, 0x205, 0x27e];
 const MANY: u16 = 0xbd;
-/// Columns of a sheet.
+/// Most columns of an `.xls` sheet.
 const COLUMNS: u16 = 256;
 
 /// The records of a part of a stream: kind and data.
@@ -100,7 +100,7 @@ fn records(stream: &[u8]) -> impl Iterator<Item = (u16, &[u8])> {
     .take_while(|(kind, _)| *kind != END)
 }
 
-/// Cells of a sheet with those between them; `None` where one lies in no column.
+/// Number of cells of a sheet, used ones and those between; `None` where one lies beyond the last column.
 fn extent(sheet: &[u8]) -> Option<f64> {
     let (mut rows, mut columns) = (1.0f64, 1.0f64);
     for (kind, data) in records(sheet) {
@@ -149,7 +149,7 @@ where
     Ok(parts)
 }
 
-/// As [`ranges`], without room for the cells between used ones.
+/// As [`ranges`] for `.xlsx`, cell by cell: no memory is reserved for cells between used ones.
 fn streamed((source, named): (&Source, Option<&Path>), limit: Limit) -> Result<Vec<Member>> {
     let mut book =
         Xlsx::new(BufReader::new(source.open()?)).map_err(|why: XlsxError| damaged(source, why))?;
@@ -172,7 +172,7 @@ fn streamed((source, named): (&Source, Option<&Path>), limit: Limit) -> Result<V
     Ok(parts)
 }
 
-/// A sheet as text; each line is a row, so that complaints name it.
+/// A sheet as text, one line for each row of the sheet, so that line numbers of errors are row numbers.
 fn sheet(source: &Source, of: Sheet, mut cells: Vec<Cell>, limit: Limit) -> Result<Option<Member>> {
     cells.retain(|(.., cell)| *cell != Data::Empty);
     with_points(&mut cells);
@@ -208,8 +208,8 @@ fn sheet(source: &Source, of: Sheet, mut cells: Vec<Cell>, limit: Limit) -> Resu
     Ok(Some(Member { name: of.name, source, hidden }))
 }
 
-/// Turns texts with decimal commas into numbers where they stand beside numbers with decimals, whose mark is
-/// a point here; not where all of them may be grouped digits.
+/// Converts texts with a decimal comma to numbers where other cells are numbers with decimals, which are
+/// printed with a point here; not where each such text may be grouped digits (`1,000`).
 fn with_points(cells: &mut [Cell]) {
     let decimals = |cell: &Cell| matches!(cell.2, Data::Float(value) if value.fract() != 0.0);
     let comma = |cell: &Cell| match &cell.2 {
@@ -237,7 +237,7 @@ fn write_cell(text: &mut String, cell: &Data, clock: Option<&DateFormat>) {
         }
         Data::Int(value) => write!(text, "{value}"),
         Data::Bool(value) => write!(text, "{}", u8::from(*value)),
-        // What a formula could not compute is missing.
+        // A formula that failed is a missing value.
         Data::Error(_) => write!(text, "NaN"),
         Data::String(words) | Data::DateTimeIso(words) | Data::DurationIso(words) => {
             text.extend(words.chars().map(|c| match c {
@@ -252,7 +252,7 @@ fn write_cell(text: &mut String, cell: &Data, clock: Option<&DateFormat>) {
     };
 }
 
-/// The fewest digits that read back, in a form that groups no digits.
+/// The fewest digits that read back as the same double, in a form that cannot be taken for grouped digits.
 fn digits(value: f64) -> String {
     // Beyond 2⁵³ not every whole number is a double.
     let whole = value.trunc() == value && value.abs() < 9e15;
@@ -264,12 +264,12 @@ fn digits(value: f64) -> String {
     format!("{}e-{decimals}", text.replace('.', ""))
 }
 
-/// How the dates of a column are printed: as finely as they were before they became days.
+/// How the dates of a column are printed: with the decimals that they had before they were stored as days.
 struct DateFormat {
     decimals: usize,
-    /// Whether there are days.
+    /// Whether the date is printed.
     dated: bool,
-    /// Whether there are times of day.
+    /// Whether the time of day is printed.
     timed: bool,
 }
 
@@ -303,7 +303,7 @@ impl DateFormat {
                 let date = ExcelDateTime::new(days as f64, ExcelDateTimeType::DateTime, since_1904);
                 date.to_ymd_hms_milli()
             };
-            // Both ways to count days differ by four years.
+            // Days count from 1900 or 1904: a difference of years above 2 shows which.
             let since_1904 = instant.to_ymd_hms_milli().0.abs_diff(from(false).0) > 2;
             let (year, month, day, ..) = from(since_1904);
             write!(text, "{year:04}-{month:02}-{day:02}{}", if self.timed { " " } else { "" })?;

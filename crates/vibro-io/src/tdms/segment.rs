@@ -15,22 +15,22 @@ const NEW_LIST: u32 = 1 << 2;
 const RAW_DATA: u32 = 1 << 3;
 const INTERLEAVED: u32 = 1 << 5;
 const BIG_ENDIAN: u32 = 1 << 6;
-/// The length of a segment that was not finished.
+/// Stored as length of a segment that was not finished.
 const OPEN: u64 = u64::MAX;
 
 /// The file, a group or a channel.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Object {
-    /// Nothing, the group, or the group and the channel.
+    /// Empty for the file, else the group, or the group and the channel.
     pub path: Vec<String>,
     pub properties: BTreeMap<String, Value>,
-    /// What its properties were, and how many values stood before another segment changed them.
+    /// Former properties: name, former value, and number of values before a later segment changed it.
     pub changes: Vec<(String, Value, u64)>,
-    /// Values that the file declares.
+    /// Number of values that the file declares.
     pub declared: u64,
-    /// What its raw data are where they are no numbers.
+    /// Kind of its raw data, if these are no numbers.
     pub unreadable: Option<&'static str>,
-    /// One a column of its raw values.
+    /// What each column of its raw values is.
     pub slots: Vec<Slot>,
 }
 
@@ -46,8 +46,8 @@ impl Object {
     }
 }
 
-/// Goes from segment to segment of a file of `len` bytes: objects in their order, and the raw data of each
-/// segment.
+/// Reads the segments of a file of `len` bytes: objects in their order, the raw data of each segment,
+/// findings.
 ///
 /// # Errors
 /// If the file cannot be read, or a segment is not what the format says.
@@ -100,29 +100,29 @@ pub fn all(
     Ok((known.objects, layouts, findings))
 }
 
-/// Goes to a byte without losing what was read ahead.
+/// Goes to a byte of the file without discarding the read-ahead buffer.
 pub fn go(file: &mut BufReader<impl Read + Seek>, to: u64) -> std::io::Result<()> {
     let at = file.stream_position()?;
     file.seek_relative(to.wrapping_sub(at) as i64)
 }
 
-/// What the segments so far say.
+/// What is known from the segments so far.
 #[derive(Default)]
 struct SegmentState {
     objects: Vec<Object>,
     by_path: HashMap<String, usize>,
     /// The last layout of each object.
     last: Vec<Option<Index>>,
-    /// The objects of the present segment that have raw data or none, in their order.
+    /// The objects of the present segment in their order, each with the layout of its raw data, if any.
     active: Vec<(usize, Option<Index>)>,
-    /// The place of an object among the active ones.
+    /// Index of an object among the active ones.
     place: HashMap<usize, usize>,
-    /// The parts of the present objects, interleaved or not.
+    /// Whether the present objects are interleaved, and the parts of a chunk of them.
     parts: Option<(bool, Arc<[RowBlock]>)>,
 }
 
 impl SegmentState {
-    /// Takes the description of a segment.
+    /// Reads the description of a segment.
     fn describe(&mut self, words: &mut Words, new_list: bool) -> Result<()> {
         self.parts = None;
         if new_list {
@@ -169,7 +169,7 @@ impl SegmentState {
         Ok(())
     }
 
-    /// The parts of a chunk, which segments without a description share.
+    /// The parts of a chunk; a segment without a description shares those of the segment before.
     fn shared_parts(&mut self, interleaved: bool, at: u64) -> Result<Arc<[RowBlock]>> {
         let known = self.parts.take().filter(|(was, _)| *was == interleaved);
         let parts =
@@ -220,7 +220,7 @@ impl SegmentState {
         Ok(if buffers.is_empty() { parts } else { buffers })
     }
 
-    /// Counts the values of so many chunks.
+    /// Adds the values of this many chunks to those declared.
     fn declare(&mut self, chunks: u64) {
         for (object, index) in &self.active {
             if let Some(Index { rows, .. }) = index {

@@ -34,11 +34,11 @@ pub use heading::LINES;
 pub(crate) use layout::{KINDS, Layout};
 pub use ordinate::UnitSystem;
 
-/// Reads the data set whose number `line` was taken last, with its closing delimiter. Where the header is cut
-/// short: the number of its lines, and a complaint.
+/// Reads the data set whose number `line` was taken last, up to and with its closing delimiter. If its header
+/// is cut short, returns the number of its lines and an error.
 ///
 /// # Errors
-/// If header or values cannot be read as what they should be.
+/// If header or values are not what the format requires.
 pub fn read(
     stream: &mut Stream,
     (line, binary): (&[u8], bool),

@@ -9,14 +9,14 @@ const MARK: &[u8] = b"\xef\xbb\xbf";
 pub struct Stream<'a> {
     bytes: &'a [u8],
     at: usize,
-    /// Where the line taken last begins.
+    /// Byte at which the last line taken begins.
     start: usize,
-    /// Lines taken; `None` behind a binary block, where counting lines means nothing.
+    /// Lines taken so far; `None` after a binary block, where line numbers mean nothing.
     lines: Option<u64>,
 }
 
 impl<'a> Stream<'a> {
-    /// Stands before the first byte.
+    /// Starts at the first byte, after a byte order mark.
     pub fn new(bytes: &'a [u8]) -> Stream<'a> {
         let at = if bytes.starts_with(MARK) { MARK.len() } else { 0 };
         Stream { bytes, at, start: at, lines: Some(0) }
@@ -59,8 +59,8 @@ impl<'a> Stream<'a> {
         block
     }
 
-    /// Passes over everything up to and with the next delimiter: lines that are not blank before it, and
-    /// whether there is one.
+    /// Skips everything up to and including the next delimiter. Returns the number of lines before it that
+    /// are not blank, and whether there is a delimiter.
     pub fn pass_set(&mut self) -> (usize, bool) {
         let mut lines = 0;
         while let Some(line) = self.line_within() {
@@ -69,7 +69,7 @@ impl<'a> Stream<'a> {
         (lines, self.next_line().is_some())
     }
 
-    /// What is not taken yet.
+    /// The bytes not taken yet.
     pub fn rest(&self) -> &'a [u8] {
         &self.bytes[self.at..]
     }
@@ -79,13 +79,13 @@ impl<'a> Stream<'a> {
         self.bytes[..self.at].ends_with(b"\n")
     }
 
-    /// Place of the line taken last; its byte behind a binary block.
+    /// Place of the last line taken: its number, or its byte after a binary block.
     pub fn place(&self) -> Place {
         let byte = if self.lines.is_none() { Some(self.start as u64) } else { None };
         Place { line: self.lines, byte, ..Place::default() }
     }
 
-    /// Place of the byte that stands `back` bytes before those not taken.
+    /// Place of the byte that lies `back` bytes before the first one not taken.
     pub fn byte_place(&self, back: usize) -> Place {
         Place { byte: Some((self.at - back) as u64), ..Place::default() }
     }
@@ -99,7 +99,7 @@ pub fn is_delimiter(line: &[u8]) -> bool {
     blanks <= 4 && line.trim_ascii() == b"-1"
 }
 
-/// The number on the line behind an opening `-1`, in its first six columns, and whether a `b` for binary
+/// The number on the line after an opening `-1`, in its first six columns, and whether a `b` for binary
 /// values follows it; `None` where the line is something else.
 pub fn set_number(line: &[u8]) -> Option<(u32, bool)> {
     let start = line.iter().position(|b| *b != b' ')?;
@@ -113,11 +113,10 @@ pub fn set_number(line: &[u8]) -> Option<(u32, bool)> {
     (ends && end <= 6).then_some((number, binary))
 }
 
-/// Whether `bytes`, which stand behind binary values, begin with a closing `-1`, alone or behind one line
-/// end.
+/// Whether `bytes`, which follow binary values, begin with a closing `-1`, alone or after one line end.
 ///
-/// It must stand in its very columns: values are searched for it, and looser forms would be found in the
-/// wrong place.
+/// It must be in its exact columns: values are searched for it, and looser forms would be found in the wrong
+/// place.
 pub fn closes(bytes: &[u8]) -> bool {
     let bytes = bytes.strip_prefix(b"\r").unwrap_or(bytes);
     let bytes = bytes.strip_prefix(b"\n").unwrap_or(bytes);

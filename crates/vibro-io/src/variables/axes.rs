@@ -1,4 +1,4 @@
-//! Abscissae and units of vectors, as the names of other variables say them.
+//! Abscissae and units of vectors, found by the names of other variables.
 
 use super::Array;
 use super::names::Meaning::{Increment, Rate, Start};
@@ -15,18 +15,18 @@ use vibro_record::code;
 use vibro_record::units::{Quantity, Unit};
 use vibro_record::{Axis, AxisKind, Error, Finding, Grid, Meta, Result};
 
-/// A shaft turns slower than this, in Hz.
+/// Shafts turn slower than this, in Hz: a `rate` below it may be a speed of rotation.
 const SHAFT: f64 = 1000.0;
 
-/// Days since the year 0 as MATLAB counts them, from 2001 to 2096.
+/// Days since the year 0, as MATLAB counts them, of dates from 2001 to 2096.
 const DATENUM: std::ops::Range<f64> = 730_852.0..765_700.0;
-/// Times without a unit that rise by so much count the ticks of a clock.
+/// Mean step from which times without a unit are ticks of a clock, not seconds.
 const TICKS: f64 = 1000.0;
-/// From here on, in s, steps are taken before they are scaled.
+/// Start in s from which times are counted from their first value before they are scaled.
 const FAR: f64 = 1e6;
 
-/// The kind of abscissa that a vector of this name holds, from where it is counted, its factor to s or Hz,
-/// and what is assumed.
+/// Kind of abscissa that a vector of this name holds; its origin and its factor to s or Hz; a finding on what
+/// is assumed.
 fn kind(
     dialect: &Dialect,
     name: &str,
@@ -53,26 +53,26 @@ fn kind(
             if let Some((code, unit, factor)) = dated {
                 return Some((kind, [first, factor], Some(Finding::caution(code).name("unit", unit))));
             }
-            // Of other formats it is said that units are assumed.
+            // Formats without attributes get one finding on units for the whole file.
             (step < TICKS).then_some((kind, [0.0, 1.0], assumed.filter(|_| !seconds && dialect.attributes)))
         }
         _ => Some((kind, [0.0, factor], assumed)),
     }
 }
 
-/// A scalar that says something of the abscissa of vectors.
+/// A scalar that describes the abscissa of vectors.
 struct Scalar {
     name: String,
     meaning: Meaning,
     trust: Trust,
-    /// Of a step that may be one of frequency: what its unit says.
+    /// Kind of abscissa; `None` for an increment or a start whose unit does not say it.
     kind: Option<AxisKind>,
-    /// In s or Hz; the step of a rate.
+    /// In s or Hz; for a sampling rate, the step in s.
     value: f64,
 }
 
 impl Scalar {
-    /// `scope` is where the scalar speaks.
+    /// `scope` is the struct or vector that the scalar describes.
     fn of(
         dialect: &Dialect,
         (name, said): &(String, String),
@@ -100,7 +100,7 @@ impl Scalar {
         };
         let labelled = notes.iter().find(|(label, _)| its_own(label)).map(|(_, text)| text.clone());
         if matches!(meaning, Increment | Start) {
-            // Beside vectors a unit is theirs.
+            // A unit beside vectors is the unit of the vectors.
             let apart = dialect.bare(inside) != dialect.bare(scope);
             let says = |label: &str| {
                 let (word, beside) = (dialect.word(label), dialect.container(label) == inside);
@@ -127,17 +127,17 @@ impl Scalar {
     }
 }
 
-/// What the file and the person say of abscissae.
+/// Abscissae as the file and the user state them.
 pub struct Axes<'a> {
     pub dialect: &'static Dialect,
     options: &'a Options,
-    /// With their names, times before frequencies.
-    /// Name, axis, and the relative standard uncertainty of its step.
+    /// Vectors that are abscissae, times before frequencies: name, axis, relative standard uncertainty of its
+    /// step.
     vectors: Scoped<(String, Axis, f64)>,
     scalars: Scoped<Scalar>,
-    /// By struct, how deep the outermost array in it stands, and the longest length of those.
+    /// By struct: depth of the outermost arrays in it, and the greatest length of those.
     outer: HashMap<String, (Reverse<usize>, Option<u64>)>,
-    /// Vectors that rise evenly and are not known as abscissae: name, length and step.
+    /// Vectors that rise evenly but are not used as abscissae: name, length and step.
     even: Vec<(String, usize, f64)>,
 }
 
@@ -195,7 +195,7 @@ impl<'a> Axes<'a> {
             }
             let label = format!("vector {name:?}");
             let drift = drift(vector, *single) * factor;
-            // Seconds since 1970 have no room for the digits of their steps.
+            // Seconds since 1970 leave too few digits for their steps.
             let first = if (vector[0] * factor).abs() >= FAR { vector[0] } else { from };
             let vector = vector.iter().map(|v| (v - first) * factor).collect();
             let JudgedAxis { mut axis, clock, found } =
@@ -223,22 +223,22 @@ impl<'a> Axes<'a> {
         axes
     }
 
-    /// Remembers what among the records may be an abscissa.
+    /// Remembers records that rise evenly: a finding may suggest one as abscissa.
     pub fn offer<'r>(&mut self, records: impl Iterator<Item = (&'r String, &'r Held)>) {
         let even = records.filter_map(|(name, values)| {
             let rising = values.rising()?;
             let step = Axis::from_values(AxisKind::Index, rising.to_vec(), drift(rising, false)).step()?;
-            // Numbers from 1 on only count.
+            // Steps of exactly 1 are sample numbers.
             (step != 1.0).then(|| (name.clone(), values.len(), step))
         });
         self.even = even.collect();
     }
 
-    /// The scalars that say the step of a vector of `n` values, the most certain first; none where that is
-    /// not certain enough.
+    /// Scalars that state the step of a vector of `n` values, most certain first; none where even that is too
+    /// uncertain.
     fn chosen<'s>(&'s self, name: &'s str, n: usize, complex: bool) -> Vec<(&'s str, &'s Scalar)> {
-        // What is shorter and stands deeper than the vectors of a struct has as a rule been made of them, at
-        // another rate.
+        // A vector nested deeper than others of the struct and at most half as long was usually computed from
+        // them, at another rate.
         let depth = self.dialect.structs(name).count();
         let shorter = |(d, long): &(Reverse<usize>, Option<u64>)| d.0 < depth && Some(2 * n as u64) <= *long;
         let made = |scope: &str| self.outer.get(scope).is_some_and(shorter);
@@ -263,7 +263,7 @@ impl<'a> Axes<'a> {
         let fits = |axis: &Axis| axis.len() == n && !(complex && axis.kind == AxisKind::Time);
         let mut fitting = self.vectors.over(name).filter(|(_, (_, axis, _))| fits(axis));
         let said = self.chosen(name, n, complex);
-        // What stands nearer is meant; a vector beside it is more than an attribute.
+        // The nearer statement wins; a vector beside the values wins over an attribute.
         let beside = self.dialect.container(name).len();
         let nearest = said.first().map_or(0, |(scope, _)| scope.len().min(beside));
         let first = fitting.next().filter(|(scope, _)| scope.len() >= nearest);
@@ -323,7 +323,7 @@ impl<'a> Axes<'a> {
         Ok(axis(start, scalar.value, n))
     }
 
-    /// What to say of values without an abscissa: which variables may hold it.
+    /// Finding on values without an abscissa: it suggests variables that may hold it.
     fn unsaid(&self, name: &str, values: &Held, record: &str) -> Finding {
         let (n, complex) = (values.len(), values.is_complex());
         let mut found = Finding::caution(code::ABSCISSA_UNSAID);
@@ -347,8 +347,8 @@ impl<'a> Axes<'a> {
     }
 }
 
-/// Units by the vector whose attribute they are, or by the struct that states them of its only vector or, as
-/// an attribute, of all.
+/// Units by vector, of which they are an attribute, or by struct: a struct states the unit of its only vector
+/// or, with attributes, of all its vectors.
 pub fn units<'n>(
     dialect: &Dialect,
     notes: &'n [(String, String)],

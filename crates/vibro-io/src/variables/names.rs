@@ -1,8 +1,9 @@
-//! What the names of variables say: where they stand, of which vectors they speak, and what of them.
+//! Meaning of variable names: their struct, the vectors that they describe, and what they say about these.
 //!
-//! What stands in a struct or group speaks of the vectors in it, however deep, and an attribute of its
-//! vector. Where a struct has none, it speaks of those beside it: `File_Header.SampleFrequency` of
-//! `Channel_1_Data`, `Signal.x_values.increment` of `Signal.y_values.values`.
+//! A scalar or text in a struct or group describes all vectors in it, however deep; an attribute describes
+//! its vector. In a struct without vectors, it describes those beside the struct:
+//! `File_Header.SampleFrequency` describes `Channel_1_Data`, `Signal.x_values.increment` describes
+//! `Signal.y_values.values`.
 
 use crate::format::Format;
 use std::collections::HashMap;
@@ -11,21 +12,21 @@ use std::collections::HashMap;
 #[derive(Debug)]
 pub struct Dialect {
     pub format: Format,
-    /// Behind the name of a struct or group.
+    /// Character after the name of a struct or group.
     pub separator: char,
-    /// Around the index of a row or column, and the first index.
+    /// Brackets around the index of a row or column, and the first index.
     pub brackets: [char; 2],
     pub first: usize,
     /// Whether matrices are stored row after row.
     pub by_rows: bool,
-    /// A matrix with more columns than rows, and than this, is taken for one that lies on its side.
+    /// A matrix with more columns than rows and than this is read by rows: one channel a row.
     pub wide: u64,
-    /// Whether groups and vectors have attributes: the unit of a group is that of all in it, and notes go by
-    /// their names in the group.
+    /// Whether groups and vectors have attributes. Then the unit of a group holds for all in it, and notes
+    /// have the names that they have in the group.
     pub attributes: bool,
 }
 
-/// What a scalar says of an abscissa.
+/// What a scalar says about an abscissa.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Meaning {
     /// Sampling rate in Hz.
@@ -38,23 +39,23 @@ pub enum Meaning {
     Start,
 }
 
-/// Whether a name means one thing only.
+/// How surely a name has its meaning.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Trust {
-    /// It does.
+    /// It has no other meaning.
     Sure,
-    /// It does as a rule: a step is taken with a caution, a start where it stands beside an increment.
+    /// It usually has this meaning: a step is used with a caution, a start only beside an increment.
     Likely,
-    /// `rate` may be that of a shaft: taken from 1 kHz on, where nothing better is said.
+    /// `rate` may be the speed of a shaft: used from 1 kHz on, where nothing better is stated.
     Vague,
-    /// Not taken unless its unit is stated, but named to the person.
+    /// Not used unless its unit is stated, but suggested to the user.
     Offered,
 }
 
 use Meaning::{Increment, Rate, Start, Step};
 use Trust::{Likely, Offered, Sure, Vague};
 
-/// Names as [`Dialect::word`] gives them, what they mean, and whether they mean nothing else.
+/// Names as [`Dialect::word`] gives them, their meaning, and how sure it is.
 const NAMES: &[(&[&str], Meaning, Trust)] = &[
     (&["fs", "samplerate", "samplingrate", "samplefrequency", "samplingfrequency"], Rate, Sure),
     (&["dt", "ts", "deltat", "sampletime", "samplinginterval", "sampleinterval", "tinterval"], Step, Sure),
@@ -66,19 +67,19 @@ const NAMES: &[(&[&str], Meaning, Trust)] = &[
     (&["sr"], Rate, Likely),
     (&["rate"], Rate, Vague),
 ];
-/// Parts of such names.
+/// Parts of names of a sampling rate, and how sure that is.
 const PARTS: &[(&[&str], Trust)] = &[
     (&["samplerate", "samplingrate", "samplefreq", "samplingfreq"], Likely),
     (&["sampl", "rate", "freq"], Offered),
 ];
-/// Names of the unit of values, and of that of their abscissa.
+/// Names of variables that hold the unit of values, or the unit of their abscissa.
 pub const UNIT: &[&str] = &["unit", "units", "yunit", "yunits", "unity", "unitstring"];
 pub const X_UNIT: &[&str] = &["xunit", "xunits", "unitx"];
-/// Names of what a struct is about: the struct's own name says what it is.
+/// Names such as `Data` that say nothing: the name of the struct is used instead.
 const CONTENTS: [&str; 3] = ["data", "values", "value"];
 
 impl Dialect {
-    /// The struct in which a variable stands, with its last separator; empty for variables of their own.
+    /// The struct that holds a variable, with its last separator; empty for a variable outside structs.
     pub fn container<'n>(&self, name: &'n str) -> &'n str {
         name.rfind(self.separator).map_or("", |at| &name[..=at])
     }
@@ -88,7 +89,7 @@ impl Dialect {
         container.strip_suffix(self.separator).unwrap_or(container)
     }
 
-    /// The last part of a name that is more than `Data`; of `X(1).Data` it is `X`.
+    /// The last part of a name that says something: of `X(1).Data` it is `X`.
     pub fn key<'n>(&self, name: &'n str) -> &'n str {
         let (container, last) = name.split_at(self.container(name).len());
         match container.strip_suffix(self.separator) {
@@ -100,12 +101,12 @@ impl Dialect {
         }
     }
 
-    /// The key in lower case, of letters and digits alone.
+    /// The key in lower case, letters and digits only.
     pub fn word(&self, name: &str) -> String {
         self.key(name).chars().filter(|c| c.is_alphanumeric()).collect::<String>().to_lowercase()
     }
 
-    /// What a scalar of this name says.
+    /// What a scalar of this name says about an abscissa, and how sure that is.
     pub fn meaning(&self, name: &str) -> Option<(Meaning, Trust)> {
         let word = self.word(name);
         let named = NAMES.iter().find(|(names, ..)| names.contains(&word.as_str()));
@@ -113,13 +114,13 @@ impl Dialect {
         named.map(|n| (n.1, n.2)).or_else(|| part().map(|(_, trust)| (Rate, *trust)))
     }
 
-    /// The structs in which a variable stands, the innermost first; at last the file, whose name is empty.
+    /// The structs that hold a variable, innermost first; the last is the file, whose name is empty.
     pub fn structs<'n>(&self, name: &'n str) -> impl Iterator<Item = &'n str> {
         let outer = |inner: &&'n str| inner.strip_suffix(self.separator).map(|inner| self.container(inner));
         std::iter::successors(Some(self.container(name)), outer)
     }
 
-    /// The struct of whose vectors a variable speaks, or the vector whose attribute it is. `vectors` are
+    /// The struct whose vectors a variable describes, or the vector whose attribute it is. `vectors` are
     /// sorted.
     pub fn scope<'n>(&self, name: &'n str, vectors: &[&str]) -> &'n str {
         let of = |inside: &'n str| {
@@ -132,7 +133,7 @@ impl Dialect {
     }
 }
 
-/// What speaks of vectors, by their struct.
+/// Things that describe vectors, by the struct or vector that they describe.
 pub struct Scoped<T> {
     dialect: &'static Dialect,
     things: HashMap<String, Vec<T>>,
@@ -149,7 +150,7 @@ impl<T> Scoped<T> {
         self.things.entry(scope.to_owned()).or_default().push(thing);
     }
 
-    /// What speaks of a vector, the nearest first, with its struct.
+    /// What describes a vector, the nearest first, with its struct.
     pub fn over<'a>(&'a self, name: &'a str) -> impl Iterator<Item = (&'a str, &'a T)> {
         let scopes = std::iter::once(name).chain(self.dialect.structs(name));
         let all = scopes.filter_map(|scope| Some((scope, self.things.get(scope)?)));

@@ -34,14 +34,14 @@ pub struct Storage {
 /// Writes records in SI units, one data set each, lines ended by LF.
 ///
 /// Name, point and identification lines come from [`vibro_record::Meta::notes`] where the record was read
-/// from such a file, else the name becomes the first identification line. A scaling, a window and a noise
-/// bandwidth that the function type cannot tell stand in the fifth. Missing values are written as NaN, which
-/// few programs can read.
+/// from such a file, else the name becomes the first identification line. The fifth line states a scaling,
+/// window and noise bandwidth that the function type cannot express. Missing values are written as NaN, which
+/// few programs read.
 ///
-/// Double precision in binary keeps every bit of the values. Start and step of an even abscissa are printed
-/// with up to nine digits, an uneven abscissa is rounded to six digits or single precision: the format has no
-/// room for more. Where that would move a value by more than a thousandth of the (smallest) step, the record
-/// is refused.
+/// Double precision in binary keeps every bit of the values. Start and step of an even abscissa have up to
+/// nine digits, an uneven abscissa six digits or single precision: the format has no room for more. More than
+/// the usual digits are used from a shift of a thousandth of the (smallest) step on; beyond a tenth the
+/// record is refused.
 ///
 /// ```
 /// use vibro_record::{Axis, Meta, Record, Trace};
@@ -114,7 +114,7 @@ fn text(record: &Record, layout: Layout, out: &mut impl Write) -> io::Result<()>
     if record.is_empty() { Ok(()) } else { out.write_all(b"\n") }
 }
 
-/// Fortran's `1PEw.d`: the letter makes room for a third digit of the exponent.
+/// A number as Fortran's `1PEw.d` prints it: the letter E is dropped for an exponent of three digits.
 fn field(value: f64, width: usize, digits: usize) -> String {
     if !value.is_finite() {
         return format!("{:>width$}", "NaN");
@@ -126,15 +126,15 @@ fn field(value: f64, width: usize, digits: usize) -> String {
     format!("{:>width$}", format!("{mantissa}{letter}{sign}{exponent:0>2}"))
 }
 
-/// How far a value of the abscissa should be off at most, in parts of the (smallest) step: more digits are
-/// taken for it.
+/// Shift of an abscissa value by rounding, over the (smallest) step, that is aimed at: with usual digits,
+/// else with more.
 const WANTED: f64 = 1e-3;
-/// How far it may be off, or the record is refused.
+/// Largest shift of an abscissa value over the (smallest) step: beyond it the record is refused.
 const TOLERANCE: f64 = 0.1;
-/// Width of start and step in record 7, and of an abscissa in text.
+/// Characters of start and step in record 7, and of an abscissa value in text.
 const WIDTH: usize = 13;
 
-/// Start and step of an even abscissa as they stand in record 7; zeros for an uneven one.
+/// Start and step of an even abscissa as printed in record 7; zeros for an uneven one.
 ///
 /// # Errors
 /// If the format has too few digits for the abscissa of this record.
@@ -147,7 +147,7 @@ fn form(record: &Record, binary: bool) -> Result<[String; 2]> {
     match &record.axis().grid {
         Grid::Even { start, step, n } => {
             let last = n.saturating_sub(1) as f64;
-            // Start and step take half of the tolerance each; the error of the step adds up to the last
+            // Start and step may use half of the tolerance each; the error of the step adds up to the last
             // value.
             let fitting = |value: f64, times: f64| {
                 [WANTED, TOLERANCE].into_iter().find_map(|part| {
@@ -173,8 +173,8 @@ fn form(record: &Record, binary: bool) -> Result<[String; 2]> {
     }
 }
 
-/// Ways to write a number in its columns, the usual one first: E13.5 with one more digit where there is no
-/// sign, then as many digits as go behind a blank, then as many as there are columns.
+/// Ways to print a number in 13 columns, the usual one first: E13.5, with one more digit if it is not
+/// negative; then as many digits as fit after a blank; then as many as fill all columns.
 fn spellings(value: f64) -> [String; 3] {
     let dense = |room: usize| {
         let fits = |digits: &usize| format!("{value:.digits$E}").len() <= room;
@@ -216,7 +216,7 @@ mod tests {
         form(&Record::Trace(Trace { meta: Meta::new("x", Unit::none()), axis, values }), binary)
     }
 
-    /// A record of one value stands for a long one: only its axis is looked at.
+    /// A record of one value over a long axis: `form` looks only at the axis.
     fn form_of_axis(axis: Axis) -> Result<[String; 2]> {
         form(&Record::Trace(Trace { meta: Meta::new("x", Unit::none()), axis, values: vec![0.0] }), false)
     }

@@ -15,7 +15,7 @@ pub const LINES: usize = 11;
 pub struct Heading {
     /// Identification lines 1 to 5.
     pub id: [String; 5],
-    /// Record 6 as it stands.
+    /// Record 6 as written in the file.
     pub record6: String,
     /// Function type, record 6.
     pub function: i64,
@@ -25,11 +25,11 @@ pub struct Heading {
     pub reference: DegreeOfFreedom,
     /// Storage of the values, record 7.
     pub layout: Layout,
-    /// Number of values, or of abscissa and value together.
+    /// Number of points: values, or pairs of abscissa and value.
     pub n: usize,
-    /// First abscissa value of even spacing.
+    /// First abscissa value of even spacing, in the unit of record 8.
     pub start: f64,
-    /// Abscissa increment of even spacing.
+    /// Abscissa increment of even spacing, in the unit of record 8.
     pub step: f64,
     /// Abscissa, record 8.
     pub abscissa: AxisCharacteristics,
@@ -37,7 +37,7 @@ pub struct Heading {
     pub ordinate: AxisCharacteristics,
     /// Denominator of the ordinate, record 10.
     pub denominator: AxisCharacteristics,
-    /// Place of record 7, for complaints about what it declares.
+    /// Place of record 7, for errors about what it declares.
     pub place: Place,
 }
 
@@ -53,8 +53,8 @@ pub struct DegreeOfFreedom {
 }
 
 impl DegreeOfFreedom {
-    /// `PWL Mic 1+X`: entity, node and direction, as far as they are given and the entity does not hold the
-    /// rest.
+    /// Name such as `PWL Mic 1+X`: entity, node and direction, as far as given; the entity alone where it
+    /// already contains the others.
     pub fn name(&self) -> String {
         const AXES: [&str; 7] = ["", "X", "Y", "Z", "RX", "RY", "RZ"];
         let axis = AXES.get(self.direction.unsigned_abs() as usize).copied().unwrap_or_default();
@@ -91,8 +91,9 @@ impl AxisCharacteristics {
 }
 
 impl Heading {
-    /// Reads the eleven lines that follow the number of the set. Gives the number of lines found where the
-    /// set or the file ends before the eleventh; the delimiter that ended it is then left in the stream.
+    /// Reads the eleven lines that follow the number of the set. Returns the number of lines found, as inner
+    /// `Err`, if the set or the file ends before the eleventh; the closing delimiter then stays in the
+    /// stream.
     pub fn read(stream: &mut Stream) -> Result<std::result::Result<Heading, usize>> {
         let mut lines = Vec::with_capacity(LINES);
         while lines.len() < LINES {
@@ -118,7 +119,8 @@ impl Heading {
         }))
     }
 
-    /// A short name: the response point, for a ratio of two with the reference point, or else the first line.
+    /// A short name: the response point, for a ratio also the reference point; without a response point, the
+    /// first line.
     pub fn name(&self) -> String {
         let response = self.response.name();
         let ratio = matches!(self.function, 3..=6 | 8);
@@ -131,13 +133,13 @@ impl Heading {
     }
 }
 
-/// Text without surrounding blanks; empty where it is `NONE`, which stands for nothing.
+/// Text without surrounding blanks; empty for `NONE`, which marks an unused field.
 fn given(text: &str) -> String {
     let text = text.trim();
     if text.eq_ignore_ascii_case("none") { String::new() } else { text.to_owned() }
 }
 
-/// Fields of so many characters, without blanks around them; empty beyond the end of the line.
+/// Splits a line into fields of these widths in characters, trimmed; empty beyond the end of the line.
 fn cut<const N: usize>(line: &str, widths: [usize; N]) -> [String; N] {
     let mut rest = line.chars();
     widths.map(|width| rest.by_ref().take(width).collect::<String>().trim().to_owned())
@@ -169,7 +171,7 @@ fn dof(text: &str) -> Result<(i64, DegreeOfFreedom, DegreeOfFreedom)> {
     Ok((function, response, reference))
 }
 
-/// Record 7, format `3I10,3E13.5`, or its numbers between blanks.
+/// Reads record 7, format `3I10,3E13.5` or numbers between blanks: storage, number of values, start and step.
 fn form(text: &str) -> Result<(Layout, usize, f64, f64)> {
     let columns = cut(text.trim_end(), [10, 10, 10, 13, 13]);
     let words: Vec<String> = text.split_whitespace().map(str::to_owned).collect();
@@ -201,7 +203,7 @@ fn form(text: &str) -> Result<(Layout, usize, f64, f64)> {
     Ok((Layout { complex, double, even: spacing == 1 }, n, start, step))
 }
 
-/// Records 8 to 11, format `I10,3I5,2(1X,A20)`.
+/// Reads one of the records 8 to 11, format `I10,3I5,2(1X,A20)`.
 fn axis(text: &str) -> AxisCharacteristics {
     let text = text.trim_end();
     let [data_type, _, _, _, before, label, between, unit] = cut(text, [10, 5, 5, 5, 1, 20, 1, usize::MAX]);

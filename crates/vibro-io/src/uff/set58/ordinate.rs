@@ -8,8 +8,8 @@ use vibro_record::code;
 use vibro_record::units::{Dimension, Quantity, Unit};
 use vibro_record::{Finding, Scaling};
 
-/// Data set 164: length, force and temperature of the file that make one in SI; `None` where the file does
-/// not say.
+/// Data set 164: how many units of the file for length, force and temperature make one SI unit; `None` where
+/// the file does not say.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct UnitSystem(Option<[f64; 3]>);
 
@@ -39,7 +39,7 @@ const MANGLED: [(&str, &str); 3] = [("²", "┬▓ Â² ≤ ▓"), ("³", "┬�
 /// Numerator or denominator of an ordinate.
 #[derive(Debug, Clone)]
 struct FractionTerm {
-    /// Whether a text says its unit.
+    /// Whether its unit is stated as text.
     text: bool,
     /// Name and dimension of its data type.
     data_type: Option<(&'static str, Dimension)>,
@@ -68,13 +68,13 @@ impl FractionTerm {
         FractionTerm { text: true, data_type, dimension: unit.dimension(), factor: unit.factor() }
     }
 
-    /// Whether neither text nor data type says what it is.
+    /// Whether its unit is unknown: neither text nor data type states it.
     fn unsaid(&self) -> bool {
         !self.text && self.data_type.is_none()
     }
 }
 
-/// A unit whose superscript was mangled on its way through a wrong code page.
+/// The unit of a text whose superscripts or µ were mangled by a wrong code page.
 fn mend(text: &str, findings: &mut Vec<Finding>) -> Option<Unit> {
     let all = MANGLED.iter().flat_map(|(right, wrong)| wrong.split(' ').map(move |wrong| (wrong, right)));
     let mended = all.fold(text.to_owned(), |t, (wrong, right)| t.replace(wrong, right));
@@ -83,8 +83,8 @@ fn mend(text: &str, findings: &mut Vec<Finding>) -> Option<Unit> {
     Some(unit)
 }
 
-/// SI unit of the values of a data set, or the file's own where it is not understood; the factor to it; the
-/// unit as the file has it, empty where it has none; and what is to be said of it.
+/// SI unit of the values of a data set, or the file's own where that is not understood; the factor to it; the
+/// unit as the file writes it, empty where it has none; and findings on it.
 pub fn unit(heading: &Heading, system: &UnitSystem) -> (Unit, f64, String, Vec<Finding>) {
     let mut findings = Vec::new();
     let above = FractionTerm::of(&heading.ordinate, heading.response.direction, system, &mut findings);
@@ -130,7 +130,7 @@ fn spelled(dimension: Dimension, factor: f64, written: &str) -> Unit {
         .unwrap_or_else(|| Unit::from_dimension(dimension))
 }
 
-/// Whether the text of the numerator is the unit of the whole ratio already.
+/// Whether the unit text of the numerator is already the unit of the whole ratio.
 fn is_whole(above: &FractionTerm, below: &FractionTerm) -> bool {
     let (true, Some(written), Some(denominator)) = (above.text, above.dimension, below.dimension) else {
         return false;
@@ -141,8 +141,8 @@ fn is_whole(above: &FractionTerm, below: &FractionTerm) -> bool {
     }
 }
 
-/// Dimension of the ordinate, the power to which it stands in the lines of a spectrum of this function type,
-/// and the power of seconds beside it. Without an answer the values stay as they are, for the reason given.
+/// Dimension of the ordinate; its power in the spectral lines of this function type, 2 for a squared one; and
+/// the power of seconds, 1 for a PSD, 2 for an energy density. An error leaves values in the file's unit.
 fn plain(
     heading: &Heading,
     above: &FractionTerm,
@@ -182,7 +182,7 @@ fn is_frf(quantity: Quantity) -> bool {
     matches!(quantity, Quantity::Receptance | Quantity::Mobility | Quantity::Accelerance)
 }
 
-/// A doubt where the label of the ordinate names another quantity than its unit.
+/// A caution where the label of the ordinate names another quantity than its unit.
 fn label_against_unit(heading: &Heading, unit: &Unit, written: &str) -> Option<Finding> {
     let label = codes::quantity_of_label(&heading.ordinate.label)?;
     let quantity = Quantity::of(unit.dimension()?);
