@@ -278,7 +278,7 @@ impl<'h, 'a> Segment<'h, 'a> {
         Ok(records)
     }
 
-    /// The abscissa of a channel: its X column, or X0 and Delta_X of the header, which have more digits,
+    /// The abscissa of a channel: its X column, or `X0` and `Delta_X` of the header, which have more digits,
     /// where they agree with it or there is no column.
     fn abscissa(
         &self,

@@ -351,7 +351,7 @@ impl FittedPulse {
         samples.model(self.model, &self.fit.parameters, times, first)
     }
 
-    /// Corrected Akaike criterion (AICc).
+    /// Corrected Akaike criterion (`AICc`).
     pub fn aicc(&self) -> f64 {
         aicc(self.fit.sum_of_squares(), self.fit.residuals.len(), self.fit.parameters.len())
     }
