@@ -14,7 +14,7 @@ fn wave(n: u32) -> Vec<u8> {
 
 #[test]
 fn a_wave_file_may_fill_the_limit_and_no_more() {
-    // 2 channels × 1000 frames × 8 bytes, three times with what is made of them.
+    // 2 channels × 1000 frames × 8 bytes, times three: the values, and twice as much for results.
     let bytes = wave(1000);
     let reader = |limit: f64| Reader::new().max_memory(Limit(limit)).beside(2.0);
     let read = |reader: &Reader| reader.from_reader("x.wav", bytes.as_slice());
