@@ -1,4 +1,4 @@
-//! A part of time traces, from one time to another.
+//! Cuts time traces to a span of time.
 
 use crate::assemble::{drift, epoch, from_values, short};
 use crate::held::Contents;

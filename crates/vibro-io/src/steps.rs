@@ -26,7 +26,7 @@ impl SweepReader {
     /// channel, or if a channel is no force or no motion.
     ///
     /// # Errors
-    /// If several files come with several channels.
+    /// If there are several files and several channels of force or response.
     pub fn steps(&self, steps: &Steps) -> Result<Vec<(PathBuf, Result<StepTraces>)>> {
         let reader = Reader::new().within(&self.folder).rate(steps.rate).format(self.format);
         let one = |file: &Path, force: &str, response: &str| {

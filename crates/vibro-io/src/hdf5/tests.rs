@@ -133,7 +133,7 @@ fn attributes_state_unit_rate_and_start_of_their_dataset_or_group() {
     };
     assert_eq!(of("bare"), ("", 0.0, 0.01, 24));
     assert_eq!(of("run 1/two"), ("", 3.0, 0.25, 2));
-    // Two rows of 24 values are two channels, three of eight over three times are eight.
+    // Two rows of 24 values are two channels; three rows of eight values over three times are eight channels.
     assert_eq!(of("run 1/velocity[1,:]"), ("m/s", 0.0, 0.005, 24));
     assert_eq!(of("run 2/force[:,7]"), ("N", 0.0, 0.002, 3));
     assert_eq!(recording.records.len(), 12);

@@ -99,7 +99,7 @@ impl<'a> Scales<'a> {
     fn step(&self, i: u32, slots: &[Slot]) -> Result<(Conversion, Vec<u32>), String> {
         let number = |key: &str| self.from.number(&format!("NI_Scale[{i}]_{key}"));
         let Some(kind) = self.from.text(&format!("NI_Scale[{i}]_Scale_Type")) else {
-            // The scaler of a DAQmx channel, which stands in the layout of its raw data.
+            // No type: a scaler of DAQmx, whose column is known from the layout of the raw data.
             let column = slots.iter().position(|slot| *slot == Slot::Scaler(i)).unwrap_or(0);
             return Ok((Conversion::Raw(column), Vec::new()));
         };

@@ -463,7 +463,7 @@ fn only_a_name_makes_an_abscissa() {
     assert_eq!(steps(&both).len(), 2);
     let lines = group(&[("Frequency", &unit("kHz"), &rising), ("A", &unit("g"), &[1.0; 4])]);
     assert_eq!(steps(&lines), [("A".into(), AxisKind::Frequency, Some(2000.0))]);
-    // What is no abscissa of another channel is kept.
+    // A time that has the length of no other channel is kept as a channel.
     let short = group(&[("Time", &unit("s"), &rising), ("a", &unit("g"), &[1.0; 5])]);
     assert!(has_finding(
         &recording(&short).unwrap().findings,
