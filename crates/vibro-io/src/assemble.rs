@@ -121,8 +121,8 @@ pub fn from_values(
 ) -> JudgedAxis {
     let n = values.len();
     let mean = (values.last().unwrap_or(&0.0) - values.first().unwrap_or(&0.0)) / n.max(2) as f64;
-    // Fine digits: even to within the resolution is even. Coarse digits could hide unevenness: steps must be
-    // equal.
+    // With fine digits, steps even to within the resolution count as even. Coarse digits could hide uneven
+    // steps: these must be all but equal.
     let tolerance = if is_fine(resolution, mean) { resolution } else { EQUAL * resolution };
     let axis = Axis::from_values(kind, values, tolerance);
     let Axis { kind, grid: Grid::Uneven(values) } = axis else {

@@ -178,7 +178,7 @@ impl Recording {
     /// As [`Recording::trace`], but moves the values out of the recording, which saves memory.
     ///
     /// # Errors
-    /// As there.
+    /// As [`Recording::trace`].
     pub fn take_trace(&mut self, channel: Option<&str>, calibration: Option<f64>) -> Result<Trace> {
         let (chosen, nothing) = (self.chosen(channel)?.0, self.no_trace());
         let Record::Trace(trace) = &mut self.records[chosen] else { return Err(nothing) };

@@ -101,7 +101,7 @@ impl Folder {
         Folder { outside, ..self }
     }
 
-    /// Its path.
+    /// Path of the folder.
     pub fn root(&self) -> &Path {
         &self.root
     }

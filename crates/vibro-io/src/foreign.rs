@@ -1,11 +1,11 @@
-//! Formats that are known and not read: which program wrote them, and what to export there.
+//! Formats that are recognised but not read: which program wrote them, and what to export there.
 
 use super::text::encoding;
 use crate::format::Format;
 use crate::source::Source;
 use vibro_record::{Error, Place};
 
-/// How a format is told: by bytes at an offset, or by the ending of a file that is no text.
+/// How a format is recognised: by bytes at an offset, or by the ending of a file that is no text.
 enum Signature {
     Bytes(usize, &'static [u8]),
     Ending(&'static [&'static str]),
@@ -27,7 +27,7 @@ const SEISMIC: &str = "write it as SLIST, TSPAIR or CSV, e.g. with ObsPy";
 const EBCDIC: &[u8] = b"\xc3\x40\xf1";
 const AUDIO: &str = "turn it into WAV, e.g. with Audacity; a lossy recording is no measurement";
 
-/// Name of a format, what tells it, and the export to choose.
+/// Name of a format, how it is recognised, and the export to choose.
 const TABLE: &[(&str, Signature, &str)] = &[
     ("a Polytec vibrometer file", Ending(&["svd", "pvd"]), UFF),
     ("a Dewesoft recording", Ending(&["dxd", "d7d", "dxz"]), DEWESOFT),
@@ -74,7 +74,7 @@ const TABLE: &[(&str, Signature, &str)] = &[
     ("a packed file", Bytes(0, b"\x1f\x8b"), "unpack it first"),
 ];
 
-/// What to say of a source of a format that is known and not read.
+/// Error for a file of a recognised format that is not read.
 pub fn complaint(source: &Source) -> Option<Error> {
     let (head, ending) = (source.head(), source.extension());
     let is = |(_, by, _): &&(&str, Signature, &str)| match by {
@@ -82,8 +82,8 @@ pub fn complaint(source: &Source) -> Option<Error> {
         Named(endings, begins) => head.starts_with(begins) && endings.split(' ').any(|e| e == ending),
         Bytes(at, begins) => head.get(*at..).is_some_and(|head| head.starts_with(begins)),
     };
-    // MAT-files of version 7.3 are HDF5 and have a complaint of their own; one matrix of Octave reads as
-    // text.
+    // MAT-files of version 7.3 are HDF5 and have an error of their own; a text file of Octave with one matrix
+    // is read as text.
     let fine = |by: &Signature| match by {
         Bytes(_, OCTAVE) => encoding::decode(head).matches("# name:").count() < 2,
         _ => ending == "mat",

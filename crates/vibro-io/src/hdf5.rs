@@ -5,10 +5,10 @@
 //!   run1           attributes fs = 51200
 //!   run1/velocity  dataset of n values or n × channels, attributes unit = "mm/s"
 //! ```
-//! The crate hdf5-reader reads the bytes. Datasets, the fields of tables and attributes become [`variables`]:
-//! numeric datasets are records, and so are the columns of those with two dimensions, of which the longer one
-//! is the samples unless an abscissa says otherwise. What MATLAB writes becomes variables ([`matlab`]) as in
-//! its other MAT-files. Links to other files are not followed.
+//! The crate hdf5-reader reads the bytes. Datasets, the fields of tables and attributes become [`variables`].
+//! A numeric dataset is a record; one of two dimensions is a record for each channel, with its samples along
+//! the longer dimension unless an abscissa says otherwise. MATLAB's files are read like its other MAT-files
+//! ([`matlab`]). Links to other files are not followed.
 
 mod file;
 mod lzf;
@@ -26,10 +26,10 @@ use hdf5_reader::{Attribute, Dataset, Datatype};
 use vibro_record::{Finding, Result, Values};
 
 const SIGNATURE: &[u8] = b"\x89HDF\r\n\x1a\n";
-/// What programs write for themselves, as [`Dialect::word`] gives it.
+/// Attributes that programs write for themselves, as [`Dialect::word`] gives their names.
 const INTERNAL: &[&str] = &["class", "name", "dimensionlist", "dimensionlabels", "referencelist"];
-/// Names of what makes values of stored numbers: factor, offset and reference of the integers of an
-/// oscilloscope, factor and offset of any number, and the number that stands for a missing value.
+/// Names of attributes that convert stored numbers to values: factor, offset and reference of the integers of
+/// an oscilloscope, factor and offset of any number, and the number that marks a missing value.
 const SCALE: [&[&str]; 6] = [
     &["yinc", "yincrement"],
     &["yorg", "yorigin"],
@@ -39,9 +39,9 @@ const SCALE: [&[&str]; 6] = [
     &["fillvalue", "missingvalue"],
 ];
 type Scale = [f64; SCALE.len()];
-/// That of stored numbers which are the values.
+/// Scale of numbers that are stored as the values themselves.
 const AS_STORED: Scale = [1.0, 0.0, 0.0, 1.0, 0.0, f64::NAN];
-/// Names of factors of integers that say neither of what nor which way.
+/// Names of factors of integers that say neither of what nor in which direction: such a dataset is left out.
 const FACTORS: [&str; 3] = ["scale", "gain", "conversion"];
 
 static DIALECT: Dialect = Dialect {
@@ -59,7 +59,7 @@ pub(super) fn sniff(head: &[u8], _: &Source) -> bool {
     [0].into_iter().chain(places).any(|at| head[at..].starts_with(SIGNATURE))
 }
 
-/// All records, or, for a `survey`, the ends of their values where these are enough.
+/// All records; for a `survey`, only the extremes of their values where these are enough.
 pub(super) fn read(source: &Source, options: &Options, survey: bool) -> Result<Contents> {
     let mut file = File::open(source, options)?;
     let root = file.root()?;
@@ -85,7 +85,7 @@ struct GroupWalk<'a> {
 }
 
 impl GroupWalk<'_> {
-    /// Adds what stands in a group, whose path ends with `/`.
+    /// Adds the members of a group, whose path ends with `/`.
     fn group(&mut self, path: &str, members: Vec<(String, Member)>, scale: Scale) -> Result<()> {
         for (name, member) in members {
             let name = format!("{path}{name}");
@@ -156,7 +156,8 @@ impl GroupWalk<'_> {
         self.variables.push((name.to_owned(), content));
     }
 
-    /// Adds the texts and numbers among attributes. Returns the scale that they state, else that from above.
+    /// Adds the texts and numbers among attributes. Returns the scale that they state, else the one from
+    /// above.
     fn stated(&mut self, path: &str, attributes: &[Attribute], mut scale: Scale) -> Scale {
         for attribute in attributes {
             let word = DIALECT.word(&attribute.name);

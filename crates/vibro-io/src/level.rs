@@ -1,4 +1,4 @@
-//! Spectra that pass for something else: levels in decibels that pass for amplitudes, lines that pass for
+//! Spectra that are mistaken for something else: levels in decibels for amplitudes, spectral lines for
 //! samples over time.
 
 use crate::assemble::{short, to_si};
@@ -12,19 +12,20 @@ use vibro_record::{AxisKind, Error, Meta, Record, Result, Spectrum, Trace, Value
 /// Words by which a channel calls itself a spectrum.
 const SPECTRAL: [&str; 7] = ["fft", "psd", "asd", "spectrum", "spectra", "spectral", "autospectrum"];
 
-/// Levels in dB that make a factor of ten: of an amplitude, and of a density of power.
+/// dB for a factor of ten: of an amplitude, and of a power density.
 const AMPLITUDE: f64 = 20.0;
 const POWER: f64 = 10.0;
 
-/// Fewest values of which none is above 0 that are no chance.
+/// Fewest values, none above 0, that are taken for levels in dB: fewer may be chance.
 const FEW: usize = 8;
 
-/// Levels over a reference that the unit states become amplitudes, or densities where it is one.
+/// Converts levels over the reference that their unit states to amplitudes, or to densities where the
+/// reference is per Hz.
 ///
 /// # Errors
 /// If a channel calls itself a spectrum over time, or levels have a linear unit.
 pub fn settle(mut contents: Contents, format: Format, options: &Options) -> Result<Contents> {
-    // A table has a column of times, or a person says its rate.
+    // A table has a column of times, or the user states its rate.
     let table = matches!(format, Format::Csv | Format::Ascii);
     for (record, _) in &mut contents.records {
         match record {
@@ -37,7 +38,7 @@ pub fn settle(mut contents: Contents, format: Format, options: &Options) -> Resu
     Ok(contents)
 }
 
-/// Whether values that were not kept are needed to settle it.
+/// Whether [`settle`] needs values that were not kept.
 pub fn needs_values(contents: &Contents) -> bool {
     let counts = |meta: &Meta| meta.unit.reference().is_some() || is_spectral(&meta.name);
     let spectrum =
@@ -45,7 +46,7 @@ pub fn needs_values(contents: &Contents) -> bool {
     contents.records.iter().any(|(record, ends)| ends.is_some() && spectrum(record))
 }
 
-/// Refuses a spectrum over "time", unless a person states its sampling rate.
+/// Refuses a channel named as a spectrum over time, unless the user states its sampling rate.
 fn no_spectrum(trace: &Trace, options: &Options) -> Result<()> {
     let stated = options.rate.is_some() && !options.rate_of_band;
     if stated || !is_spectral(&trace.meta.name) || trace.axis.kind != AxisKind::Time || trace.axis.is_empty()
@@ -101,8 +102,8 @@ fn levels(found: String) -> Error {
     Error::usage(found, "amplitudes, or levels with their reference").hint(hint).setting("unit")
 }
 
-/// The words by which a file says that its values are levels: their unit, or a header line that states unit,
-/// scale or level.
+/// The words by which a file says that its values are levels: their unit, or a header line about unit, scale
+/// or level.
 pub fn decibels(meta: &Meta) -> Option<String> {
     if meta.unit.is_level() {
         return Some(meta.unit.symbol().to_owned());

@@ -21,7 +21,7 @@ use vibro_record::{AxisKind, Error, Finding, Meta, Place, Record, Result};
 /// Everything a file holds.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Recording {
-    /// The file.
+    /// Path of the file.
     pub path: PathBuf,
     /// Its format.
     pub format: Format,
@@ -354,7 +354,7 @@ pub struct Header {
     /// Header lines that were kept but not interpreted; for text files also the encoding and the decimal
     /// mark.
     pub notes: Vec<String>,
-    /// What a person must know before trusting the values.
+    /// Findings on the record: what the user must know before trusting its values.
     pub findings: Vec<Finding>,
 }
 

@@ -1,4 +1,4 @@
-//! The ordered table of formats: how each is told apart and read.
+//! The table of formats, in the order in which they are tried: how each is detected and read.
 
 use crate::format::Format;
 #[cfg(feature = "hdf5")]
@@ -9,13 +9,13 @@ use crate::source::Source;
 use crate::{lvm, mat, tdms, text, uff, wav};
 use vibro_record::Result;
 
-/// How one format is told apart and read.
+/// How one format is detected and read.
 pub struct Entry {
     pub format: Format,
     /// Whether the first bytes are of this format.
     pub sniff: fn(head: &[u8], source: &Source) -> bool,
-    /// Reads the records of a source; for a `survey` the ends of their values are enough where the format
-    /// can tell them in less memory.
+    /// Reads the records of a source; for a `survey`, only the extremes of their values where the format can
+    /// find these in less memory.
     pub read: fn(&Source, &Options, survey: bool) -> Result<Contents>,
 }
 
@@ -33,7 +33,7 @@ pub const TABLE: &[Entry] = &[
 ];
 
 impl Entry {
-    /// The format whose first bytes a source has.
+    /// The first format that the first bytes of a source fit.
     pub fn of(source: &Source) -> Option<&'static Entry> {
         TABLE.iter().find(|e| (e.sniff)(source.head(), source))
     }

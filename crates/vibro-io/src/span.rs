@@ -1,4 +1,4 @@
-//! A part of time traces, from one time to another.
+//! Cuts time traces to a span of time.
 
 use crate::assemble::{drift, epoch, from_values, short};
 use crate::held::Contents;
@@ -20,7 +20,8 @@ pub fn within(axis: &Axis, span: (f64, f64)) -> Result<Range<usize>> {
     Err(Error::usage(found, format!("a part of {} to {} s", short(axis.start()), short(end))).setting("span"))
 }
 
-/// Keeps in the history of a channel which part of it was read; of a part nothing is declared.
+/// Notes in the history of a channel which part of it was read; the declared number of values is kept only
+/// for a whole channel.
 pub fn note(meta: &mut Meta, span: Option<(f64, f64)>, declared: Option<usize>) {
     meta.declared_n = declared.filter(|_| span.is_none());
     if let Some((from, to)) = span {
@@ -40,12 +41,12 @@ pub fn cut(mut contents: Contents, span: Option<(f64, f64)>) -> Result<Contents>
         if trace.axis.kind != AxisKind::Time || trace.axis.is_empty() {
             continue;
         }
-        // Only a record that rises has one part between two times; stretches are numbered in the whole.
+        // Only times that rise have one part between two times; stretches are numbered in the whole trace.
         let rises = |instants: &[f64]| instants.is_sorted_by(|a, b| a < b);
         if matches!(&trace.axis.grid, Grid::Uneven(instants) if !rises(instants)) {
             trace.sampling_rate()?;
         }
-        // Since 1970 in the unit of the file, or since its first row in s.
+        // A span counts from 1970, in the file's unit, or from the first row, in s.
         let counted = [span.0, span.1].into_iter().find_map(|t| if t.is_finite() { epoch(t) } else { None });
         let (from, factor) = counted.map_or((0.0, 1.0), |(_, factor)| (trace.meta.origin, factor));
         let part = within(&trace.axis, (span.0 * factor - from, span.1 * factor - from))?;

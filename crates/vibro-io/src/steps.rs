@@ -1,4 +1,4 @@
-//! The traces of a stepped sine, read together.
+//! Reads the traces of a stepped sine.
 
 use crate::reader::Reader;
 use crate::sweep::SweepReader;
@@ -12,7 +12,7 @@ use vibro_record::{Error, Result, StepTraces, Trace};
 pub struct Steps {
     /// Files, in the order of the steps.
     pub files: Vec<PathBuf>,
-    /// Channel of the force; of one file one channel a step.
+    /// Channel of the force; in a single file, one channel a step.
     pub force: Vec<String>,
     /// Channel of the response, likewise.
     pub response: Vec<String>,
@@ -21,12 +21,12 @@ pub struct Steps {
 }
 
 impl SweepReader {
-    /// Reads force and response of all steps, in SI units: calibrated where that is stated, a response of
-    /// unknown unit in the unit that is stated. A step has an error of its own if its file cannot be read
-    /// or has no such channel; if its force is not one, or its response is no motion.
+    /// Reads force and response of all steps in SI units, with stated calibrations; a response of unknown
+    /// unit has the stated unit. A step has an error of its own if its file cannot be read or lacks a
+    /// channel, or if a channel is no force or no motion.
     ///
     /// # Errors
-    /// If several files come with several channels.
+    /// If there are several files and several channels of force or response.
     pub fn steps(&self, steps: &Steps) -> Result<Vec<(PathBuf, Result<StepTraces>)>> {
         let reader = Reader::new().within(&self.folder).rate(steps.rate).format(self.format);
         let one = |file: &Path, force: &str, response: &str| {

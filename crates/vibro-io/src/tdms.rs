@@ -162,7 +162,7 @@ fn changed(object: &Object) -> Option<String> {
     Some(format!("{key} changes from {} to {now} behind value {at}", text(before)))
 }
 
-/// What is kept of the values of an object.
+/// Which values of an object are kept.
 #[derive(Clone)]
 enum KeptValues {
     /// All of them.
@@ -172,7 +172,7 @@ enum KeptValues {
     Ends(Extremes),
 }
 
-/// What was read of an object so far.
+/// The values of an object that were read so far.
 struct Raw<'a> {
     object: &'a Object,
     scales: Scales<'a>,

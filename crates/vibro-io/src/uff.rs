@@ -10,8 +10,8 @@
 //! …
 //!     -1
 //! ```
-//! Data sets 58 and 58b become records, data set 164 gives the unit system of those behind it, and every
-//! other set is passed over by name.
+//! Data sets 58 and 58b become records, data set 164 gives the unit system of those after it, and every other
+//! set is skipped with a note.
 
 pub mod set58;
 pub mod stream;
@@ -23,12 +23,12 @@ use set58::{UnitSystem, codes};
 use stream::{Stream, is_delimiter, set_number};
 use vibro_record::{Finding, Place, Record, Result};
 
-/// Endings under which text may stand before the first data set.
+/// File endings with which text may precede the first data set.
 const ENDINGS: [&str; 6] = ["uff", "unv", "ufb", "bunv", "uf", "58"];
 
-/// A delimiter with the number of a data set behind it. These must be the first lines that are not blank and
-/// stand in their very columns, for `-1` and `58` may also be two values; under a usual ending any two lines
-/// will do.
+/// Whether a delimiter and the number of a data set follow each other. They must be the first lines that are
+/// not blank, in their exact columns, for `-1` and `58` may also be two values; with a usual file ending any
+/// two lines will do.
 pub(super) fn sniff(head: &[u8], source: &Source) -> bool {
     let known = ENDINGS.contains(&source.extension().as_str());
     let head = head.strip_prefix(b"\xef\xbb\xbf").unwrap_or(head);
@@ -108,7 +108,7 @@ pub(super) fn read(source: &Source, options: &Options, _: bool) -> Result<Conten
     Ok(Contents::of(records, findings))
 }
 
-/// Two channels of one name are told apart by number, so that each can be asked for.
+/// Adds a number to repeated names (`name #2`), so that the user can ask for each channel.
 fn tell_apart(records: &mut [Record]) {
     let mut seen: Vec<(String, usize)> = Vec::new();
     for name in records.iter_mut().map(|r| &mut r.meta_mut().name).filter(|n| !n.is_empty()) {
@@ -119,7 +119,7 @@ fn tell_apart(records: &mut [Record]) {
     }
 }
 
-/// Counts `item` in a list; gives how often it has come.
+/// Counts `item` in a list and returns its count so far.
 fn count<T: PartialEq>(list: &mut Vec<(T, usize)>, item: T) -> usize {
     let at = list.iter().position(|(known, _)| *known == item).unwrap_or_else(|| {
         list.push((item, 0));

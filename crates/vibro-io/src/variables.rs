@@ -1,7 +1,7 @@
-//! Named variables to records, however a file stores them.
+//! Makes records of named variables, in whatever format a file stores them.
 //!
-//! A numeric vector is a record, and so is each column of a matrix; scalars and texts are notes on the
-//! records of their struct or group, and say abscissa and unit ([`names`], [`axes`]).
+//! A numeric vector is a record, and so is each column of a matrix. Scalars and texts are notes on the
+//! records of their struct or group, and state abscissa and unit ([`names`], [`axes`]).
 
 mod axes;
 pub mod matlab;
@@ -18,15 +18,15 @@ use rayon::prelude::*;
 use vibro_record::units::Unit;
 use vibro_record::{Error, Fact, Finding, Meta, Result, Values};
 
-/// A matrix of more rows than this and than columns stands upright, whatever length the abscissa beside it
-/// has.
+/// Most rows of a matrix that is read by rows because a row has the length of an abscissa: with more rows,
+/// and more rows than columns, it is read by columns.
 const MOST_ROWS: u64 = 1000;
-/// Longest text that is kept.
+/// Longest text that is kept, in bytes or characters.
 pub const MOST_TEXT: usize = 4096;
-/// Notes that a record takes at most: many scalars beside many vectors would fill the memory.
+/// Most notes of a record: many scalars beside many vectors would fill the memory.
 const MOST_NOTES: usize = 200;
 
-/// What to do with a file whose arrays cannot be read.
+/// Hint for a file whose arrays cannot be read.
 pub const EXPORT: &str = "write its arrays as MAT (v7), CSV or WAV";
 
 /// What a variable holds.
@@ -34,11 +34,11 @@ pub const EXPORT: &str = "write its arrays as MAT (v7), CSV or WAV";
 pub enum Content {
     Array(Array),
     Text(String),
-    /// Of a class that is passed over, by its name.
+    /// A class that is skipped, by its name.
     Other(&'static str),
 }
 
-/// Numbers in the order of the dialect.
+/// Numbers, by rows or by columns as the dialect stores them.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Array {
     pub dimensions: Vec<u64>,
@@ -47,8 +47,8 @@ pub struct Array {
     pub single: bool,
 }
 
-/// Records of the vectors and matrices among `variables`, with what they say of each other; `findings` are
-/// those of the file.
+/// Records of the vectors and matrices among `variables`, with axes, units and notes from the other
+/// variables; `findings` are those of the file so far.
 pub fn contents(
     source: &Source,
     dialect: &'static Dialect,
@@ -111,10 +111,10 @@ pub fn contents(
     Ok(Contents { records, findings })
 }
 
-/// Variables of each name.
+/// Variables with their names.
 type Named<T> = Vec<(String, T)>;
 
-/// Vectors and matrices apart from scalars and texts; of what is passed over, findings.
+/// Separates vectors and matrices from scalars and texts; what is skipped gives findings.
 fn parted(variables: Named<Content>, findings: &mut Vec<Finding>) -> (Named<Array>, Named<String>) {
     let (mut arrays, mut notes) = (Vec::new(), Vec::new());
     for (name, content) in variables {
@@ -145,8 +145,9 @@ fn parted(variables: Named<Content>, findings: &mut Vec<Finding>) -> (Named<Arra
     (arrays, notes)
 }
 
-/// A vector is one record, a matrix one a column; or one a row, where only the rows have the length of the
-/// abscissa. Where complex values were stated, two columns are one record.
+/// Splits an array into records: a vector is one, a matrix one for each column, or for each row if it is wide
+/// or only its rows have the length of an abscissa. If complex values were stated, two columns are one
+/// record.
 fn split(
     name: &str,
     Array { dimensions, values, .. }: Array,

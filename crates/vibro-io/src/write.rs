@@ -1,7 +1,8 @@
 //! Writes records to files that other programs read.
 //!
 //! Values are written in the SI units of the records. What a format has no place for is lost or refused: see
-//! each writer. History and findings are never written, notes only as header lines of universal files.
+//! each writer. Findings are never written; of history and notes, only a few facts in header lines and
+//! remarks.
 //!
 //! ```
 //! use vibro_io::Reader;

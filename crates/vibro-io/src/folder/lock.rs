@@ -7,24 +7,24 @@ use std::thread::sleep;
 use std::time::{Duration, Instant};
 use vibro_record::{Error, Place, Result};
 
-/// The right to write into a folder, held until it is dropped. The system takes it back from a program that
-/// is killed.
+/// The right to write into a folder, held until it is dropped. The system releases it if the program is
+/// killed.
 #[derive(Debug)]
 pub struct Lock {
     path: PathBuf,
     _file: File,
 }
 
-/// Time between two tries, and after which another writer is taken to be stuck: figures and tables of a large
-/// campaign are written in a second.
+/// Time between two attempts, and time after which another writer counts as stuck: even a large campaign
+/// writes its figures and tables in a second.
 const PAUSE: Duration = Duration::from_millis(20);
 const PATIENCE: Duration = Duration::from_secs(10);
 
 impl Lock {
-    /// Name of its file, which holds the number of the process, for people alone.
+    /// Name of the lock file. It holds the number of the process, only for the user to read.
     pub const FILE: &str = ".vibro.lock";
 
-    /// The lock of a folder on disk; waits a moment for another writer.
+    /// Locks a folder on disk; waits up to 10 s for another writer.
     ///
     /// # Errors
     /// If another program is still writing there, or the file cannot be made or is not vibro's.
@@ -42,11 +42,11 @@ impl Lock {
                 return Err(strange());
             }
             let open = OpenOptions::new().read(true).write(true).create(true).truncate(false).open(&path);
-            // That of another person, which a lock needs no right to change.
+            // A lock file of another user: locking it needs no right to write.
             let file = open.or_else(|e| File::open(&path).map_err(|_| e));
             let mut file = file.map_err(refused)?;
             let mut process = String::new();
-            // Some systems let nobody read what is locked.
+            // On some systems a locked file cannot be read.
             let read = file.read_to_string(&mut process);
             match file.try_lock() {
                 Err(TryLockError::WouldBlock) if began.elapsed() < PATIENCE => sleep(PAUSE),
@@ -60,8 +60,8 @@ impl Lock {
                 Ok(()) if read.is_err() || !process.bytes().all(|c| c.is_ascii_digit()) => {
                     return Err(strange());
                 }
-                // Where there are no locks, as on some network drives, there is nobody to wait for. The
-                // writer before may have removed the file between opening and locking it.
+                // Some network drives have no locks: no other writer is waited for. The writer before may
+                // have removed the file between opening and locking it: then it is opened again.
                 Ok(()) | Err(TryLockError::Error(_)) if is_at(&path, &file) => {
                     let _ = file.set_len(0).and_then(|()| file.rewind());
                     let _ = write!(file, "{}", std::process::id());
@@ -73,7 +73,7 @@ impl Lock {
     }
 }
 
-/// Whether a path still leads to a file that was opened.
+/// Whether a path still leads to the file that was opened there.
 fn is_at(path: &Path, file: &File) -> bool {
     let opened = file.try_clone().and_then(same_file::Handle::from_file);
     same_file::Handle::from_path(path).ok() == opened.ok()

@@ -24,7 +24,7 @@ pub enum Owner {
     Run,
     /// Figures and tables of one command.
     Results,
-    /// Recordings that were converted or made: input of what comes next.
+    /// Recordings that were converted or generated: input of further commands.
     Recordings,
     /// A file for the user to change. It is not listed, so nothing replaces it.
     Person,

@@ -1,4 +1,4 @@
-//! Files that get their names whole.
+//! Files that are written completely before they get their names.
 
 use super::{Files, Folder, Side, locked, or_here, plain};
 use std::fs;
@@ -8,7 +8,8 @@ use std::sync::{Arc, Mutex};
 use tempfile::{NamedTempFile, TempPath};
 use vibro_record::{Error, Result};
 
-/// A file without its name: beside its place, or in memory. It is removed unless it gets its name.
+/// A complete file that has no name yet: a temporary file in its folder, or bytes in memory. It is removed
+/// unless it gets its name.
 #[derive(Debug)]
 pub enum Staged {
     /// On a disk.
@@ -18,14 +19,14 @@ pub enum Staged {
 }
 
 impl Staged {
-    /// Gives the file its name, at once and whole; what had the name is gone.
+    /// Gives the file its name in one step; a file that had this name is replaced.
     ///
     /// # Errors
     /// If the system refuses.
     pub fn place(self) -> Result<()> {
         match self {
             Staged::Disk(file, path) => {
-                // Who may read or write the file that it replaces may go on so.
+                // It takes the permissions of the file that it replaces.
                 if let Ok(known) = fs::metadata(&path) {
                     let _ = fs::set_permissions(&file, known.permissions());
                 }
@@ -43,7 +44,7 @@ impl Staged {
 const PART: &str = ".vibro.part";
 
 impl Folder {
-    /// Writes bytes beside the place that they are to get. The folder must exist.
+    /// Writes bytes to a temporary file in the folder of `path`, which must exist.
     ///
     /// # Errors
     /// If the system refuses.
@@ -76,18 +77,18 @@ impl Folder {
         })
     }
 
-    /// Removes temporary files of programs that were killed in this folder. Only who holds its lock may ask
-    /// for it.
+    /// Removes temporary files that killed programs left in this folder. Only the holder of the folder's lock
+    /// may call it.
     pub(super) fn remove_leftovers(&self) {
         for name in self.names().iter().filter(|name| name.starts_with('.') && name.ends_with(PART)) {
-            // It is in nobody's way: a leftover that cannot be removed is no failure.
+            // A temporary file does no harm: failing to remove it is no error.
             let _ = self.remove(&self.root().join(name));
         }
     }
 }
 
-/// A file of a hidden name, on the file system of its folder, which everybody may read who may read a new
-/// file there.
+/// A temporary file with a hidden name in `folder`, so on its file system, with the permissions of any new
+/// file.
 fn temporary(folder: &Path) -> std::io::Result<NamedTempFile> {
     let mut named = tempfile::Builder::new();
     named.prefix(".").suffix(PART);

@@ -1,4 +1,4 @@
-//! What lies in a folder and below it.
+//! Search for recordings in a folder and below it.
 
 use super::{Folder, Manifest, Side, locked, or_here, plain, real};
 use std::collections::{BTreeMap, BTreeSet};
@@ -7,19 +7,19 @@ use std::path::{Path, PathBuf};
 use vibro_record::{Error, Result, is_unprintable, shown};
 use walkdir::{DirEntry, WalkDir};
 
-/// Regular files that may be recordings, each once, and what was passed over.
+/// Regular files that may be recordings, each once, and what was skipped.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Walk {
     /// Files, in the order of their names.
     pub files: Vec<PathBuf>,
-    /// What could not be looked at or must not be, and why.
+    /// Paths that could not or must not be searched, and why.
     pub skipped: Vec<(PathBuf, String)>,
 }
 
 impl Folder {
-    /// Looks through a folder and up to `levels` below it. Each folder is visited once, whatever links there
-    /// are; links lead no further than [`Folder::path`] does. Hidden files and what vibro wrote as
-    /// results are passed over without a word.
+    /// Searches a folder and up to `levels` levels of folders below it. Each folder is visited once, whatever
+    /// links there are; links lead no further than [`Folder::path`] does. Hidden files and vibro's own
+    /// results are skipped silently.
     ///
     /// # Errors
     /// If the folder itself cannot be listed. One below it that cannot is skipped.
@@ -51,7 +51,8 @@ impl Folder {
         Ok(walk)
     }
 
-    /// Visits a folder and those below it whose true paths have not been `seen`, then what links lead to.
+    /// Visits a folder and those below it whose canonical paths have not been `seen`, then the targets of
+    /// links.
     fn visit(&self, top: &Path, levels: usize, seen: &mut BTreeSet<PathBuf>, walk: &mut Walk) {
         seen.extend(real(top));
         let mut links = Vec::new();
@@ -88,7 +89,7 @@ impl Folder {
                     }
                 }
                 Some(target) if target.is_file() => {
-                    // A file whose folder was looked through is known by its own name.
+                    // A file in a folder that was searched is listed by its own name already.
                     let known =
                         target.parent().is_some_and(|folder| seen.contains(folder)) && !is_hidden(&target);
                     if !known && seen.insert(target) {
@@ -108,7 +109,7 @@ impl Walk {
         self.skipped.push((plain(path), why.into()));
     }
 
-    /// Takes a file whose name can be written into a campaign.
+    /// Lists a file if its name can be written into a campaign, else skips it.
     fn take(&mut self, path: PathBuf) {
         let name = path.file_name().map_or(&[][..], |name| name.as_encoded_bytes());
         let why = match path.to_str() {
@@ -116,7 +117,7 @@ impl Walk {
             Some(path) if path.contains(is_unprintable) => {
                 "its name has a line break or a control character: rename it"
             }
-            // Lists of DOS machines have it between folders.
+            // In lists written on DOS it separates folders.
             Some(_) if name.contains(&b'\\') => "its name has a backslash: rename it",
             Some(_) => return self.files.push(path),
         };

@@ -1,4 +1,4 @@
-//! What the groups, datasets and attributes of a file hold.
+//! Reads the groups, datasets and attributes of a file.
 //!
 //! The crate hdf5-reader tells only the size of integers and floats. Numbers of another bit layout, as the
 //! message of their datatype shows, are not read.
@@ -30,7 +30,8 @@ use vibro_record::{Error, Finding, Result, Values};
 
 /// Most bytes that any filter unpacks from one: deflate gives 258 bytes for two bits.
 const MOST_UNPACKED: u64 = 1032;
-/// Ratio of declared to file bytes from which part of a dataset may never have been written.
+/// Ratio of declared to file bytes above which only the written part of a dataset is read, as the rest may
+/// never have been written; a smaller ratio may come from compression.
 const MANY: u64 = 16;
 /// Deepest nesting of groups, and longest path in bytes, that are read.
 const MOST_DEPTH: usize = 32;

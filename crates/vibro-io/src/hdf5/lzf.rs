@@ -1,8 +1,8 @@
 //! The filter LZF, which h5py writes for `compression="lzf"`.
 //!
-//! A byte below 32 is followed by one literal more than it says. Another begins a copy: its upper three bits
-//! are the length less two (seven: the next byte is added), its lower five bits and the next byte the
-//! distance less one.
+//! A byte n below 32 is followed by n + 1 literal bytes. Any other byte begins a copy of earlier output: its
+//! upper three bits are the length less 2 (7: the next byte is added), its lower five bits and the next byte
+//! the distance back less 1.
 
 use hdf5_reader::error::Error as Fault;
 use hdf5_reader::messages::filter_pipeline::FilterDescription;
@@ -16,7 +16,7 @@ pub fn unpack(filter: &FilterDescription, packed: &[u8]) -> Result<Vec<u8>, Faul
     inflated(packed, size).ok_or_else(|| Fault::InvalidData("damaged LZF".to_owned()))
 }
 
-/// At most `size` bytes.
+/// Unpacks at most `size` bytes; `None` for damaged data.
 fn inflated(packed: &[u8], size: usize) -> Option<Vec<u8>> {
     let (mut out, mut rest) = (Vec::new(), packed.iter().copied());
     while let Some(control) = rest.next().map(usize::from) {

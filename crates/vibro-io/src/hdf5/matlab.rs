@@ -15,11 +15,11 @@ const NUMBERS: &[&str] =
 
 type Variables = Vec<(String, Content)>;
 
-/// Where cells and fields are, and where parts of objects are.
+/// Group that holds cells and fields, and group that holds parts of objects.
 const REFERENCES: &str = "#refs#";
 const OBJECTS: &str = "#subsystem#";
 
-/// Whether something in a group is of a class of MATLAB.
+/// Whether a member of a group has a class of MATLAB.
 pub fn is(members: &[(String, Member)]) -> bool {
     members.iter().any(|(_, member)| has(&member.attributes(), "MATLAB_class"))
 }
@@ -46,9 +46,9 @@ pub fn variables(file: &mut File, mut members: Vec<(String, Member)>, survey: bo
 
 struct VariableWalk<'a> {
     file: &'a mut File,
-    /// Whether the ends of values are enough.
+    /// Whether the extremes of values are enough.
     survey: bool,
-    /// By address; each is taken once.
+    /// Targets of references by address; each is used once.
     referred: HashMap<u64, Member>,
     variables: Variables,
 }
@@ -86,7 +86,7 @@ impl VariableWalk<'_> {
         let data = match class.as_str() {
             _ if empty => Some(Data::Numbers(Values::Real(Vec::new()).into())),
             "char" if dimensions.first() == Some(&1) => self.file.data(name, dataset, false),
-            // Matrices are taken apart.
+            // A matrix is split into columns, which needs all its values.
             class if NUMBERS.contains(&class) => {
                 let vector = dimensions.iter().filter(|n| **n > 1).count() == 1;
                 self.file.data(name, dataset, self.survey && vector)
@@ -109,7 +109,7 @@ impl VariableWalk<'_> {
         Ok(())
     }
 
-    /// What the references of a dataset lead to.
+    /// Adds the targets of the references of a dataset.
     fn references(&mut self, dataset: &Dataset, name: &str, named: &dyn Fn(usize) -> String) -> Result<()> {
         if name.len() > MOST_PATH {
             self.file.pass(name, "cell array too deep in others");

@@ -133,7 +133,7 @@ fn attributes_state_unit_rate_and_start_of_their_dataset_or_group() {
     };
     assert_eq!(of("bare"), ("", 0.0, 0.01, 24));
     assert_eq!(of("run 1/two"), ("", 3.0, 0.25, 2));
-    // Two rows of 24 values are two channels, three of eight over three times are eight.
+    // Two rows of 24 values are two channels; three rows of eight values over three times are eight channels.
     assert_eq!(of("run 1/velocity[1,:]"), ("m/s", 0.0, 0.005, 24));
     assert_eq!(of("run 2/force[:,7]"), ("N", 0.0, 0.002, 3));
     assert_eq!(recording.records.len(), 12);
@@ -198,7 +198,7 @@ fn the_unit_of_a_clock_stands_in_its_name_or_is_assumed_aloud() {
         let (kind, _, found) = even(name);
         assert_eq!((kind, found), (AxisKind::Time, crate::assemble::short(step)), "{name}");
     }
-    // Instants of 256 ns each: that of the ends is right to one of them in 23 steps.
+    // Doubles of ns since 1970 are 256 ns apart: over 23 steps, the mean step is right to 256 ns / 23.
     assert!((named(&recording, "timestamp_ns/v").axis().step().unwrap() - 1e-6).abs() < 256e-9 / 23.0);
     // Nanoseconds in a name keep the instants, a clock without a unit is counted from its first value.
     assert_eq!((even("timestamp/v").1, even("timestamp_ns/v").1), (0.0, 1.7e9));

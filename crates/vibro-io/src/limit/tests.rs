@@ -14,7 +14,7 @@ fn wave(n: u32) -> Vec<u8> {
 
 #[test]
 fn a_wave_file_may_fill_the_limit_and_no_more() {
-    // 2 channels × 1000 frames × 8 bytes, three times with what is made of them.
+    // 2 channels × 1000 frames × 8 bytes, times three: the values, and twice as much for results.
     let bytes = wave(1000);
     let reader = |limit: f64| Reader::new().max_memory(Limit(limit)).beside(2.0);
     let read = |reader: &Reader| reader.from_reader("x.wav", bytes.as_slice());
@@ -34,8 +34,8 @@ fn a_wave_file_may_fill_the_limit_and_no_more() {
 
 #[test]
 fn the_part_of_a_hint_is_read() {
-    // 3.2e8 bytes a sample of two channels, more than any machine has: 3125 of 48 kHz are within the
-    // limit.
+    // Two channels take 3.2e8 bytes a frame, and all 4800 frames more than any machine has; 3125 frames of 48
+    // kHz are within the limit.
     let bytes = wave(4800);
     let reader = || Reader::new().max_memory(Limit(1e12)).beside(2e7 - 1.0);
     let said = reader().from_reader("x.wav", bytes.as_slice()).unwrap_err();
@@ -52,8 +52,8 @@ fn text_is_refused_before_it_is_read() {
         let _ = writeln!(text, "{i},{}", 2 * i);
     }
     let read = |limit| Reader::new().max_memory(Limit(limit)).from_reader("x.csv", text.as_bytes());
-    // 20 000 rows of two columns and 3/4 beside them take 560 kB, as the first 64 KiB tell within their
-    // shorter rows: a quarter more.
+    // 20 000 rows of two columns, times 1.75 for results, take 560 kB; estimated from the first 64 KiB, whose
+    // rows are shorter, a quarter more.
     assert!(read(420_000.0).is_err());
     assert_eq!(read(840_000.0).unwrap().records[0].len(), 20_000);
 }

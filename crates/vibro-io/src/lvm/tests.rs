@@ -16,7 +16,7 @@ fn traces(recording: &Recording) -> Vec<&Trace> {
         .collect()
 }
 
-/// The head of a file, and that of a segment, behind which its names and rows come.
+/// The header of a file and that of its first segment, without names and rows.
 fn head(separator: &str, x_columns: &str) -> String {
     let s = if separator == "Tab" { '\t' } else { ',' };
     format!(

@@ -22,7 +22,7 @@ const MOST_NAME: usize = 512;
 struct Elements<'a> {
     rest: &'a [u8],
     big_endian: bool,
-    /// Where the variable stands in the file.
+    /// Place of the variable in the file, for errors.
     place: Place,
 }
 
@@ -59,7 +59,7 @@ impl<'a> Elements<'a> {
         };
         let word = self.word([*a, *b, *c, *d]);
         if word >> 16 != 0 {
-            // The content of a small element stands in its tag.
+            // The content of a small element lies in its tag.
             let size = (word >> 16) as usize;
             let content = self.rest[4..8].get(..size).ok_or_else(|| ends_early(4, word >> 16))?;
             self.rest = behind;

@@ -560,7 +560,7 @@ fn any_damage_to_what_is_packed_is_found() {
     }
     // A few bits fill up the last byte or belong to codes that no value has.
     assert!(unused < packed.len() * 8 / 20, "{unused}");
-    // Cut off, with the size of what is left.
+    // Cut short, with the size in the tag made to match.
     for n in 8..packed.len() {
         let mut cut = packed[..n].to_vec();
         cut[4..8].copy_from_slice(&(n as u32 - 8).to_le_bytes());
@@ -573,7 +573,7 @@ fn any_damage_to_what_is_packed_is_found() {
 
 #[test]
 fn memory_follows_what_is_there() {
-    // A hundred megabytes behind a variable that declares eight bytes.
+    // A packed variable that declares eight bytes and unpacks to a hundred megabytes.
     let mut bomb = vec![0; 100 << 20];
     bomb[..8].copy_from_slice(&[14, 0, 0, 0, 8, 0, 0, 0]);
     assert!(complaint(&[packed(&bomb)]).contains("late: 16 of 8 bytes"));
@@ -621,7 +621,7 @@ fn other_levels_are_refused_by_name() {
     let reader = Reader::new();
     let mut hdf5 = vec![b' '; 512];
     hdf5[124..128].copy_from_slice(b"\0\x02IM");
-    // Behind it would be the signature of HDF5.
+    // Next comes the signature of HDF5, by which the file would be read if that is compiled in: then zeros.
     hdf5.extend(if cfg!(feature = "hdf5") { b"\0\0\0\0\0\0\0\0" } else { HDF5 });
     let error = reader.from_reader("x.mat", hdf5.as_slice()).unwrap_err().to_string();
     assert!(error.contains("version 7.3, which is HDF5") && error.contains("-v7"), "{error}");
@@ -721,7 +721,7 @@ fn a_file_that_is_cut_off_is_refused_with_the_byte() {
 fn damage_is_named_with_its_byte() {
     let short = LITTLE.matrix(6, &[3, 1], "x", &[LITTLE.doubles(&[1.0, 2.0])]);
     let error = complaint(&[LITTLE.column("a", &[1.0, 2.0]), short]);
-    // The first variable takes 8 + 64 bytes behind the header of 128.
+    // The first variable takes 8 + 64 bytes after the header of 128.
     assert!(error.starts_with("x.mat, byte 200: a variable that declares 3 values and holds 2"), "{error}");
     assert!(complaint(&[LITTLE.matrix(6, &[2, 1], "x", &[])]).contains("ends early"));
     assert!(complaint(&[LITTLE.matrix(99, &[1, 1], "x", &[])]).contains("class 99"));

@@ -28,7 +28,7 @@ const ROUNDING: i64 = 1;
 /// All sheets with cells, or the one of this name.
 ///
 /// # Errors
-/// If the workbook is damaged or encrypted, or takes more than the limit.
+/// If the workbook is damaged or encrypted, or needs more memory than the limit.
 pub fn of(source: &Source, kind: Workbook, named: Option<&Path>, limit: Limit) -> Result<Vec<Member>> {
     // The crate calamine panics on a sheet that ends before it begins: the panic becomes an error.
     let read = AssertUnwindSafe(|| match kind {

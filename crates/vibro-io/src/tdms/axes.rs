@@ -22,7 +22,7 @@ pub struct AbscissaChannel {
 
 impl AbscissaChannel {
     fn of(channel: &Channel, resampled: bool, findings: &mut Vec<Finding>) -> Option<AbscissaChannel> {
-        // Of a time `h` is no other unit than this.
+        // As the unit of a time, `h` means hours.
         let unit = channel.object.text("unit_string").map(|unit| if unit == "h" { "hour" } else { unit });
         let Name { name, unit } = Name::with_unit_row(channel.name, unit.unwrap_or_default());
         let whole = name.trim_end_matches(|c: char| c.is_ascii_digit() || c == '_' || c == ' ');
@@ -30,7 +30,8 @@ impl AbscissaChannel {
             Name { name: name.to_owned(), unit }.axis(name.len() == 1).filter(|_| name != "x" && name != "X")
         };
         let named = |name: &str| kind(name, None).filter(|of| kind(name, unit.clone()).as_ref() == Some(of));
-        // `Zeit_langsam` is a clock where it rises evenly, `time of flight` does not.
+        // A name that only begins like a time is a clock if its values rise evenly: `Zeit_langsam` may, `time
+        // of flight` does not.
         let first = whole.split(['_', ' ']).next().filter(|word| word.len() > 1);
         let first = || named(first?).filter(|kind| *kind == AxisKind::Time);
         let (kind, sure) = named(whole).map(|kind| (kind, true)).or_else(|| Some((first()?, false)))?;
@@ -69,11 +70,11 @@ impl AbscissaChannel {
     }
 }
 
-/// Takes the clocks out of the channels and gives them to those of their group and length; where there are
-/// several, each to those behind it.
+/// Removes the clocks from the channels and assigns each to the channels of its group and length; of several
+/// clocks, each to the channels that follow it.
 ///
 /// # Errors
-/// If it cannot be told which channels are whose.
+/// If it is ambiguous which channels belong to which clock.
 pub fn assign(channels: &mut Vec<Channel>, options: &Options, findings: &mut Vec<Finding>) -> Result<()> {
     let mut sets: BTreeMap<(&str, usize), Vec<usize>> = BTreeMap::new();
     for (i, channel) in channels.iter().enumerate() {
@@ -89,7 +90,7 @@ pub fn assign(channels: &mut Vec<Channel>, options: &Options, findings: &mut Vec
             let by_step = kind == AxisKind::Time && step.is_some_and(|(_, step)| step != 1.0);
             by_step || clocks[*i].as_ref().is_some_and(|clock| clock.axis.kind == AxisKind::Time)
         });
-        // Over time a frequency that rises is that of a run-up.
+        // Among channels over time, a frequency that rises is a measured run-up, no abscissa.
         for i in set.iter().filter(|_| timed) {
             clocks[*i].take_if(|clock| clock.axis.kind != AxisKind::Time);
         }
@@ -128,7 +129,8 @@ pub fn assign(channels: &mut Vec<Channel>, options: &Options, findings: &mut Vec
     Ok(())
 }
 
-/// What the waveform properties say: kind, start and step in s or Hz, and what is assumed of their unit.
+/// The abscissa that the waveform properties state: kind, start and step in s or Hz, and a finding on an
+/// assumed unit.
 fn stated(object: &Object) -> (AxisKind, Option<(f64, f64)>, Option<Finding>) {
     let name = object.text("wf_xname").unwrap_or_default();
     let lines = name.to_lowercase().starts_with("freq");
@@ -153,8 +155,8 @@ fn stated(object: &Object) -> (AxisKind, Option<(f64, f64)>, Option<Finding>) {
     (kind, object.number("wf_increment").map(|step| (start * factor, step * factor)), found)
 }
 
-/// The axis of a channel: its clock, with the stated step where both agree, for that has more digits; else
-/// what is stated.
+/// The axis of a channel: its clock, with the stated step if both agree, for that has more digits; without a
+/// clock, as the properties state it.
 pub fn of(channel: &Channel, options: &Options, meta: &mut Meta) -> Axis {
     let (object, n) = (channel.object, channel.values.len());
     let (kind, step, found) = stated(object);
@@ -180,11 +182,11 @@ pub fn of(channel: &Channel, options: &Options, meta: &mut Meta) -> Axis {
         }
         _ => Abscissa::of(axis.clone()),
     };
-    // What is to be said of an uneven clock is said of the file.
+    // The file has the finding on an uneven clock already.
     if free && abscissa.even.is_none() { axis.clone() } else { abscissa.axis(n, options, meta) }
 }
 
-/// Where segments contradict the even `step` of all values.
+/// Findings where segments contradict the even `step` in s of all values.
 fn changes(object: &Object, step: f64) -> Vec<Finding> {
     let of = |key: &str| {
         let all = object.changes.iter().filter(move |(of, _, at)| of == key && *at < object.declared);

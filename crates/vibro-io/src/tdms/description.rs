@@ -3,7 +3,8 @@
 use crate::binary::NumberType;
 use vibro_record::{Error, Place, Result};
 
-/// Codes of numbers as raw data and properties, and as DAQmx scalers, see [`NumberType::coded`].
+/// Type codes of numbers in raw data and properties, and of DAQmx scalers, in the order of
+/// [`NumberType::coded`].
 const NUMBERS: [u32; 10] = [1, 2, 3, 4, 5, 6, 7, 8, 9, 10];
 const DAQMX: [u32; 10] = [1, 3, 5, 7, 0, 2, 4, 6, 8, 9];
 
@@ -16,7 +17,7 @@ pub enum Value {
 }
 
 impl Value {
-    /// As a person reads it.
+    /// The value as readable text.
     pub fn text(&self) -> Option<String> {
         match self {
             Value::Text(text) => Some(text.clone()),
@@ -40,13 +41,14 @@ pub enum Slot {
 /// How the raw data of an object lie in the chunks of a segment.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Index {
-    /// Rows of numbers; of other things one, of all their bytes.
+    /// Number of rows; data that are no numbers are one row of all their bytes.
     pub rows: u64,
-    /// Bytes of a row, or of one in each buffer of DAQmx.
+    /// Bytes of a row; for DAQmx, of a row in each buffer.
     pub widths: Vec<u64>,
     /// Whether all channels share the rows, as those of DAQmx do.
     pub shared: bool,
-    /// What each number of a row is, its buffer, its byte and its kind; none of other things.
+    /// For each number of a row: what it is, its buffer, its byte and its type; empty for data that are no
+    /// numbers.
     pub fields: Vec<(Slot, usize, usize, NumberType)>,
 }
 
@@ -73,7 +75,7 @@ impl<'a> Words<'a> {
         Ok(bytes)
     }
 
-    /// Bytes of a number, little endian.
+    /// Bytes of a number, turned to little endian.
     fn word<const N: usize>(&mut self) -> Result<[u8; N]> {
         let mut word = [0; N];
         word.copy_from_slice(self.bytes(N)?);
@@ -96,7 +98,7 @@ impl<'a> Words<'a> {
         Ok(String::from_utf8_lossy(self.bytes(n)?).into_owned())
     }
 
-    /// The value of a property of a type.
+    /// The value of a property of the type `code`.
     pub fn value(&mut self, code: u32) -> Result<Value> {
         let kind = match code {
             0x20 => return self.text().map(Value::Text),
@@ -114,7 +116,7 @@ impl<'a> Words<'a> {
         Ok(Value::Number(one[0]))
     }
 
-    /// The layout of raw data that begins with this word.
+    /// The layout of raw data whose description begins with the word `kind`.
     pub fn index(&mut self, kind: u32) -> Result<Index> {
         let digital = kind == 0x126a;
         if digital || kind == 0x1269 {
@@ -174,7 +176,8 @@ impl<'a> Words<'a> {
     }
 }
 
-/// The number that a type is; one byte is a truth, too, and floats may have a unit.
+/// Number type of a type code: a truth value (0x21) is one byte, and floats with a unit (0x19, 0x1a) are
+/// floats.
 fn number(code: u32) -> Option<NumberType> {
     let code = match code {
         0x21 => 5,
@@ -184,7 +187,7 @@ fn number(code: u32) -> Option<NumberType> {
     NumberType::coded(code, NUMBERS)
 }
 
-/// The place of a complaint; the reader adds the file.
+/// Place of an error in the file; the reader adds the file's name.
 pub fn in_byte(at: u64) -> Place {
     Place { byte: Some(at), ..Place::default() }
 }

@@ -1,5 +1,5 @@
-//! How raw data lie in a segment, whatever their order: parts, one after the other, of equal rows with fields
-//! in them.
+//! Layout of raw data in a segment, in whatever order they are stored: parts one after the other, each of
+//! equal rows, each row of fields.
 
 use crate::binary::NumberType;
 use std::sync::Arc;
@@ -9,10 +9,10 @@ use std::sync::Arc;
 pub struct RawData {
     /// Byte of the file at which they begin.
     pub at: u64,
-    /// Bytes that are there.
+    /// Number of bytes that the file holds of them.
     pub len: u64,
     pub big_endian: bool,
-    /// One chunk; chunks follow each other to the end.
+    /// The parts of one chunk; chunks follow each other to the end.
     pub parts: Arc<[RowBlock]>,
 }
 

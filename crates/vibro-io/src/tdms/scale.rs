@@ -6,7 +6,7 @@ use super::segment::Object;
 use std::collections::BTreeSet;
 use vibro_record::Values;
 
-/// The input that is the raw values themselves.
+/// Number of the input that stands for the raw values.
 const RAW: u32 = u32::MAX;
 
 /// The scales of a channel: its own, else those of its group or of the file.
@@ -15,15 +15,15 @@ pub struct Scales<'a> {
     n: u32,
 }
 
-/// How a scale makes its values of its inputs.
+/// How a scale computes its values from its inputs.
 enum Conversion {
     /// Raw values of a column.
     Raw(usize),
-    /// Coefficients in rising order.
+    /// Coefficients, of the lowest power first.
     Polynomial(Vec<f64>),
-    /// Rows in rising order.
+    /// Rows of input and output, in rising order of the input.
     Table(Vec<(f64, f64)>),
-    /// One input, and another times a sign.
+    /// The first input plus the second times this sign.
     Sum(f64),
 }
 
@@ -39,7 +39,7 @@ impl<'a> Scales<'a> {
         };
         let holders = above.iter().copied().filter(|o| channel.path.starts_with(&o.path));
         let from = std::iter::once(channel).chain(holders).find(|o| count(o) > 0);
-        // What was written with its scales applied still lists them.
+        // Values stored as already scaled still list their scales: these are not applied again.
         let from = from.filter(|from| from.text("NI_Scaling_Status") != Some("scaled"));
         from.map_or(Scales { from: channel, n: 0 }, |from| Scales { from, n: count(from) })
     }
@@ -47,7 +47,7 @@ impl<'a> Scales<'a> {
     /// The measured values of raw `columns`, one a slot.
     ///
     /// # Errors
-    /// The scale that is not known.
+    /// The type of a scale that is not known, or what is wrong with a scale.
     pub fn apply(&self, slots: &[Slot], mut columns: Vec<Vec<f64>>) -> Result<Values, String> {
         if let ([Slot::Real, Slot::Imaginary], 0) = (slots, self.n) {
             let (imaginary, real) = (columns.pop().unwrap_or_default(), columns.pop().unwrap_or_default());
@@ -56,8 +56,8 @@ impl<'a> Scales<'a> {
         if self.n == 0 {
             return Ok(Values::Real(columns.swap_remove(0)));
         }
-        // From the last scale down to the raw values, each once. Numbers are one higher here: the raw values
-        // are 0.
+        // Collects the scales from the last down to the raw values, each once. Numbers are one higher here,
+        // so that the raw values are 0.
         let (mut wanted, mut chain) = (BTreeSet::from([self.n]), Vec::new());
         while let Some(number) = wanted.pop_last() {
             let (step, inputs) = self.step(number.wrapping_sub(1), slots)?;
@@ -95,11 +95,11 @@ impl<'a> Scales<'a> {
         Ok(Values::Real((0..n).map(value).collect()))
     }
 
-    /// What scale `i` does.
+    /// Conversion and inputs of scale `i`.
     fn step(&self, i: u32, slots: &[Slot]) -> Result<(Conversion, Vec<u32>), String> {
         let number = |key: &str| self.from.number(&format!("NI_Scale[{i}]_{key}"));
         let Some(kind) = self.from.text(&format!("NI_Scale[{i}]_Scale_Type")) else {
-            // The scaler of a DAQmx channel, which stands in the layout of its raw data.
+            // No type: a scaler of DAQmx, whose column is known from the layout of the raw data.
             let column = slots.iter().position(|slot| *slot == Slot::Scaler(i)).unwrap_or(0);
             return Ok((Conversion::Raw(column), Vec::new()));
         };
@@ -131,14 +131,14 @@ impl<'a> Scales<'a> {
                 let sign = if kind == "Add" { 1.0 } else { -1.0 };
                 (Conversion::Sum(sign), vec![input("Right_Operand_"), input("Left_Operand_")])
             }
-            // It says who scales, and changes nothing.
+            // This scale tells which software scales, and changes no values.
             "AdvancedAPI" => (Conversion::Polynomial(vec![0.0, 1.0]), vec![input("")]),
             other => return Err(other.to_owned()),
         })
     }
 }
 
-/// A value of a table, straight between its rows and constant beyond them.
+/// A value of a table: linear between its rows, constant beyond them.
 fn between(table: &[(f64, f64)], at: f64) -> f64 {
     let above = table.partition_point(|(x, _)| *x <= at);
     let (Some((x0, y0)), Some((x1, y1))) = (above.checked_sub(1).map(|i| table[i]), table.get(above)) else {

@@ -19,7 +19,7 @@ enum Raw {
     Of(u32, u64),
     /// Values of a buffer; type, buffer, byte and number of each scaler; widths of the buffers.
     Daqmx(u64, Vec<[u32; 4]>, Vec<u32>),
-    /// As that with bits in place of bytes.
+    /// As `Daqmx`, with bits in place of bytes.
     Digital(u64, Vec<[u32; 4]>, Vec<u32>),
 }
 
@@ -207,7 +207,7 @@ fn interleaved_values_of_every_type() {
             raw.extend(writer.put(60_000u16.to_le_bytes()));
             raw.extend(writer.put(4_000_000_000u32.to_le_bytes()));
             raw.extend(writer.put((1u64 << 50).to_le_bytes()));
-            // 2 s and a quarter behind the beginning of 1904.
+            // Multiples of 2.25 s after the beginning of 1904.
             raw.extend(
                 writer.put((((2i128 << 64) | (1i128 << 62)) * i128::from(k.unsigned_abs())).to_le_bytes()),
             );
@@ -366,7 +366,7 @@ fn a_file_that_ends_early_says_how_much_is_missing() {
     let mut open = writer.bytes.clone();
     open[12..20].fill(0xff);
     assert_eq!(recording(&open).unwrap().records, recording(&writer.bytes).unwrap().records);
-    // Half of a description is nothing.
+    // A description cut short is ignored.
     let mut two = Writer { big: false, bytes: writer.bytes.clone() };
     two.segment(META, &[("/'g'/'a'", Raw::AsBefore, &[Prop::F64("later", 1.0)])], &[]);
     let found = recording(&two.bytes[..two.bytes.len() - 4]).unwrap();
@@ -435,7 +435,7 @@ fn a_stated_step_against_a_channel_of_times() {
     let said = recording(&differ).unwrap().all_findings();
     assert!(has_finding(&said, "vector-against-rate", &["variable=Time", "used=vector", "rate=1"]));
     assert!(has_finding(&said, "axis-unit-assumed", &["unit=s"]));
-    // A rate that a person states is above both.
+    // A rate that the user states wins over both.
     let stated = crate::reader::Reader::new().rate(Some(8.0)).from_reader("x.tdms", &differ[..]).unwrap();
     assert_eq!(stated.records[0].axis().step(), Some(0.125));
     let agree = group(&[("Time", &[Prop::Text("unit_string", "s")], &times), ("a", &step(0.5), &[1.0; 4])]);
@@ -463,7 +463,7 @@ fn only_a_name_makes_an_abscissa() {
     assert_eq!(steps(&both).len(), 2);
     let lines = group(&[("Frequency", &unit("kHz"), &rising), ("A", &unit("g"), &[1.0; 4])]);
     assert_eq!(steps(&lines), [("A".into(), AxisKind::Frequency, Some(2000.0))]);
-    // What is no abscissa of another channel is kept.
+    // A time that has the length of no other channel is kept as a channel.
     let short = group(&[("Time", &unit("s"), &rising), ("a", &unit("g"), &[1.0; 5])]);
     assert!(has_finding(
         &recording(&short).unwrap().findings,
@@ -510,12 +510,12 @@ fn times_of_other_units_and_digits() {
     assert_eq!((axis.step(), found.len()), (Some(3600.0), 0));
     let (_, found) = of(&every(1.0, 5), "hh:mm");
     assert!(has_finding(&found, "axis-unit-unknown", &["said=hh:mm", "unit=s"]));
-    // 1 ms behind 100 s in single precision, which is 8 µs there.
+    // Steps of 1 ms from 100 s on in single precision, whose numbers are 8 µs apart there.
     let single: Vec<f64> = (0..50).map(|i| f64::from((100.0 + f64::from(i) * 1e-3) as f32)).collect();
     let (axis, found) = of(&single, "s");
     assert!((axis.step().unwrap() - 1e-3).abs() < 8e-6 / 49.0);
     assert!(has_finding(&found, "axis-rounded", &[]) && found.len() == 1);
-    // An uneven clock is said once.
+    // An uneven clock gives one finding.
     let (_, found) = of(&[0.0, 1.0, 5.0], "s");
     assert_eq!(found.iter().map(|found| found.code.as_ref()).collect::<Vec<_>>(), ["axis-uneven"]);
 }
@@ -555,7 +555,7 @@ fn what_changes_between_values() {
     let unit = |unit| [Prop::Text("unit_string", unit)];
     let said = two(&unit("V"), &unit("mV"), true).unwrap_err().to_string();
     assert!(said.contains("unit_string changes from V to mV behind value 2"), "{said}");
-    // What is put right behind all values holds for all, and what is said first later, too.
+    // A unit changed after all values holds for all of them, and so does one first stated after some of them.
     let late = |first: &str| two(&[Prop::Text("unit_string", first)], &unit("mV"), first.is_empty()).unwrap();
     assert_eq!(
         [late("V"), late("")].map(|found| found.records[0].extremes().largest().unwrap().1),

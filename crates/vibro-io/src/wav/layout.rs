@@ -13,21 +13,21 @@ use std::io::{Read, SeekFrom};
 use vibro_record::units::notation::counted;
 use vibro_record::{Error, Finding, Place, Result};
 
-/// How many bytes of texts are looked at in one chunk.
+/// Most bytes of texts that are read from one chunk.
 const MOST_TEXT: u64 = 64 * 1024;
-/// A size that was never filled in.
+/// Stored as a size that was never filled in.
 const UNSAID: u64 = 0xffff_ffff;
-/// Behind the format tag in a sub-format: {xxxx0000-0000-0010-8000-00AA00389B71}.
+/// End of the identifier of a sub-format, after its format tag: {xxxx0000-0000-0010-8000-00AA00389B71}.
 const GUID: [u8; 14] = [0, 0, 0, 0, 0x10, 0, 0x80, 0, 0, 0xaa, 0, 0x38, 0x9b, 0x71];
 
 pub(crate) fn sniff(head: &[u8], _: &Source) -> bool {
     [b"RIFF", b"RF64", b"BW64"].iter().any(|form| head.starts_with(*form)) && head.get(8..12) == Some(b"WAVE")
 }
 
-/// What to try where there are no samples.
+/// Hint where there are no samples.
 const CUT: &str = "the recording may have been cut off before its first sample";
 
-/// What the chunks say.
+/// What the chunks say about the samples.
 #[derive(Debug)]
 pub struct WavHeader {
     pub sample: NumberType,
@@ -41,16 +41,16 @@ pub struct WavHeader {
     pub findings: Vec<Finding>,
 }
 
-/// The chunks that are read, each with the place of its body.
+/// The chunks that are read, each with the byte at which its body begins.
 #[derive(Default)]
 struct Chunks {
     format: Option<(u64, Vec<u8>)>,
-    /// With the size of the samples.
+    /// First byte and number of bytes of the samples.
     data: Option<(u64, u64)>,
     notes: Vec<(String, String)>,
 }
 
-/// Goes from chunk to chunk.
+/// Reads the chunks of a file, without its samples.
 fn chunks(source: &Source, reader: &mut dyn ReadSeek) -> Result<Chunks> {
     // At most `most` bytes from `at` on: fewer where the file ends.
     let mut bytes = |at: u64, most: u64| {
@@ -84,7 +84,7 @@ fn chunks(source: &Source, reader: &mut dyn ReadSeek) -> Result<Chunks> {
         }
         at = body.saturating_add(size);
         if size % 2 == 1 && at < source.len() {
-            // Some writers forget the zero byte behind an odd chunk.
+            // Some writers forget the zero byte after a chunk of odd size.
             let next = bytes(at, 8)?;
             at += u64::from(next.first() == Some(&0) || chunk(&next).is_none());
         }
@@ -92,7 +92,7 @@ fn chunks(source: &Source, reader: &mut dyn ReadSeek) -> Result<Chunks> {
     Ok(found)
 }
 
-/// What the chunks of a file say.
+/// Reads from the chunks of a file where its samples are, and of what kind.
 pub fn read(source: &Source, reader: &mut dyn ReadSeek) -> Result<WavHeader> {
     let fault =
         |at, found: &str, expected: &str| Error::input(Place::byte(source.path(), at), found, expected);
@@ -112,8 +112,7 @@ pub fn read(source: &Source, reader: &mut dyn ReadSeek) -> Result<WavHeader> {
     let mut findings = Vec::new();
     let bytes = sample.size() as usize;
     if bits < 8 * bytes {
-        // 12 bits in two bytes fill them from the top, so says the format; some writers fill them from the
-        // bottom.
+        // The format puts 12 bits into the upper bits of two bytes; some writers use the lower bits.
         let wide = Finding::caution("bits-left-justified").count("bits", bits);
         findings.push(wide.count("bytes", bytes));
     }
@@ -157,7 +156,7 @@ fn field<const N: usize>(bytes: &[u8], at: usize) -> Option<[u8; N]> {
     bytes.get(at..)?.first_chunk().copied()
 }
 
-/// Kind of sample, channels, sampling rate and bits of a `fmt ` chunk, or what was found and what is
+/// Kind of sample, channels, sampling rate in Hz and bits of a `fmt ` chunk, or what was found and what is
 /// expected.
 fn kind(format: &[u8]) -> std::result::Result<(NumberType, usize, f64, usize), (String, &'static str)> {
     let word = |at| field(format, at).map(u16::from_le_bytes);

@@ -118,7 +118,7 @@ fn unknown_and_odd_chunks_are_passed_over() {
     assert_eq!(values(&whole), [[0.25]]);
     let notes = &read_bytes(&whole).unwrap().records[0].meta().notes.clone();
     assert_eq!(*notes, [("ICMT".into(), "drill".into()), ("ISFT".into(), "abc".into())]);
-    // The same without the zero byte behind the odd chunk, as some writers have it.
+    // The same without the zero byte after the odd chunk, as some writers have it.
     let at = whole.windows(4).position(|w| w == b"junk").unwrap();
     let unpadded = [&whole[..at + 9], &whole[at + 10..]].concat();
     assert_eq!(values(&unpadded), [[0.25]]);
@@ -151,7 +151,7 @@ fn a_truncated_file_says_both_numbers() {
     assert!(has_finding(&recording.findings, "part-of-frame", &["bytes=1"]), "{:?}", recording.findings);
 }
 
-/// A header of 10 GB with 20 bytes behind it.
+/// A header that declares 10 GB, with 20 bytes after it.
 fn huge(form: [u8; 4]) -> Vec<u8> {
     let mut ds64 = 10_000_000_000u64.to_le_bytes().to_vec();
     ds64.extend(10_000_000_000u64.to_le_bytes());

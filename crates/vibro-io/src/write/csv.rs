@@ -60,7 +60,7 @@ pub fn write(records: &[Record], separator: char, out: &mut impl Write) -> Resul
     out.write_all(text.as_bytes()).map_err(failed)
 }
 
-/// What a spreadsheet takes for the beginning of a formula, or of a command to another program.
+/// Characters that a spreadsheet takes for the beginning of a formula, or of a command to another program.
 const FORMULA: [char; 9] = ['=', '+', '-', '@', '|', '＝', '＋', '－', '＠'];
 
 /// Whether a spreadsheet would take a text for a formula; a sign alone is none.
@@ -68,7 +68,7 @@ pub fn begins_formula(text: &str) -> bool {
     text.starts_with(FORMULA) && text.chars().nth(1).is_some()
 }
 
-/// Bytes that are written at once.
+/// Bytes of text that are gathered before they are written.
 const BLOCK: usize = 64 * 1024;
 
 /// Name and unit of the column of a record.
@@ -81,7 +81,7 @@ fn column(index: usize, record: &Record) -> (&Record, String, String) {
     if begins_formula(&name) {
         name.insert(0, '\'');
     }
-    // Square brackets end where the unit ends.
+    // A square bracket within the unit would end it too early for a reader.
     let unit = plain(meta.unit.symbol()).replace('[', "(").replace(']', ")");
     (record, name, unit)
 }
@@ -96,7 +96,7 @@ fn remarks(record: &Record, name: &str, text: &mut String) {
             meta.averaged_with().map(|window| ("averaged with", window.name().to_owned())),
         ],
         Record::Spectrum(Spectrum { values, scaling, window, enbw, .. }) => {
-            // A complex one must say that it is no frequency response.
+            // Without its scaling, a complex spectrum would be read as a frequency response function.
             let scaled = matches!(values, Values::Complex(_)) || *scaling != Scaling::Unknown;
             [
                 scaled.then(|| ("scaling", scaling.name().to_owned())),
@@ -120,7 +120,8 @@ fn axis_name(axis: &Axis) -> &str {
     }
 }
 
-/// Shortest digits that read back as `value`, with an exponent where zeros would fill the place.
+/// Fewest digits that read back as `value`; with an exponent below 1e-5 and from 1e16 on, to avoid rows of
+/// zeros.
 fn number(value: f64, text: &mut String) {
     let _ = if value == 0.0 || (1e-5..1e16).contains(&value.abs()) || !value.is_finite() {
         write!(text, "{value}")
@@ -129,12 +130,12 @@ fn number(value: f64, text: &mut String) {
     };
 }
 
-/// One line without blanks at its ends.
+/// The text as one line, trimmed.
 fn plain(text: &str) -> String {
     text.replace(char::is_control, " ").trim().to_owned()
 }
 
-/// Quoted after RFC 4180 where it must be; a comment sign would hide the line.
+/// A field, quoted as RFC 4180 requires, and where it holds `#` or `%`: these would make the line a comment.
 fn field(text: &str, separator: char) -> String {
     if text.contains([separator, '"', '#', '%', '\n', '\r']) {
         format!("\"{}\"", text.replace('"', "\"\""))

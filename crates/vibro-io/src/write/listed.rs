@@ -1,4 +1,4 @@
-//! Records as writers take them: value by value, and together where they share an axis.
+//! Helpers of the writers: a record value by value, and records that must share an axis.
 
 use vibro_record::{Error, Record, Result};
 
@@ -13,7 +13,8 @@ pub fn parts(record: &Record, i: usize) -> impl Iterator<Item = f64> + use<> {
     std::iter::once(re).chain(im)
 }
 
-/// The first of records that share one axis; `what` says what has one, for the complaint.
+/// The first of records that share one axis; `what` ends the error if they do not: `abscissae: a table has
+/// one`.
 pub fn together<'a>(records: &'a [Record], what: &str) -> Result<&'a Record> {
     let first = records.first().ok_or_else(|| Error::refused("there is no record to write"))?;
     let Some(other) = records.iter().find(|r| r.axis() != first.axis()) else { return Ok(first) };
@@ -21,7 +22,7 @@ pub fn together<'a>(records: &'a [Record], what: &str) -> Result<&'a Record> {
     Err(Error::refused(why).hint("write them one by one"))
 }
 
-/// How a record is called in a complaint.
+/// Kind and name of a record, for errors.
 pub fn label(record: &Record) -> String {
     format!("the {} {:?}", record.kind(), record.meta().name)
 }

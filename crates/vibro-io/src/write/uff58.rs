@@ -56,8 +56,7 @@ pub struct Storage {
 /// ```
 ///
 /// # Errors
-/// If `out` cannot be written, there are no records, or one has more values than ten digits can count or an
-/// abscissa that the format would distort.
+/// If `out` cannot be written, there are no records, or the format would distort the abscissa of one.
 pub fn write_uff58(records: &[Record], out: &mut impl Write, storage: Storage) -> Result<()> {
     if records.is_empty() {
         return Err(Error::refused("there are no records to write, and a file without any cannot be read"));
@@ -126,8 +125,8 @@ fn field(value: f64, width: usize, digits: usize) -> String {
     format!("{:>width$}", format!("{mantissa}{letter}{sign}{exponent:0>2}"))
 }
 
-/// Shift of an abscissa value by rounding, over the (smallest) step, that is aimed at: with usual digits,
-/// else with more.
+/// Largest shift of an abscissa value by rounding, over the (smallest) step, for which the usual digits are
+/// enough; above it, more digits are tried.
 const WANTED: f64 = 1e-3;
 /// Largest shift of an abscissa value over the (smallest) step: beyond it the record is refused.
 const TOLERANCE: f64 = 0.1;

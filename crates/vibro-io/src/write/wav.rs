@@ -1,9 +1,9 @@
 //! Wave audio of 32- or 64-bit floats.
 //!
 //! Only traces with one even time axis fit, and no missing values. Each channel is divided by its full scale,
-//! the power of two next above its largest magnitude (so that the division is exact), which stands with unit,
-//! name, exact sampling rate and start in a comment (LIST INFO ICMT). [`crate::Reader`] reads the comment and
-//! undoes all of it; an audio program plays the file and ignores it.
+//! the power of two at or next above its largest magnitude, so that the division is exact. A comment (LIST
+//! INFO ICMT) holds full scale, unit, name, exact sampling rate and start. [`crate::Reader`] reads the
+//! comment and undoes all of it; an audio program plays the file and ignores it.
 
 use super::listed::{failed, label, together};
 use super::uff58::Precision;
@@ -51,7 +51,7 @@ pub fn write(records: &[Record], precision: Precision, out: &mut impl Write) -> 
     Ok(())
 }
 
-/// Frames that are written at once.
+/// Frames that are written at a time.
 const BLOCK: usize = 4096;
 
 /// The trace in a record, if a wave file can hold it.
@@ -89,7 +89,7 @@ fn scale(trace: &Trace) -> Scale {
     Scale { factor, unit: trace.meta.unit.symbol().to_owned(), name: trace.meta.name.clone() }
 }
 
-/// Everything before the samples.
+/// All bytes of the file before the samples.
 fn head(scales: &Scales, rate: u32, frames: usize, precision: Precision) -> Result<Vec<u8>> {
     let channels = scales.channels.len();
     let bytes = if precision == Precision::Single { 4 } else { 8 };

@@ -3,10 +3,11 @@
 use vibro_record::units::{Dimension, Quantity, Unit};
 use vibro_record::{AxisKind, Scaling};
 
-/// What a record of a function type is, where it stands over frequency.
+/// The record that a function type means over frequency.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum FunctionType {
-    /// Response over force; nothing to say of one that is real.
+    /// A ratio such as response over force: a frequency response function if complex, else a spectrum of
+    /// unknown scaling.
     Ratio,
     /// A spectrum of this scaling.
     Scaled(Scaling),
@@ -63,7 +64,7 @@ pub fn function(code: i64) -> (String, Option<AxisKind>, FunctionType) {
     }
 }
 
-/// Specific data types that name a physical quantity: code, name, SI unit along an axis and about it.
+/// Specific data types that name a physical quantity: code, name, SI unit of a translation and of a rotation.
 const DATA_TYPES: &[(i64, &str, &str, &str)] = &[
     (2, "stress", "Pa", "Pa"),
     (3, "strain", "1", "1"),
@@ -77,7 +78,7 @@ const DATA_TYPES: &[(i64, &str, &str, &str)] = &[
     (16, "mass", "kg", "kg*m^2"),
     (17, "time", "s", "s"),
     (18, "frequency", "Hz", "Hz"),
-    // Behind the published list, but written by instruments.
+    // Not in the published list, but written by instruments.
     (21, "sound pressure", "Pa", "Pa"),
 ];
 
@@ -97,7 +98,7 @@ pub fn quantity_of_label(label: &str) -> Option<Quantity> {
     })
 }
 
-/// Names of the data sets that stand around data set 58 in files of measurements.
+/// Names of the data sets that accompany data set 58 in files of measurements.
 const SETS: &[(u32, &str)] = &[
     (15, "nodes"),
     (18, "coordinate systems"),
@@ -113,7 +114,7 @@ const SETS: &[(u32, &str)] = &[
     (2467, "groups"),
 ];
 
-/// `3 × 15 nodes`: so many data sets of a number, which has a plain name or none.
+/// Count, number and, where known, name of data sets: `3 × 15 nodes`.
 pub fn set_names((number, count): (u32, usize)) -> String {
     let times = if count > 1 { format!("{count} × ") } else { String::new() };
     let name = SETS.iter().find(|s| s.0 == number).map_or(String::new(), |s| format!(" {}", s.1));

@@ -10,7 +10,7 @@ use vibro_record::{Error, Place, Result};
 /// Lines before the values.
 pub const LINES: usize = 11;
 
-/// What the header of a data set 58 says.
+/// The header of a data set 58.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Heading {
     /// Identification lines 1 to 5.

@@ -1,4 +1,4 @@
-//! How the values of a data set 58 are stored: record 7 says it, record 12 follows.
+//! How the values of a data set 58 are stored, as its record 7 states: the values follow as record 12.
 
 /// Ordinate data types of record 7: code, complex, double precision.
 pub(crate) const KINDS: [(i64, bool, bool); 4] =

@@ -32,8 +32,8 @@ impl UnitSystem {
     }
 }
 
-/// Superscripts and µ, with what they become when they are read in another code page than they were written
-/// in: UTF-8 taken as code page 437 and as Latin-1, then Latin-1 taken as Mac Roman and as code page 437.
+/// Superscripts and µ, each with its forms after reading in a wrong code page: UTF-8 read as code page 437
+/// and as Latin-1, then Latin-1 read as Mac Roman and as code page 437.
 const MANGLED: [(&str, &str); 3] = [("²", "┬▓ Â² ≤ ▓"), ("³", "┬│ Â³ ≥ │"), ("µ", "┬╡ Âµ")];
 
 /// Numerator or denominator of an ordinate.

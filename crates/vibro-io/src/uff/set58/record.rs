@@ -1,4 +1,4 @@
-//! What record a data set 58 becomes: axis, kind, scaling, unit, and the findings about each.
+//! Makes a record of a data set 58: axis, kind, scaling, unit, and the findings about each.
 
 use super::codes::{self, FunctionType};
 use super::heading::Heading;
@@ -11,10 +11,10 @@ use num_complex::Complex64;
 use vibro_record::units::{Quantity, Unit};
 use vibro_record::{AxisKind, Finding, Meta, Record, Result, Scaling, Values, Window};
 
-/// The record of the `numbers` that stand behind a heading; `more` findings are about how they stand there.
+/// The record of a heading and the `numbers` after it; `more` are findings from reading these.
 ///
 /// # Errors
-/// If values are complex over time, or one is beyond all numbers in SI units.
+/// If values over time are complex, or a value overflows a double in SI units.
 pub fn build(
     heading: &Heading,
     numbers: Vec<f64>,
@@ -77,8 +77,8 @@ fn split(numbers: Vec<f64>, layout: Layout) -> (Vec<f64>, Values) {
     (stored, values)
 }
 
-/// What this crate's own writer puts into the fifth identification line: `scaling rms; window hann; enbw
-/// 1.5`.
+/// Scaling, window and noise bandwidth from the fifth identification line, as this crate writes it: `scaling
+/// rms; window hann; enbw 1.5`.
 fn stated(line: &str) -> Spectral {
     let mut stated = Spectral::default();
     let parts = line.split("; ").filter_map(|part| part.split_once(' '));
@@ -93,7 +93,7 @@ fn stated(line: &str) -> Spectral {
     stated
 }
 
-/// What the function type says of a record over this abscissa; where the two disagree, the abscissa decides.
+/// Sets scaling and findings by the function type; where it contradicts the abscissa, the abscissa decides.
 fn function(heading: &Heading, axis: &AxisKind, said: &mut Spectral, meta: &mut Meta) {
     let (name, usual, kind) = codes::function(heading.function);
     if *axis == AxisKind::Time || (*axis != AxisKind::Frequency && !heading.layout.complex) {
@@ -182,10 +182,10 @@ fn untyped(heading: &Heading, options: &Options, meta: &mut Meta) -> AxisKind {
     AxisKind::Index
 }
 
-/// Settles unit and quantity; gives the factor to SI.
+/// Sets unit and quantity; returns the factor to SI.
 fn unit(heading: &Heading, system: &UnitSystem, options: &Options, coherence: bool, meta: &mut Meta) -> f64 {
     let (unit, factor, written, findings) = ordinate::unit(heading, system);
-    // A coherence has none, whatever that of the function beside it is.
+    // A coherence has no unit: a stated one is meant for the function beside it.
     if let Some(said) = options.unit.as_ref().filter(|_| !coherence) {
         if unit.is_known() && (unit.dimension() != said.dimension() || factor != said.factor()) {
             let differs = Finding::caution("unit-overrides-file").name("file", written);

@@ -11,7 +11,7 @@ use vibro_record::{Error, Finding, Result};
 pub fn text(stream: &mut Stream, heading: &Heading, allow_missing: bool) -> Result<Vec<f64>> {
     let widths = heading.layout.widths();
     let due = heading.n.saturating_mul(heading.layout.columns());
-    // No value takes fewer than two bytes, but most take thirteen or more: the vector grows where it must.
+    // Room for values of the usual 13 bytes; the vector grows where they are shorter.
     let mut numbers = Vec::with_capacity(due.min(stream.rest().len() / 13 + 1));
     while numbers.len() < due {
         let before = numbers.len();
@@ -33,8 +33,8 @@ pub fn text(stream: &mut Stream, heading: &Heading, allow_missing: bool) -> Resu
     Ok(numbers)
 }
 
-/// Reads the numbers of the line at the start of `bytes` in their columns and gives its length; the last
-/// field may lack its trailing blanks.
+/// Reads the line at the start of `bytes` in fixed columns and returns its length with its end; `None` if it
+/// does not fit them. The last field may lack its trailing blanks.
 #[inline]
 fn by_columns(bytes: &[u8], widths: &[usize], numbers: &mut Vec<f64>) -> Option<usize> {
     let line_end = |at: usize| Some(at + bytes[at..].iter().position(|b| *b == b'\n')?);
@@ -99,8 +99,8 @@ fn by_blanks(stream: &Stream, line: &[u8], allow_missing: bool, numbers: &mut Ve
     Ok(())
 }
 
-/// Numbers of a line that ends with the file and not with a line end. What stands last may be half a number
-/// that looks like a whole one: it counts only where it fills its field.
+/// Numbers of a last line without a line end. Its last number may be cut short and still look whole: it
+/// counts only where it fills its field.
 fn last_line(line: &[u8], widths: &[usize], numbers: &mut Vec<f64>) {
     let whole =
         widths.iter().fold(0, |whole, width| if whole + width <= line.len() { whole + width } else { whole });
@@ -120,8 +120,8 @@ fn tokens(line: &[u8]) -> impl Iterator<Item = (usize, &[u8])> {
     tokens.map(|token| (token.as_ptr() as usize - line.as_ptr() as usize + 1, token))
 }
 
-/// What the number line of a 58b says, which has byte order, number format, header lines and bytes: whether
-/// it is big-endian, and the bytes of values, which are often wrong, so never more than a hint.
+/// Byte order and size of the values of a 58b, by its number line (byte order, number format, header lines,
+/// bytes): whether they are big-endian, and their bytes. The size is often wrong, so never more than a hint.
 pub fn storage(line: &[u8], stream: &Stream) -> Result<(bool, Option<usize>)> {
     let text = String::from_utf8_lossy(line);
     let mut fields = text.split_whitespace().skip(1);
@@ -140,7 +140,7 @@ pub fn storage(line: &[u8], stream: &Stream) -> Result<(bool, Option<usize>)> {
         .hint("export the record as ASCII (data set 58), which has one spelling of numbers"))
 }
 
-/// Reads at most as many binary numbers as the header declares, and says what is odd about their size.
+/// Reads at most as many binary numbers as the header declares, with findings on an odd size.
 ///
 /// Record 7 says how many bytes there should be. Only where they cannot be all there, where the number line
 /// contradicts, or where writers differ (abscissa of double-precision values) does the closing `-1` decide.

@@ -94,7 +94,7 @@ proptest! {
         let axis = match kind {
             0 => Axis::time(start, step, n),
             1 => Axis::index(n),
-            // No even axis has these for its values.
+            // Exponential steps: no even axis has these values.
             _ => Axis { kind: AxisKind::Time, grid: Grid::Uneven((0..n).map(|i| start + step * (1.5 * i as f64).exp2()).collect()) },
         };
         let records: Vec<Record> = metas.into_iter().zip(columns)

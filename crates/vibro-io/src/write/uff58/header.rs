@@ -5,17 +5,17 @@ use crate::uff::set58::KINDS;
 use vibro_record::units::{Quantity, Unit};
 use vibro_record::{ADDED_DECAY, AVERAGED_WITH, Axis, AxisKind, FROM_BLOWS, Meta, Record, Scaling, Spectrum};
 
-/// Record 6 behind the function type, of a record without a degree of freedom.
+/// Record 6 after its function type, of a record without a degree of freedom.
 const NOWHERE: &str = "         0    0         0 NONE               0   0 NONE               0   0";
 
-/// Delimiter, number line and header; `bytes` is the size of binary values, `start` and `step` stand in
-/// record 7.
+/// Delimiter, number line and header; `bytes` is the size of binary values, `start` and `step` are the texts
+/// of record 7.
 pub fn text(record: &Record, layout: Layout, bytes: Option<usize>, [start, step]: &[String; 2]) -> String {
     let meta = record.meta();
     let note = |key: &str| meta.notes.iter().find(|(k, _)| k == key).map(|(_, text)| text.as_str());
-    // The point that was read still stands, unless the record has another name by now.
+    // Record 6 as read is kept, unless the record was renamed since.
     let point = note("record 6").filter(|line| line.is_ascii() && line.len() > 5).filter(|_| {
-        // Readers number the channels of one name.
+        // Reading adds a number to repeated names: `name #2`.
         let first = meta.name.rsplit_once(" #").map(|(name, _)| name);
         note("point").is_some_and(|point| point == meta.name || Some(point) == first)
     });
@@ -68,8 +68,8 @@ pub fn text(record: &Record, layout: Layout, bytes: Option<usize>, [start, step]
     lines.map(|line| format!("{line:80}")).collect::<Vec<_>>().join("\n") + "\n"
 }
 
-/// Function type of record 6; `before` is that of the file the record was read from, and stands where the
-/// record still is what it was.
+/// Function type of record 6; `before`, the type in the file that the record was read from, is kept where it
+/// still fits the record.
 fn function(record: &Record, before: Option<u8>) -> u8 {
     let keep = |same: fn(u8) -> bool, otherwise: u8| before.filter(|code| same(*code)).unwrap_or(otherwise);
     match record {
@@ -86,7 +86,7 @@ fn function(record: &Record, before: Option<u8>) -> u8 {
     }
 }
 
-/// Fifth identification line, for what the function type does not tell.
+/// Fifth identification line: scaling, window and noise bandwidth that the function type cannot express.
 fn scaling_line(Spectrum { scaling, window, enbw, .. }: &Spectrum) -> Option<String> {
     let by_type = matches!(scaling, Scaling::Psd | Scaling::Energy | Scaling::Coherence | Scaling::Unknown);
     let window = window.map(|window| format!("; window {}", window.name()));
@@ -110,7 +110,7 @@ fn abscissa(axis: &Axis) -> String {
     }
 }
 
-/// Records 9 and 10.
+/// Records 9 and 10: the ordinate, or its numerator and denominator.
 fn ordinate(meta: &Meta) -> [String; 2] {
     let of = |quantity: Quantity| {
         let data_type = match quantity {
@@ -133,8 +133,8 @@ fn ordinate(meta: &Meta) -> [String; 2] {
     }
 }
 
-/// A unit in at most 20 ASCII characters where that says the same: others count bytes where characters are
-/// meant.
+/// A unit in ASCII where that means the same, for other programs count bytes instead of characters; empty
+/// where it needs more than 20 characters.
 fn unit_text(unit: &Unit) -> String {
     const PLAIN: [(&str, &str); 8] = [
         ("²", "^2"),
@@ -150,12 +150,12 @@ fn unit_text(unit: &Unit) -> String {
     let plain = PLAIN.iter().fold(symbol.to_owned(), |text, (from, to)| text.replace(from, to));
     let same = Unit::parse(&plain).is_some_and(|p| unit.is_known() && p.dimension() == unit.dimension());
     let chosen = if same { plain } else { symbol.to_owned() };
-    // Half a unit would be another unit.
+    // A unit cut short would be another unit.
     if unit.is_known() && chosen.chars().count() > 20 { String::new() } else { chosen }
 }
 
-/// Text of at most `width` characters on one line; `NONE` for nothing, and never a line that would end the
-/// data set.
+/// Text of at most `width` characters on one line; `NONE` for an empty text, `(-1)` in place of a line that
+/// would end the data set.
 fn plain(text: &str, width: usize) -> String {
     let line: String = text.trim().replace(char::is_control, " ").chars().take(width).collect();
     match line.trim() {
