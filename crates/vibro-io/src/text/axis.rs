@@ -267,6 +267,9 @@ fn headed(n: usize, header: &Stated, findings: &mut Vec<Finding>) -> Axis {
                     }),
                 );
             }
+            let other =
+                header.other_rate.map(|other| Finding::caution("rates-differ").number("other", other));
+            findings.extend(other.map(|found| found.number("rate", rate)));
             Axis::time(header.start.unwrap_or(0.0), 1.0 / rate, n)
         }
         _ => {

@@ -17,6 +17,8 @@ pub struct Stated {
     pub base_band: Option<f64>,
     /// Sampling rate in Hz.
     pub rate: Option<f64>,
+    /// Another sampling rate in Hz that the head states as well.
+    pub other_rate: Option<f64>,
     /// What may be the sampling rate, for nothing tells whether the mark in it is the decimal one.
     pub perhaps_rate: Option<PerhapsRate>,
     /// What says that fewer values were kept than were sampled, as written.
@@ -77,7 +79,7 @@ const SCALE: &str = "slope|scale factor|scaling factor|multiplier|multiplikator|
                      conversion factor|umrechnungsfaktor";
 const OF_SIGNAL: &str = "sensitivity|sensor sensitivity|transducer sensitivity|empfindlichkeit|sensibilité|sensibilità|sensibilidad|\
                          gain|verstärkung|amplification|amplifier gain|gain factor|voltage divider|spannungsteiler|divider|\
-                         calibration factor|kalibrierfaktor|cal factor";
+                         calibration factor|kalibrierfaktor|cal factor|sens|calibration|attenuation|dämpfung";
 
 /// Keys of a sampling rate, and of the step of time.
 const RATE: &str = "sampling rate|sample rate|sampling frequency|sample frequency|samplerate|samp freq|sampling freq|data rate|fs|rate|abtastrate|\
@@ -93,6 +95,9 @@ const AXIS: &str = "x-axis|x axis|x-axis unit|x axis unit|xunit|xunits|x unit|hu
 
 /// `mHz`, apart from megahertz in lower case.
 const MILLIHERTZ: &str = "millihertz";
+
+/// Relative difference of two rates of a head that rounding explains: of a step in two digits.
+const ROUNDED_RATE: f64 = 0.05;
 
 /// More lines than any analyser has.
 const MOST_LINES: f64 = 1e9;
@@ -141,6 +146,12 @@ impl Stated {
         stated
     }
 
+    /// Remembers a `rate` that differs from the one that is used, by more than rounding leaves.
+    fn keeps_other(&mut self, rate: Option<f64>) {
+        let differs = |rate: &f64| self.rate.is_some_and(|used| (rate / used - 1.0).abs() > ROUNDED_RATE);
+        self.other_rate = rate.filter(differs).or(self.other_rate);
+    }
+
     /// Whether `n` values are all lines of the base band: then they are a spectrum, whatever else is stated,
     /// since analysers print the sampling rate too.
     pub(crate) fn all_lines(&self, n: usize) -> bool {
@@ -168,7 +179,11 @@ impl Stated {
 pub fn split(line: &str) -> (&str, &str) {
     let at = line.find([':', '=']).filter(|at| {
         let key = line[..*at].trim();
-        let time = line[*at..].starts_with(':') && key.ends_with(|c: char| c.is_ascii_digit());
+        let digit = |c: char| c.is_ascii_digit();
+        let time = key.ends_with(digit)
+            && line[*at..]
+                .strip_prefix(':')
+                .is_some_and(|behind| behind.is_empty() || behind.starts_with(digit));
         !key.is_empty() && !time && key.len() <= 40
     });
     at.map_or(("", line.trim()), |at| (line[..at].trim(), line[at + 1..].trim()))
@@ -190,14 +205,22 @@ fn behind_key(line: &str) -> (&str, &str) {
     unit.or_else(rate).map_or(("", line), |(key, value)| (key, value.trim()))
 }
 
-/// Whether a line says that only some of the values that were sampled are kept: `decimated by 2`.
+/// Whether a line says that only some of the values that were sampled are kept: `decimated by 2`, `resampled
+/// to 1 kHz`, `every 8th sample`.
 fn is_decimated(line: &str) -> bool {
     let lower = line.to_lowercase();
-    let behind =
-        ["decimat", "dezimat", "dezimiert", "décimat"].iter().find_map(|word| lower.split_once(word));
-    let Some((_, behind)) = behind else { return false };
+    let thinned = ["decimat", "dezimat", "dezimiert", "décimat", "downsampl", "resampl"];
+    let behind = thinned.iter().find_map(|word| lower.split_once(word)).map(|(_, behind)| behind);
+    let every = lower.split_once("every ").map(|(_, behind)| behind).filter(|behind| {
+        let word = behind.split_whitespace().next().unwrap_or("");
+        ["st", "nd", "rd", "th"].iter().any(|end| word.ends_with(end)) && behind.contains("sample")
+    });
+    let Some(behind) = behind.or(every) else { return false };
     let factor = behind.split(|c: char| !c.is_ascii_digit()).find(|digits| !digits.is_empty());
-    factor.is_some_and(|factor| factor.trim_start_matches('0').parse::<u32>().is_ok_and(|n| n > 1))
+    factor.is_some_and(|factor| {
+        let several = factor.trim_start_matches('0').parse::<u32>().is_ok_and(|n| n > 1);
+        several || behind.contains("hz")
+    })
 }
 
 /// Takes what stands under a key that is understood, where it is a possible value.
@@ -259,8 +282,10 @@ fn keyed(key: &str, value: &str, stated: &mut Stated) {
             stated.base_band = hertz();
         }
         key if RATE.split('|').any(|known| known == key) => {
+            let before = stated.rate;
             stated.rate = hertz().or_else(|| seconds_with(mark).filter(|_| !bare)).or(stated.rate);
             stated.perhaps_rate = if stated.rate.is_none() { perhaps(&hertz_with) } else { None };
+            stated.keeps_other(before);
         }
         key if STEP.split('|').any(|known| known == key) => {
             let rate = seconds_with(mark);
@@ -268,6 +293,7 @@ fn keyed(key: &str, value: &str, stated: &mut Stated) {
             stated.of_one_series |= rate.is_some();
             stated.step = rate.map(|rate| 1.0 / rate).or(stated.step);
             stated.rate = stated.rate.or(rate);
+            stated.keeps_other(rate);
         }
         "npts" | "number of points" | "number of samples" | "record length" | "memory length"
         | "blocksize" | "total data points" => {
@@ -293,9 +319,7 @@ fn keyed(key: &str, value: &str, stated: &mut Stated) {
         "y axis" if value.ends_with([']', ')']) => {
             stated.unit = stated.unit.take().or(Name::parse(value).unit);
         }
-        key if SCALE.split('|').chain(OF_SIGNAL.split('|')).any(|known| known == key) => {
-            stated.scales.extend(scale(key, value));
-        }
+        key if is_scale(key) => stated.scales.extend(scale(&of_any_channel(key), value)),
         "window" | "weighting" | "window type" => {
             stated.window = Window::from_name(value.split([' ', '(']).next().unwrap_or(""))
                 .or_else(|| Window::from_name(value));
@@ -307,11 +331,25 @@ fn keyed(key: &str, value: &str, stated: &mut Stated) {
     }
 }
 
+/// A key without the channel that it is of: `ch1 sensitivity`, `sensitivity channel 2`.
+fn of_any_channel(key: &str) -> String {
+    let channel = |word: &&str| {
+        let name = word.trim_end_matches(|c: char| c.is_ascii_digit());
+        !matches!(name, "" | "ch" | "channel" | "kanal" | "canal" | "voie" | "ai")
+    };
+    key.split_whitespace().filter(channel).collect::<Vec<_>>().join(" ")
+}
+
+fn is_scale(key: &str) -> bool {
+    let key = of_any_channel(key);
+    SCALE.split('|').chain(OF_SIGNAL.split('|')).any(|known| known == key)
+}
+
 /// What a factor under its key says, where one of its numbers is not 1, or it is a quotient of units:
 /// `1 V/g`.
 fn scale(key: &str, value: &str) -> Option<StatedScale> {
     let words: Vec<&str> = value.split([';', ' ']).map(str::trim).filter(|word| !word.is_empty()).collect();
-    let first = number::either(words.first()?.trim_start_matches(['x', '×', '*']).as_bytes());
+    let first = number::either(words.first()?.trim_matches(['x', 'X', '×', '*']).as_bytes());
     let quotient = first.is_some() && words.iter().any(|word| word.contains('/'));
     let other =
         |word: &&str| number::either(word.as_bytes().trim_ascii()).is_some_and(|factor| factor != 1.0);

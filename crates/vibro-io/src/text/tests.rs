@@ -1294,6 +1294,27 @@ fn a_head_that_says_that_the_abscissa_is_a_frequency() {
 }
 
 #[test]
+fn two_rates_of_a_head_and_scales_of_channels_are_said() {
+    let found = |head: &str| of(format!("{head}\nA (V);B (V)\n0.5;1.5\n2.5;3.5\n")).all_findings();
+    for head in
+        ["Sampling rate: 2000 Hz\nSample interval: 1 ms", "Sample interval: 1 ms\nSampling rate: 2000 Hz"]
+    {
+        assert!(has_finding(&found(head), "rates-differ", &["rate=2000", "other=1000"]), "{head}");
+    }
+    assert!(!has_finding(&found("Sampling rate: 3000 Hz\nSample interval: 0.33 ms"), "rates-differ", &[]));
+    for head in [
+        "Sensitivity Ch1: 2.25 mV/N",
+        "Ch1 sensitivity (mV/g): 100",
+        "Sens.: 100 mV/g",
+        "Attenuation: 10x",
+        "Amplifier gain: 10",
+    ] {
+        assert!(has_finding(&found(head), "scale-in-head", &[]), "{head}: {:?}", found(head));
+    }
+    assert!(!has_finding(&found("Attenuation: 1x"), "scale-in-head", &[]));
+}
+
+#[test]
 fn samples_that_a_counter_leaves_out_are_missed() {
     let text = |gap: usize, head: &str| {
         let row = |i: usize| format!("{},{:.4}\n", if i < 50 { i } else { i + gap }, (0.3 * i as f64).sin());
@@ -1328,6 +1349,14 @@ fn decimal_commas_below_a_rate_tell_that_its_point_groups_digits() {
     // Decimation is said: the rate may be that before it.
     let kept = of("Sampling rate: 2000 Hz, decimated by 2\nA (V);B (V)\n0.5;1.5\n2.5;3.5\n");
     assert!(has_finding(&kept.findings, "rate-decimated", &["rate=2000"]), "{:?}", kept.findings);
+    for head in [
+        "Sampling rate: 8 kHz, downsampled to 1 kHz",
+        "Rate: 8 kHz\nEvery 8th sample stored",
+        "Rate: 8 kHz\nResampled: 500 Hz",
+    ] {
+        let kept = of(format!("{head}\nA (V);B (V)\n0.5;1.5\n2.5;3.5\n"));
+        assert!(has_finding(&kept.findings, "rate-decimated", &["rate=8000"]), "{head}: {:?}", kept.findings);
+    }
 }
 
 #[test]
