@@ -67,9 +67,9 @@ impl Whiteness {
     }
 }
 
-/// Standard deviation of Student's distribution of `free` degrees of freedom, √(ν/(ν − 2)): what a standard
-/// uncertainty from a variance that was itself estimated is to be multiplied by (JCGM 101:2008, 6.4.9.2).
-/// `None` up to two degrees of freedom, where it has none.
+/// Factor on a standard uncertainty from an estimated variance with `free` degrees of freedom: the standard
+/// deviation of Student's distribution, √(ν/(ν − 2)) (JCGM 101:2008, 6.4.9.2). `None` up to two degrees of
+/// freedom, where it has none.
 pub fn student(free: usize) -> Option<f64> {
     (free > 2).then(|| (free as f64 / (free as f64 - 2.0)).sqrt())
 }
@@ -80,8 +80,8 @@ pub fn widened(free: usize) -> f64 {
     student(free).unwrap_or_else(|| student_at(0.975, free.max(1)) / normal_at(0.975))
 }
 
-/// Akaike's criterion for a fit of `parameters` (the variance of the noise is one more) to `n` values,
-/// corrected for their number (Hurvich & Tsai 1989); NaN where there are too few values.
+/// Corrected Akaike criterion (AICc) of a fit to `n` values, with the variance of the noise as one parameter
+/// more than `parameters` (Hurvich & Tsai 1989); NaN where there are too few values.
 pub fn aicc(sum_of_squares: f64, n: usize, parameters: usize) -> f64 {
     let (n, k) = (n as f64, parameters as f64 + 1.0);
     if n - k - 1.0 <= 0.0 {
@@ -136,7 +136,7 @@ mod tests {
             .collect();
         let w = Whiteness::of(&[&r]);
         let expected = f64::sqrt((1.0 + phi) / (1.0 - phi));
-        // The sum over some ten lags of correlations good to 1/√20000 each.
+        // The sum runs over about ten lags of correlations, each good to 1/√20000.
         assert!(w.rejected() && (w.inflation / expected - 1.0).abs() < 0.1, "{w:?} {expected}");
     }
 }

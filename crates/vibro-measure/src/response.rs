@@ -89,10 +89,10 @@ pub fn response(sweep: &Sweep, options: &ResponseOptions) -> Result<Response> {
     Ok(found)
 }
 
-/// The points of a sweep at known excitations, no curve yet.
+/// The points of a sweep at known excitations, without jumps and resonances yet.
 ///
 /// # Errors
-/// If what is stored cannot be taken to a displacement, velocity or acceleration.
+/// If the stored quantity cannot be integrated to a displacement, velocity or acceleration.
 pub(crate) fn read(sweep: &Sweep, options: &ResponseOptions, excitations: &[Excitation]) -> Result<Response> {
     let df = sweep.line_width().unwrap_or(f64::NAN);
     // A spectrum that was divided by frequency is noise below two lines, and below a quarter of the lowest

@@ -31,9 +31,9 @@ const POINTS: usize = 6;
 /// Largest deviation of points that still count as a circle, root mean square over its radius.
 const ROUND: f64 = 0.1;
 
-/// Fits a circle to the mobility at the lines within 2.4 half bandwidths of the mode (270° of the circle), by
-/// the method of Pratt (1987), then natural frequency and damping to the angles: tan(θ/2) = (ωᵣ² −
-/// ω²)/(2ζωᵣω) from the resonance.
+/// Fits a circle to the mobility at the lines within 2.4 half bandwidths of the mode (270° of the circle),
+/// by the method of Pratt (1987). Natural frequency and damping then follow from the angles on the circle:
+/// tan(θ/2) = (ωᵣ² − ω²)/(2ζωᵣω) from the resonance.
 ///
 /// Returns the mode and the number of lines.
 ///

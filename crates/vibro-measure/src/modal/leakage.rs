@@ -1,8 +1,8 @@
 //! Response of a mode in a function that was averaged over windowed segments.
 //!
 //! The mean of conj(F)X over segments of a stationary excitation, windowed by w, is the cross-spectrum
-//! smoothed by |W|² (Bendat & Piersol 2010, 8.5); for an excitation that is flat over a few lines the
-//! function is smoothed so, too. In time that multiplies the impulse response by the window's autocorrelation
+//! smoothed by |W|² (Bendat & Piersol 2010, 8.5). Where the excitation is flat over a few lines, so is the
+//! frequency response function. In time this multiplies the impulse response by the window's autocorrelation
 //! r(τ)/r(0), 0 ≤ τ ≤ T, and ∫ r(τ) exp(−sτ) dτ takes the place of 1/s.
 //!
 //! For w = Σ cₖ exp(2πikt/T) that integral is T Σ [cⱼ² L(z − 2πij) + bⱼ E(z − 2πij)]/Σ cₖ² with z = sT, E(z)
@@ -13,7 +13,7 @@ use num_complex::Complex64;
 use std::f64::consts::{PI, TAU};
 use vibro_record::Window;
 
-/// The integral above for one window and length.
+/// The integral above for one window and segment length.
 #[derive(Debug, Clone)]
 pub(super) struct Leakage {
     length: f64,

@@ -138,7 +138,7 @@ impl Scaled<'_> {
         if self.magnitude_only { (self.values[i].re - model.norm()).into() } else { self.values[i] - model }
     }
 
-    /// Number of real values of the lines: one a line for magnitudes, else two.
+    /// Number of real values in the lines: one per line for magnitudes, else two.
     fn rows(&self) -> usize {
         if self.magnitude_only { self.x.len() } else { 2 * self.x.len() }
     }

@@ -1,4 +1,4 @@
-//! Fitted modes with their uncertainties, beside what the classical methods give.
+//! Results of fitted modes with their uncertainties, beside those of the classical methods.
 
 use super::classical::{circle, half_power};
 use super::rational::Rational;

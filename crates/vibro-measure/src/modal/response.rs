@@ -6,8 +6,8 @@ use vibro_record::{
     Axis, AxisKind, Error, Finding, Frf, Meta, Place, Record, Result, Scaling, Spectrum, Values, Window,
 };
 
-/// A frequency response function as the estimates of modes take it, complex or in magnitude only, with its
-/// coherence where known.
+/// A frequency response function for modal analysis, complex or in magnitude only, with its coherence where
+/// known.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Measured {
     /// Frequencies of the lines in Hz, rising.
@@ -28,7 +28,7 @@ pub struct Measured {
 }
 
 impl Measured {
-    /// Values over frequencies (Hz) of which nothing else is known.
+    /// Complex values of one kind over frequencies in Hz, without coherence, window or uncertainty.
     pub fn new(frequency: Vec<f64>, values: Vec<Complex64>, kind: Quantity) -> Measured {
         Measured { frequency, values, magnitude_only: false, kind, coherence: None, window: None, std: None }
     }
@@ -125,7 +125,7 @@ impl Measured {
     /// Adds the coherence among records.
     ///
     /// # Errors
-    /// If there is none or several, or it has another number of lines, or lines elsewhere.
+    /// If there is no coherence or more than one, or its lines are not those of the function.
     pub fn with_coherence_of(mut self, records: &[Record]) -> Result<Measured> {
         let all: Vec<&Spectrum> = records.iter().filter_map(coherence).collect();
         let [Spectrum { axis, values, .. }] = all.as_slice() else {

@@ -24,7 +24,7 @@ pub(super) struct Normalised<'a> {
     pub length: f64,
     /// Height of the pulse, in the unit of the record: unit of the values.
     height: f64,
-    /// The low-pass with its corner in cycles a length.
+    /// The low-pass with its corner in cycles per length of the pulse.
     filter: Option<LowPass>,
 }
 

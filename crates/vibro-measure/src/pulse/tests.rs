@@ -4,8 +4,8 @@ use vibro_record::{Axis, Meta, Severity};
 
 const DT: f64 = 1e-6;
 
-/// A record of 200 samples, a contact of ξ 0.2, 10 kHz and 3 m/s at 80.4 µs on it, and a ripple of 0.1 % for
-/// noise.
+/// A record of 200 samples: a contact of ξ 0.2 and 10 kHz that begins at 80.4 µs with 3 m/s, and a ripple of
+/// 0.1 % as noise.
 fn record() -> Vec<f64> {
     let contact = KelvinVoigt::new(0.2, 10e3).unwrap();
     (0..200)
@@ -217,7 +217,7 @@ fn without_the_low_pass_that_is_there_nothing_is_stated() {
     let without = fitted(None).unwrap();
     assert!(nothing(&without), "{without:?}");
     assert!(says(&without, "pulse-low-pass-missing"), "{:?}", without.findings);
-    // One that is far too high is as good as none, above half the sampling rate as below.
+    // A stated corner that is far too high is as bad as none, above half the sampling rate as below.
     let beyond = fitted(Some(600e3)).unwrap();
     assert!(nothing(&beyond), "{:?} {:?}", beyond.xi, beyond.findings);
     let high = fitted(Some(450e3)).unwrap();

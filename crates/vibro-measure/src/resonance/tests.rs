@@ -155,7 +155,8 @@ fn a_coarse_sweep_of_a_linear_resonance_has_no_jump() {
                 let a: Vec<f64> =
                     f.iter().map(|f| 1.0 / (1.0 - (f / 5.6f64).powi(2)).hypot(f / 5.6 / q)).collect();
                 let std = vec![1e-6; f.len()];
-                // With a second mode at 6.5 Hz, a zero between them or none, the phase is no jump either.
+                // With a second mode at 6.5 Hz, and with a zero between them or without, the phase shows no
+                // jump either.
                 for second in [0.0, 0.3, -0.3] {
                     let motion: Vec<Complex64> = f
                         .iter()
@@ -256,7 +257,7 @@ fn a_minimum_in_the_noise_lies_between_what_stands_out() {
     let std = [0.1; 11];
     let found = resonances(&f, &a, &std, &[], Some(1));
     let minimum = found.iter().find(|r| r.kind == ResonanceKind::Antiresonance).unwrap();
-    // Point 5; points 3 and 7 stand out.
+    // The minimum is point 5; points 3 and 7 differ from it by more than noise.
     assert_eq!((minimum.frequency, minimum.frequency_std), (5.0, Some(2.0 / f64::sqrt(3.0))));
     assert_eq!((minimum.amplitude, minimum.amplitude_std), (0.02, Some(0.1)));
     // Faint points up to the edge of the curve, or after a jump, are no minima.

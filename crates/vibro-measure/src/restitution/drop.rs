@@ -27,7 +27,7 @@ pub struct Drop {
     pub gravity: f64,
     /// Its standard uncertainty in m/s².
     pub gravity_std: Option<f64>,
-    /// Relative standard uncertainty of the clock that the intervals are counted by, which all drops share.
+    /// Relative standard uncertainty of the clock of the intervals, which all drops share.
     pub clock: f64,
 }
 

@@ -27,10 +27,9 @@ pub(super) fn longer(train: &Train) -> Option<usize> {
 /// From this number of trains on, their scatter alone gives the uncertainty.
 const MANY: usize = 4;
 
-/// Probability by which trains of one body differ less than the limit beyond which they are not fitted
-/// together.
+/// Confidence level of the test whether trains differ: trains that do are not fitted together.
 const DIFFER: f64 = 0.95;
-/// The same for the limit beyond which a finding says that trains differ.
+/// Confidence level beyond which a finding says that trains differ.
 const SURELY: f64 = 0.999;
 
 /// R of trains of bounces, `None` where no train has two flights, and the noise of their flights where it is
@@ -140,8 +139,8 @@ fn grown(flights: &[Flight], onset_std: f64) -> Option<&Flight> {
     flights.windows(2).find(grows).map(|pair| &pair[1])
 }
 
-/// Probability of the quantile of Student's distribution beyond which a flight is an outlier, or a change of
-/// R is real: on either side one of 2000 passes by chance.
+/// One-sided probability of the quantile of Student's distribution beyond which a flight is an outlier, or a
+/// change of R is real: by chance one of 1000 passes, on either side together.
 const OUTSIDE: f64 = 0.9995;
 
 /// R of the first and the last bounce by the straight line through ln R of each, where it rises or falls

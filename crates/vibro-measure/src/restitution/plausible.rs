@@ -1,4 +1,4 @@
-//! The most plausible train of bounces among sounds, and what else the sounds may be.
+//! The most plausible train of bounces among sounds, and other explanations of the sounds.
 
 use super::pairs::{BestTrain, FallRecord, LARGEST, ODDS, Pairs, Rival, SHADOW};
 use crate::impacts::{QUIETER, Sound};
@@ -139,7 +139,8 @@ mod tests {
         assert_eq!(plausible(&sounds[..12], heard).unwrap().impacts.len(), 12);
     }
 
-    /// A fall of 0.3 s whose release is heard, an impact at 1 s, and others by time and height.
+    /// Sounds of a fall of 0.3 s: the release with this height, an impact at 1 s, and others by time in s
+    /// and height.
     fn fall(release: f64, others: &[(f64, f64)]) -> (Vec<Sound>, FallRecord) {
         let all = [(0.7, release), (1.0, 1.0)].into_iter().chain(others.iter().copied());
         let sounds = all.map(|(time, height)| Sound { time, height }).collect();
@@ -149,11 +150,12 @@ mod tests {
 
     #[test]
     fn a_release_is_no_impact_though_the_fall_is_half_a_full_flight() {
-        // R 0.25: the fall and the first flight shrink by one half, as the height says of R, too.
+        // R 0.25, but the fall looks like a flight of R 0.5: it is half of the full flight, and the first
+        // flight half of it.
         let (sounds, heard) = fall(0.2, &[(1.15, 0.25), (1.1875, 0.06)]);
         let found = plausible(&sounds, heard).unwrap();
         assert_eq!((&found.impacts[..], found.rival, found.release), (&[1, 2, 3][..], None, 1), "{found:?}");
-        // Of a body that does not bounce only the release and the impact are heard.
+        // With a body that does not bounce only the release and the impact are heard.
         let (sounds, heard) = fall(0.2, &[]);
         assert_eq!(plausible(&sounds, heard).unwrap().rival, Some(Rival::Fall(0, 1)));
         // A body of R 0.5 has a third impact, and more.

@@ -18,7 +18,7 @@ pub struct Train {
     pub onset_std: Option<f64>,
     /// Contact time of an impact in s, where the record shows it.
     pub contact: Option<Estimate>,
-    /// Relative standard uncertainty of the sampling rate: all intervals are longer or shorter by it.
+    /// Relative standard uncertainty of the sampling rate, which all intervals share.
     pub clock: f64,
 }
 

@@ -1,4 +1,4 @@
-//! How a spectrum or a frequency response function is taken.
+//! Options of spectra and frequency response functions.
 
 use serde::Deserialize;
 use vibro_record::{Error, Result, Scaling, Window};
