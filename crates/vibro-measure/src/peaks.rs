@@ -391,7 +391,7 @@ mod apices {
         let a = f.map(|f| modes.at(f));
         let found = apex(&curve(&f, &a, &[0.0; 5]), 2).unwrap();
         let truth = 5.6 * f64::sqrt(1.0 - 2.0 * 0.02f64.powi(2));
-        // Rounding, divided by the spacing of the points to the fourth power of the polynomial.
+        // Rounding, over the fourth power of the spacing of the points, by the order of the polynomial.
         assert!((found.frequency - truth).abs() < 1e-11, "{}", found.frequency - truth);
         assert!(found.frequency_std < 1e-11);
     }

@@ -245,9 +245,9 @@ pub(super) struct Located {
     pub baseline: f64,
     /// Largest excursion from it, with its sign.
     pub height: f64,
-    /// Places, in samples, where the flanks cross half the height.
+    /// Positions of the flanks at half the height, in samples.
     pub flanks: (f64, f64),
-    /// Place, in samples, where the falling flank has come down to a fifth of the height.
+    /// Index of the sample where the falling flank has come down to a fifth of the height.
     pub low: usize,
     /// Indices of the samples of a flat top.
     pub clipped: Vec<usize>,
