@@ -84,10 +84,10 @@ const MISSED: f64 = 0.05;
 /// The amplitude that a sine stays below with 95 % confidence, from the magnitude of its line and the noise
 /// of one component.
 ///
-/// The magnitude is Rice distributed (S. O. Rice, Bell Syst. Tech. J. 24 (1945) 46). The limit ν solves
-/// P(M ≤ m | ν) = 0.05 P(M ≤ m | 0) (A. L. Read, J. Phys. G 28 (2002) 2693): the division keeps it from
-/// falling to nothing where noise happens to be small, so it is never below 2.45 `noise`, and the true
-/// amplitude lies above it in less than 5 % of all cases.
+/// The magnitude is Rice distributed (S. O. Rice, Bell Syst. Tech. J. 24 (1945) 46). The limit ν solves P(M
+/// ≤ m | ν) = 0.05 P(M ≤ m | 0) (A. L. Read, J. Phys. G 28 (2002) 2693). The division keeps the limit from
+/// falling to 0 where noise happens to be small: it is never below 2.45 `noise`. The true amplitude lies
+/// above the limit in less than 5 % of all cases.
 ///
 /// These 5 % are of all readings, faint and strong. Where only faint readings get a limit, no more than 5 %
 /// of all readings still exceed theirs, but a strong sine that noise made faint exceeds its limit more
@@ -95,7 +95,7 @@ const MISSED: f64 = 0.05;
 /// `noise`.
 pub fn upper_limit(magnitude: f64, noise: f64) -> Option<f64> {
     let m = magnitude / noise;
-    // Far above the noise there is nothing to limit, and the series below would be long.
+    // Far above the noise no limit is needed, and the series below would be long.
     if !(noise > 0.0 && (0.0..=20.0).contains(&m)) {
         return None;
     }
@@ -206,7 +206,7 @@ mod tests {
     #[ignore = "Monte Carlo: cargo test --release -- --ignored"]
     fn stated_uncertainties_are_the_scatter_seen_under_every_window() {
         let judged = judged(&Window::ALL, &[20, 40, 60, 80]);
-        // All windows at all levels, less those without a window near a line or in much noise.
+        // All windows at all levels, less cases without a window near a line or in strong noise.
         assert!(judged >= 66, "{judged} of 72");
     }
 

@@ -237,7 +237,8 @@ mod tests {
                     let f = [middle - step, middle, middle + step];
                     let Some(found) = vertex(f, f.map(height), [0.0; 3]) else { continue };
                     let error = (found.frequency - truth).abs();
-                    // No noise: the error is one of the curve, and twice the stated size bounds it.
+                    // Without noise the error is that of the parabola, and twice the stated uncertainty
+                    // bounds it.
                     assert!(
                         error <= 2.0 * found.frequency_std,
                         "ζ {zeta}, step {step}, {offset}: {error} {found:?}"
@@ -311,7 +312,7 @@ mod apices {
         Leaning,
     }
 
-    /// A curve of some kind, and the half-power width of its resonance near 5.6 Hz.
+    /// A random curve of this kind, and the half-power width in Hz of its resonance near 5.6 Hz.
     fn draw(kind: Kind, normal: &mut Noise) -> (Box<dyn Fn(f64) -> f64>, f64) {
         let mut between = |a: f64, b: f64| a + (b - a) * normal.uniform();
         let f0 = 5.6;
@@ -333,7 +334,8 @@ mod apices {
         (Box::new(move |f| modes.at(f)), width)
     }
 
-    /// Part of the answers whose (frequency, height) lie within two standard uncertainties of the truth.
+    /// Fractions of the answers whose frequency, and whose height, lie within two standard uncertainties of
+    /// the truth.
     fn covered(kind: Kind, noise: f64, points: usize) -> [f64; 2] {
         let mut normal = Noise::new(0x70b);
         let (mut within, mut n) = ([0u32; 2], 0u32);
@@ -360,7 +362,7 @@ mod apices {
             };
             n += 1;
             let off = [(found.frequency - truth.0).abs(), (found.height - truth.1).abs()];
-            // The search for the truth ends where rounding of a flat top does.
+            // The true maximum itself is known only to rounding, since its top is flat.
             within[0] += u32::from(off[0] <= 2.0 * found.frequency_std + 1e-7);
             within[1] += u32::from(off[1] <= 2.0 * found.height_std + 1e-9 * truth.1);
         }
@@ -389,7 +391,7 @@ mod apices {
         let a = f.map(|f| modes.at(f));
         let found = apex(&curve(&f, &a, &[0.0; 5]), 2).unwrap();
         let truth = 5.6 * f64::sqrt(1.0 - 2.0 * 0.02f64.powi(2));
-        // Rounding, divided by the spacing of the points to the fourth power of the polynomial.
+        // Rounding, over the fourth power of the spacing of the points, by the order of the polynomial.
         assert!((found.frequency - truth).abs() < 1e-11, "{}", found.frequency - truth);
         assert!(found.frequency_std < 1e-11);
     }

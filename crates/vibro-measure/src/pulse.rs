@@ -26,16 +26,17 @@ use vibro_record::units::Quantity;
 use vibro_record::units::notation::shortest;
 use vibro_record::{Error, Finding, Result, Trace};
 
-/// What is known of a pulse beside its record.
+/// Options: what is known of a pulse beside its record.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct PulseOptions {
-    /// What the instrument did to the pulse. Default: unknown, and no uncertainty.
+    /// Effect of the instrument on the pulse. Default: unknown, so that no uncertainty is stated.
     pub instrument: Instrument,
-    /// Mass in kg that is decelerated, taken as exact. Default: unknown, and no stiffness and damping.
+    /// Mass in kg that is decelerated, taken as exact. Default: unknown, so that there is no stiffness and
+    /// damping.
     pub mass: Option<f64>,
 }
 
-/// What an instrument does to the shape of a pulse.
+/// Effect of an instrument on the shape of a pulse.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub enum Instrument {
     /// Not known: no uncertainties are stated. An ignored low-pass moves ξ by 0.1 and more, and fits may

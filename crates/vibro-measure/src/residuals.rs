@@ -1,9 +1,9 @@
-//! Whether what a fit leaves is noise, and what it costs where it is not.
+//! Whether the residuals of a fit are white noise, and the uncertainties where they are not.
 
 use crate::chance::{chi_squared_above, normal_at, student_at};
 use vibro_record::Finding;
 
-/// What residuals in a row say of the model that left them.
+/// Serial correlation of the residuals of a model, and its effect on uncertainties.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Whiteness {
     /// Probability that white noise shows as much serial correlation (Ljung & Box 1978); `None` for fewer
@@ -14,11 +14,11 @@ pub struct Whiteness {
     pub inflation: f64,
 }
 
-/// Below this probability residuals are taken for correlated: one white record in a hundred is.
+/// Below this probability residuals count as correlated, as one white record in a hundred does.
 const REJECTED: f64 = 0.01;
 
 impl Whiteness {
-    /// Looks at sequences of residuals together, such as real and imaginary parts over frequency.
+    /// Tests sequences of residuals together, such as real and imaginary parts over frequency.
     ///
     /// Q = N(N + 2) Σ ρₖ²/(N − k) over ten lags (four below 40 residuals) is χ² distributed. A parameter on
     /// which the model depends smoothly sees the noise density at low frequency, which is 1 + 2Σρₖ times
@@ -54,23 +54,22 @@ impl Whiteness {
         self.rejected_among(1)
     }
 
-    /// Whether white noise is rejected where so many are looked at, one of which shows as much by chance more
-    /// often.
+    /// Whether white noise is rejected for one of `many` records tested: each may pass by chance, so the
+    /// level is divided by their number.
     pub fn rejected_among(&self, many: usize) -> bool {
         self.p_value.is_some_and(|p| p * (many as f64) < REJECTED)
     }
 
-    /// That the residuals are not white, with the factor by which that enlarges uncertainties, unless it is
-    /// 1.00.
+    /// Caution that the residuals are not white, with the factor on uncertainties unless that is 1.00.
     pub fn coloured(&self, code: &'static str) -> Finding {
         let found = Finding::caution(code);
         if self.inflation < 1.005 { found } else { found.number("factor", self.inflation) }
     }
 }
 
-/// Standard deviation of Student's distribution of `free` degrees of freedom, √(ν/(ν − 2)): what a standard
-/// uncertainty from a variance that was itself estimated is to be multiplied by (JCGM 101:2008, 6.4.9.2).
-/// `None` up to two degrees of freedom, where it has none.
+/// Factor on a standard uncertainty from an estimated variance with `free` degrees of freedom: the standard
+/// deviation of Student's distribution, √(ν/(ν − 2)) (JCGM 101:2008, 6.4.9.2). `None` up to two degrees of
+/// freedom, where it has none.
 pub fn student(free: usize) -> Option<f64> {
     (free > 2).then(|| (free as f64 / (free as f64 - 2.0)).sqrt())
 }
@@ -81,8 +80,8 @@ pub fn widened(free: usize) -> f64 {
     student(free).unwrap_or_else(|| student_at(0.975, free.max(1)) / normal_at(0.975))
 }
 
-/// Akaike's criterion for a fit of `parameters` (the variance of the noise is one more) to `n` values,
-/// corrected for their number (Hurvich & Tsai 1989); NaN where there are too few values.
+/// Corrected Akaike criterion (AICc) of a fit to `n` values, with the variance of the noise as one parameter
+/// more than `parameters` (Hurvich & Tsai 1989); NaN where there are too few values.
 pub fn aicc(sum_of_squares: f64, n: usize, parameters: usize) -> f64 {
     let (n, k) = (n as f64, parameters as f64 + 1.0);
     if n - k - 1.0 <= 0.0 {
@@ -137,7 +136,7 @@ mod tests {
             .collect();
         let w = Whiteness::of(&[&r]);
         let expected = f64::sqrt((1.0 + phi) / (1.0 - phi));
-        // The sum over some ten lags of correlations good to 1/√20000 each.
+        // The sum runs over about ten lags of correlations, each good to 1/√20000.
         assert!(w.rejected() && (w.inflation / expected - 1.0).abs() < 0.1, "{w:?} {expected}");
     }
 }

@@ -25,7 +25,7 @@ pub struct Resonance {
     pub at_jump: bool,
 }
 
-/// What a maximum or minimum of a response curve is.
+/// Kind of a maximum or minimum of a response curve.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum ResonanceKind {

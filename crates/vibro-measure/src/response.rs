@@ -14,13 +14,13 @@ use taker::Taker;
 use vibro_record::units::Quantity;
 use vibro_record::{Direction, Error, Finding, Result, Step, Sweep, SweepPoint, Window, median};
 
-/// How a response is to be taken.
+/// Options of a response curve.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ResponseOptions {
-    /// Lines on both sides of the excitation in which its peak is looked for. Default 3.
+    /// Lines on either side of the excitation that are searched for its peak. Default: 3.
     pub band: usize,
-    /// Integrations in frequency from the stored quantity: 1 takes velocity to displacement. Default: what
-    /// takes it to displacement.
+    /// Integrations in frequency from the stored quantity: 1 takes velocity to displacement. Default: as
+    /// many as lead to displacement.
     pub integrate: Option<i8>,
     /// Lowest frequency in Hz that is read. Default: the larger of two lines and a quarter of the lowest
     /// excitation frequency.
@@ -34,7 +34,7 @@ impl Default for ResponseOptions {
 }
 
 impl ResponseOptions {
-    /// Integrations from what a sweep holds.
+    /// Number of integrations of the stored quantity: as stated, else to displacement.
     pub(crate) fn times(&self, sweep: &Sweep) -> i8 {
         self.integrate.unwrap_or(match sweep.unit().quantity() {
             Quantity::Velocity => 1,
@@ -64,7 +64,7 @@ pub fn answerable(mut sweep: Sweep, options: &ResponseOptions) -> Result<Sweep> 
 ///
 /// Lines are interpolated in the spectrum of the measured signal: where the analyser divided by (2πf)ⁿ that
 /// is undone line by line, and the amplitude is divided by (2πf)ⁿ at the frequency found. So the slope of
-/// 1/fⁿ across a line's own shape does not bend the result.
+/// 1/fⁿ over the lines of a peak does not bias the result.
 ///
 /// # Errors
 /// If an excitation frequency cannot be found, or the lines are not evenly spaced.
@@ -89,10 +89,10 @@ pub fn response(sweep: &Sweep, options: &ResponseOptions) -> Result<Response> {
     Ok(found)
 }
 
-/// The points of a sweep at known excitations, no curve yet.
+/// The points of a sweep at known excitations, without jumps and resonances yet.
 ///
 /// # Errors
-/// If what is stored cannot be taken to a displacement, velocity or acceleration.
+/// If the stored quantity cannot be integrated to a displacement, velocity or acceleration.
 pub(crate) fn read(sweep: &Sweep, options: &ResponseOptions, excitations: &[Excitation]) -> Result<Response> {
     let df = sweep.line_width().unwrap_or(f64::NAN);
     // A spectrum that was divided by frequency is noise below two lines, and below a quarter of the lowest
@@ -136,7 +136,8 @@ pub(crate) fn read(sweep: &Sweep, options: &ResponseOptions, excitations: &[Exci
 }
 
 impl Response {
-    /// Finds what the points show as a curve; the direction is the one stated, else that of the frequencies.
+    /// Finds jumps and resonances of the points as a curve. The direction is the one stated, else that of
+    /// the frequencies.
     pub(crate) fn curve(mut self, stated: Option<Direction>) -> Response {
         let Response { points, findings, fmin, mass, .. } = &mut self;
         let frequency: Vec<f64> = points.iter().map(|p| p.excitation).collect();
@@ -153,7 +154,7 @@ impl Response {
             let receptances: Option<Vec<Complex64>> = points.iter().map(receptance).collect();
             let receptances = receptances.unwrap_or_default();
             let curve = NamedCurve::new(points.iter().map(at).collect(), &receptances, direction, *mass);
-            // Where two steps have one frequency nothing is interpolated, however fine the others are.
+            // Two steps at one frequency prevent an interpolation there, however fine the other steps are.
             let alone = |f: f64| points.iter().filter(|p| p.excitation == f).count() == 1;
             let coarse = curve.resonances.iter().filter(|r| r.is_largest_point()).map(|r| r.frequency);
             let coarse = coarse.filter(|f| alone(*f));
@@ -170,8 +171,8 @@ impl Response {
     }
 }
 
-/// The peak that a changing force moves most: where the response per newton peaks further away than twice the
-/// standard uncertainty of both.
+/// Caution on the peak that a changing force moves most: the response per newton peaks elsewhere by more
+/// than twice the combined standard uncertainty.
 fn moved_by_force(points: &[ResponsePoint], direction: Direction, curve: &NamedCurve) -> Option<Finding> {
     let per_newton = |p: &ResponsePoint| {
         let force = p.force.filter(|f| *f > 0.0)?;
@@ -197,11 +198,12 @@ fn moved_by_force(points: &[ResponsePoint], direction: Direction, curve: &NamedC
     Some(finding.number("least", least).number("largest", largest))
 }
 
-/// Force lines further than this part of the largest from their window's shape are not under that window: a
-/// clean sine under Hann, read as under any other window, is off by more.
+/// The window is doubted where force lines deviate from its shape by more than this fraction of the largest
+/// line (median over steps). A clean sine under Hann deviates more from the shape of any other window.
 const WRONG_SHAPE: f64 = 0.02;
 
-/// Where the force lines, which hold one strong sine, have not the shape that the window gives them.
+/// Doubt where the force lines, which hold one strong sine, do not have the shape of the stated window.
+/// Names a window that fits better.
 pub(crate) fn wrong_window(sweep: &Sweep, excitations: &[Excitation], df: f64) -> Option<Finding> {
     let window = sweep.points.first()?.response.window?;
     let typical = |window: Window| {
@@ -221,7 +223,7 @@ pub(crate) fn wrong_window(sweep: &Sweep, excitations: &[Excitation], df: f64) -
     })
 }
 
-/// Steps that share a file or hold the same values: a name was typed twice.
+/// Caution where steps share a file or hold the same values: a name was typed twice.
 pub(crate) fn repeated(sweep: &Sweep) -> Option<Finding> {
     let points = &sweep.points;
     let same = |a: &SweepPoint, b: &SweepPoint| {

@@ -79,8 +79,8 @@ pub struct Measured {
 /// ```
 ///
 /// # Errors
-/// Where nothing is given from which it follows, and where what is given is impossible: a height of 0, an
-/// interval longer than the fall allows, masses that do not approach.
+/// If no measurement allows an answer, or one is impossible: a height of 0, an interval longer than the fall
+/// allows, masses that do not approach.
 pub fn restitution(measured: &Measured) -> Result<Restitution> {
     not_negative("a contact time", measured.contact_time)?;
     let (mut by, mut findings) = (Vec::new(), Vec::new());

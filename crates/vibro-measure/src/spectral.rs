@@ -345,8 +345,8 @@ mod tests {
     use super::*;
     use vibro_math::Noise;
 
-    /// Peaks of a sine of amplitude 1 with noise of 0.002, 8 segments of 256 samples at 256 Hz: lines are 1
-    /// Hz apart.
+    /// Frequencies in Hz of the peaks listed for a sine of amplitude 1 with noise of 0.002: 8 segments of
+    /// 256 samples at 256 Hz, with lines 1 Hz apart.
     fn peaks(frequency: f64, window: Window) -> Vec<f64> {
         let mut noise = Noise::new(5);
         let sine = |i: i32| (TAU * frequency * f64::from(i) / 256.0).sin() + 2e-3 * noise.normal();
@@ -367,8 +367,8 @@ mod tests {
         assert_eq!(peaks(4.0, Window::FlatTop), [4.0]);
     }
 
-    /// Peaks in lines of one record of 1000 samples with noise of 0.01: a sine of amplitude 1 at `position`,
-    /// and one of `second` 12.3 lines above.
+    /// Frequencies in Hz of the peaks listed for one record of 1000 samples with noise of 0.01: a sine of
+    /// amplitude 1 at line `position`, and one of amplitude `second` 12.3 lines above.
     fn listed(seed: u64, position: f64, second: f64, window: Window) -> Vec<f64> {
         let mut noise = Noise::new(seed);
         let sine = |lines: f64, i: i32| (TAU * lines * f64::from(i) / 1000.0 + 0.3).sin();

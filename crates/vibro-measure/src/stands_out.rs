@@ -8,15 +8,15 @@
 
 use vibro_record::{Window, upper_median};
 
-/// How often the noise of a record passes for a line.
+/// Largest probability that noise shows a line anywhere in a record.
 pub const FALSE_ALARMS: f64 = 1e-3;
-/// Lines on either side that tell the noise where lines are searched.
+/// Lines on either side that estimate the noise at a line where lines are searched.
 pub(crate) const REACH: usize = 100;
-/// Lines next to a peak that belong to it.
+/// Lines on either side of a peak that belong to it, and not to its noise.
 const GUARD: usize = 4;
-/// The median of so many lines knows the mean as well as the mean of one does: (1/ln 2)² = 2.08 for
-/// exponential powers, times the sum of squared correlations of lines, at most 1.3 times the noise bandwidth
-/// of the window (1.94 under Hann's).
+/// The median of this many lines estimates the mean as well as one independent line does: (1/ln 2)² = 2.08
+/// for exponential powers, times the sum of squared correlations of lines, at most 1.3 times the noise
+/// bandwidth of the window (1.94 under Hann's).
 const MEDIAN: f64 = 2.7;
 
 /// The noise at a line.
@@ -24,14 +24,14 @@ const MEDIAN: f64 = 2.7;
 pub(crate) struct Floor {
     /// Mean power of a line of noise.
     pub power: f64,
-    /// Independent lines of one spectrum whose mean would be known as well.
+    /// Number of independent lines of one spectrum that would estimate the mean as well.
     pub lines: usize,
 }
 
 /// Noise at line `k` from the powers of lines up to `reach` away, each an average of `averages` spectra.
-/// Lines above are raised as if noise fell as 1/f, and as many below lowered by as much: white noise keeps
-/// its median, and towards 0 Hz 1/f noise is not underestimated. `None` where fewer than eight lines are
-/// left.
+/// Lines above are raised as if noise fell as 1/f, and as many below lowered by the same factor. White noise
+/// then keeps its median, and 1/f noise is not underestimated towards 0 Hz. `None` where fewer than eight
+/// lines are left.
 pub(crate) fn floor(
     powers: &[f64],
     k: usize,
@@ -65,13 +65,14 @@ pub(crate) fn floor(
 }
 
 impl Floor {
-    /// Whether a line of this power is none of noise, of `searched` lines.
+    /// Whether a line of this power, averaged over `averages` spectra, exceeds the noise; [`FALSE_ALARMS`]
+    /// is for all `searched` lines together.
     pub fn is_below(&self, power: f64, averages: f64, searched: usize) -> bool {
         above(power / self.power, averages, self.lines) * searched as f64 <= FALSE_ALARMS
     }
 }
 
-/// More independent segments, and lines that tell the noise, are counted as so many: by then the threshold is
+/// Most independent segments, and most lines that estimate the noise, that count: by then the threshold is
 /// within 1 dB of the noise.
 const MOST: [f64; 2] = [500.0, 1000.0];
 
@@ -112,8 +113,8 @@ mod tests {
         assert!((above(30.0, 1.0 + 1e-12, 40) / above(30.0, 1.0, 40) - 1.0).abs() < 1e-5);
     }
 
-    /// Of records of noise those that show a tone, and those that show a peak of averages; `colour` is the
-    /// share of 1/f noise.
+    /// Number of records of noise that show a tone, and of those that show a peak of averages; `colour` is
+    /// the share of 1/f noise.
     fn false_alarms(records: u64, colour: f64) -> [u32; 2] {
         let of = |seed: u64| {
             let mut noise = Noise::new(seed);
@@ -143,12 +144,12 @@ mod tests {
         for colour in [0.0, 0.5, 1.0] {
             let seen = false_alarms(4000, colour);
             println!("{colour}: {seen:?} of 4000");
-            // Of 4000 records at 0.1 %: 4, and four times √4 more.
+            // Expected are 4 of 4000 records at 0.1 %; 8 more are four standard deviations of √4.
             assert!(seen.iter().all(|seen| *seen <= 12), "{colour}: {seen:?}");
         }
     }
 
-    /// Twice the power of the line that is just listed.
+    /// The tone has twice the power of a line at the threshold.
     #[test]
     fn a_tone_3_db_above_the_threshold_is_found() {
         let known = (2.0 * REACH as f64 - 8.0) / (MEDIAN * Window::Hann.enbw());

@@ -316,7 +316,8 @@ impl Blocks {
         ((block * self.periods) as f64 * self.period).round() as usize
     }
 
-    /// Phasors at the excitation frequency, one a block: A e^{iφ} of A cos(ωt + φ), t from the first sample.
+    /// Phasors at the excitation frequency, one per block: A e^{iφ} of A cos(ωt + φ), t from the first
+    /// sample.
     fn phasors(&self, trace: &Trace) -> Vec<Complex64> {
         let omega = TAU / self.period;
         let edges = (0..).map(|block| self.start(block)).take_while(|end| *end <= self.samples);

@@ -22,7 +22,7 @@ pub struct Waterfall {
     pub unit: String,
     /// Cut-off in Hz; 0 where nothing was cut off.
     pub fmin: f64,
-    /// What was left out.
+    /// Findings of the sweep, and lines left out.
     pub findings: Vec<Finding>,
 }
 

@@ -7,7 +7,7 @@ use std::ops::Range;
 use vibro_math::least_squares;
 use vibro_record::Finding;
 
-/// Natural frequency and damping from the half-power points of the peak at line `at`, those interpolated
+/// Frequency in Hz of the peak at line `at`, and damping ratio from its half-power points, interpolated
 /// between lines on |H|². `None` where the response does not fall to half its power on both sides inside
 /// `part`.
 pub(super) fn half_power(measured: &Measured, at: usize, part: &Range<usize>) -> Option<(f64, f64)> {
@@ -28,14 +28,14 @@ pub(super) fn half_power(measured: &Measured, at: usize, part: &Range<usize>) ->
 /// Fewest points of a circle fit: twice the three parameters of a circle.
 const POINTS: usize = 6;
 
-/// Largest deviation from a circle, by root mean square over its radius, that is still taken for one.
+/// Largest deviation of points that still count as a circle, root mean square over its radius.
 const ROUND: f64 = 0.1;
 
-/// Fits a circle to the mobility at the lines within 2.4 half bandwidths of the mode (270° of the circle), by
-/// the method of Pratt (1987), then natural frequency and damping to the angles: tan(θ/2) = (ωᵣ² −
-/// ω²)/(2ζωᵣω) from the resonance.
+/// Fits a circle to the mobility at the lines within 2.4 half bandwidths of the mode (270° of the circle),
+/// by the method of Pratt (1987). Natural frequency and damping then follow from the angles on the circle:
+/// tan(θ/2) = (ωᵣ² − ω²)/(2ζωᵣω) from the resonance.
 ///
-/// Gives the mode and the number of lines.
+/// Returns the mode and the number of lines.
 ///
 /// # Errors
 /// If there are fewer than six such lines, or they lie on no circle.

@@ -1,8 +1,8 @@
-//! What averaging over windowed segments does to a mode.
+//! Response of a mode in a function that was averaged over windowed segments.
 //!
 //! The mean of conj(F)X over segments of a stationary excitation, windowed by w, is the cross-spectrum
-//! smoothed by |W|² (Bendat & Piersol 2010, 8.5); for an excitation that is flat over a few lines the
-//! function is smoothed so, too. In time that multiplies the impulse response by the window's autocorrelation
+//! smoothed by |W|² (Bendat & Piersol 2010, 8.5). Where the excitation is flat over a few lines, so is the
+//! frequency response function. In time this multiplies the impulse response by the window's autocorrelation
 //! r(τ)/r(0), 0 ≤ τ ≤ T, and ∫ r(τ) exp(−sτ) dτ takes the place of 1/s.
 //!
 //! For w = Σ cₖ exp(2πikt/T) that integral is T Σ [cⱼ² L(z − 2πij) + bⱼ E(z − 2πij)]/Σ cₖ² with z = sT, E(z)
@@ -13,7 +13,7 @@ use num_complex::Complex64;
 use std::f64::consts::{PI, TAU};
 use vibro_record::Window;
 
-/// The integral above for one window and length.
+/// The integral above for one window and segment length.
 #[derive(Debug, Clone)]
 pub(super) struct Leakage {
     length: f64,
@@ -22,7 +22,7 @@ pub(super) struct Leakage {
 }
 
 impl Leakage {
-    /// For segments of `length`.
+    /// For segments of `length`, in the inverse unit of s.
     pub fn of(window: Window, length: f64) -> Leakage {
         let a = window.coefficients();
         let most = a.len() as i32 - 1;
@@ -39,13 +39,12 @@ impl Leakage {
         Leakage { length, terms: (-most..=most).map(term).collect() }
     }
 
-    /// What takes the place of 1/s.
+    /// The integral, which takes the place of 1/s.
     pub fn inverse(&self, s: Complex64) -> Complex64 {
         let decayed = (-s * self.length).exp();
         let sum = self.terms.iter().map(|(shift, square, b)| {
             let z = s * self.length - Complex64::new(0.0, *shift);
-            // z = 0 is a mode without damping on a line; beside it both are as near as makes no difference to
-            // their limits 1 and ½.
+            // z = 0 is an undamped mode on a line; near it both are at their limits 1 and ½, to 1e-6.
             let small = z.norm_sqr() < 1e-12;
             let e = if small { Complex64::new(1.0, 0.0) } else { (1.0 - decayed) / z };
             let l = if small { Complex64::new(0.5, 0.0) } else { (1.0 - e) / z };
@@ -155,7 +154,7 @@ mod averaged {
         [trace("force", "N", force), trace("x", "m", response)]
     }
 
-    /// Five lines in the bandwidth, where a mode without leakage is 5 % too wide.
+    /// Five lines in the bandwidth: a fit without leakage would make the mode 5 % too wide.
     #[test]
     fn modes_of_averaged_spectra_are_covered() {
         let (own, zeta, rate, segment) = (60.0, 0.02, 512.0, 1024);
@@ -175,7 +174,7 @@ mod averaged {
             let measured = Measured::complex(frf).with_coherence_of(&records).unwrap();
             let found = modal(&measured, &ModalOptions::default()).unwrap();
             let mode = &found.modes[0];
-            // Where the window is not said, the lines tell.
+            // Without a stated window the lines determine it.
             let unsaid = modal(&Measured { window: None, ..measured }, &ModalOptions::default()).unwrap();
             assert_eq!(unsaid.modes[0].zeta, mode.zeta);
             far[0] += ((mode.zeta.value - zeta) / mode.zeta.std.unwrap()).powi(2);

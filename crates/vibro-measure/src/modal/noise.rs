@@ -1,13 +1,13 @@
-//! Noise of the lines of a function: how much each has, and how neighbours are correlated.
+//! Noise of the lines of a function: the variance of each, and the correlation of neighbours.
 //!
 //! A segment's lines are F = Σ W f and X = Σ W H f + v: the window's transform W at the distance of each
 //! frequency, the force f, the noise v of the response. βF is the part of X that the smoothed function β
 //! explains. The rest, e = Σ (H − β) W f + v, is leakage and noise. It is independent of F on its own line,
 //! but not on others. H1 has the error Σ conj(F) e / Σ |F|². Over a common factor the covariance of lines i
 //! and j is `E[conj(Fᵢ) Fⱼ] E[eᵢ conj(eⱼ)]`, their pseudo-covariance `E[eᵢ conj(Fⱼ)] E[eⱼ conj(Fᵢ)]`
-//! (Isserlis 1918), summed over segments that overlap by half. Leakage makes errors of neighbours opposite in
-//! the direction of a shift in frequency, and alike in that of damping: by independent lines ζ is 1.3 times
-//! less certain than stated.
+//! (Isserlis 1918), summed over segments that overlap by half. Leakage gives neighbouring lines opposite
+//! errors in the direction of a shift in frequency, and equal ones in that of damping. With lines taken as
+//! independent, the true uncertainty of ζ is 1.3 times the stated one.
 
 use crate::mean::average;
 use num_complex::Complex64;
@@ -25,7 +25,7 @@ pub(super) struct LineNoise {
     factor: Option<Banded>,
 }
 
-/// A lower triangular matrix: in each row the `band` numbers before the diagonal, and that.
+/// A lower triangular band matrix. Each row holds the `band` numbers before the diagonal, then the diagonal.
 #[derive(Debug, Clone)]
 struct Banded {
     band: usize,
@@ -38,7 +38,7 @@ impl LineNoise {
         LineNoise { each, factor: None }
     }
 
-    /// Makes residuals of the lines, first the real parts and then the imaginary parts, white.
+    /// Whitens residuals of the lines, first the real parts and then the imaginary parts.
     pub fn whiten(&self, left: &mut [f64]) {
         let n = self.each.len();
         let Some(Banded { band, rows }) = &self.factor else {
@@ -53,8 +53,8 @@ impl LineNoise {
         }
     }
 
-    /// What it adds to minus twice the logarithm of the likelihood of `numbers` residuals: the logarithm of
-    /// its determinant.
+    /// Logarithm of the determinant of the covariance of `numbers` residuals: the term of the noise in minus
+    /// twice the logarithm of the likelihood.
     pub fn spread(&self, numbers: usize) -> f64 {
         match &self.factor {
             Some(Banded { band, rows }) => {
@@ -68,7 +68,8 @@ impl LineNoise {
 }
 
 impl Banded {
-    /// The factor of a matrix that `at` gives below its diagonal; `None` where that is not positive definite.
+    /// Cholesky factor of the matrix with the lower triangle `at` (row, column); `None` where that is not
+    /// positive definite.
     fn factor(n: usize, band: usize, at: impl Fn(usize, usize) -> f64) -> Option<Banded> {
         let mut rows = vec![0.0; n * (band + 1)];
         for r in 0..n {
@@ -79,32 +80,32 @@ impl Banded {
                 let left = at(r, c) - sum;
                 rows[own + c] = if r == c { left.sqrt() } else { left / rows[other + c] };
             }
-            // What is NaN is no factor, too.
+            // NaN fails this test, too.
             (rows[r * (band + 1) + band] > 0.0).then_some(())?;
         }
         Some(Banded { band, rows })
     }
 }
 
-/// Steps of the grid over a line: a mode of a bandwidth of one line has died away by exp(−4π) in four
-/// segments.
+/// Grid steps a line, for four segments of time: a mode with a bandwidth of one line decays to exp(−4π) in
+/// them.
 pub(super) const STEPS: usize = 4;
 
-/// Lines on either side of a line from which leakage is taken: a Hann window's transform is there below a
-/// hundredth.
+/// Lines on either side of a line from which leakage is taken: beyond, the transform of a Hann window is
+/// below 0.01.
 const REACH: usize = 4;
 
 /// Steps of the grid before the first line, and after the last.
 pub(super) const MARGIN: usize = REACH * STEPS;
 
-/// Least noise of the response of a line, over the leakage there: no excitation is quite flat, and the
-/// covariance needs an inverse.
+/// Least variance of the noise of a line, over that of the leakage there: no excitation is quite flat, and
+/// the covariance needs an inverse.
 const LEAST: f64 = 0.02;
 
-/// Noise of H1 over segments under a window. The function without leakage is `h` on a grid, with lines at the
-/// steps `at` that have variances `total`. `None` where the covariance has no inverse.
+/// Noise of H1 over segments under a window. `h` is the function without leakage on a grid; the lines are at
+/// the grid indices `at` and have the variances `total`. `None` where the covariance has no inverse.
 pub(super) fn of_segments(window: Window, h: &[Complex64], at: &[usize], total: &[f64]) -> Option<LineNoise> {
-    // The window's transform on the grid, real where time runs from its middle.
+    // The window's transform on the grid; real, since time is counted from the window's middle.
     let offset = |k: usize| (k as f64 - MARGIN as f64) / STEPS as f64;
     let kernel: Vec<f64> = (0..=2 * MARGIN).map(|k| line_shape(window, offset(k))).collect();
     let power: f64 = kernel.iter().map(|w| w * w).sum();
@@ -160,8 +161,8 @@ pub(super) fn of_segments(window: Window, h: &[Complex64], at: &[usize], total: 
     Some(LineNoise { each, factor: Some(factor) })
 }
 
-/// Variance of the noise of the response at each line, which is smooth: what `total` has beyond the leakage,
-/// averaged over lines near with the weight of its own uncertainty.
+/// Variance of the noise of the response at each line: what `total` exceeds the leakage by, averaged over
+/// near lines, since noise is smooth, with weights by their uncertainty. At least [`LEAST`] of the leakage.
 fn background(total: &[f64], leakage: &[f64]) -> Vec<f64> {
     let all = |(i, mean): (usize, f64)| {
         let (mut sum, mut weights) = (0.0, 0.0);
@@ -175,15 +176,15 @@ fn background(total: &[f64], leakage: &[f64]) -> Vec<f64> {
     smoothed(total).into_iter().enumerate().map(all).collect()
 }
 
-/// Lines on either side over which the noise by the coherence is averaged: with two averages the noise of a
-/// line has 2 degrees of freedom, that of all 31 has 62, and a weight scatters by 9 %.
+/// Lines on either side over which the noise by the coherence is averaged. With two averages the noise of
+/// one line has 2 degrees of freedom, that of all 31 has 62: a weight then scatters by 9 %.
 const NEAR: usize = 15;
 
 fn near(i: usize, n: usize) -> std::ops::Range<usize> {
     i.saturating_sub(NEAR)..(i + NEAR + 1).min(n)
 }
 
-/// Means over each value and those beside it.
+/// Means over each value and up to [`NEAR`] on either side.
 pub(super) fn smoothed(values: &[f64]) -> Vec<f64> {
     (0..values.len()).map(|i| average(&values[near(i, values.len())])).collect()
 }

@@ -138,7 +138,7 @@ impl Scaled<'_> {
         if self.magnitude_only { (self.values[i].re - model.norm()).into() } else { self.values[i] - model }
     }
 
-    /// Number of real values of the lines: one a line for magnitudes, else two.
+    /// Number of real values in the lines: one per line for magnitudes, else two.
     fn rows(&self) -> usize {
         if self.magnitude_only { self.x.len() } else { 2 * self.x.len() }
     }
@@ -250,7 +250,8 @@ impl Scaled<'_> {
     }
 
     /// The noise of segments under a window, from the response of the model and the variance `total` of each
-    /// line; `None` for magnitudes, or lines that are not evenly spaced.
+    /// line. `None` for magnitudes, or where gaps between lines make the grid more than twice as long as
+    /// without gaps.
     fn of_segments(&self, window: Window, spacing: f64, p: &[f64], total: &[f64]) -> Option<LineNoise> {
         let step = spacing / self.unit / STEPS as f64;
         let at = |x: &f64| MARGIN + STEPS * ((x - self.x[0]) / step / STEPS as f64).round() as usize;

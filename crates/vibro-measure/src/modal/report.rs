@@ -1,4 +1,4 @@
-//! Fitted modes with their uncertainties, beside what the classical methods give.
+//! Results of fitted modes with their uncertainties, beside those of the classical methods.
 
 use super::classical::{circle, half_power};
 use super::rational::Rational;
@@ -10,13 +10,13 @@ use std::f64::consts::TAU;
 use vibro_record::Finding;
 use vibro_record::code;
 
-/// A modal constant within this of 0 or 180°, in degrees, has a sign.
+/// A modal constant has a sign where its phase is within this of 0 or 180°, in degrees.
 const IN_STEP: f64 = 45.0;
-/// Bandwidths in lines below which the half-power method is tens of per cent off.
+/// Bandwidth in lines below which the half-power method is wrong by tens of per cent.
 const LINES_OF_HALF_POWER: f64 = 8.0;
 
-/// What a fit leaves, by root mean square, must be less than this part of the highest line; else these are no
-/// modes as modelled.
+/// Largest residual of a fit, root mean square over the highest line; beyond it these are no modes as
+/// modelled.
 const EXPLAINED: f64 = 0.1;
 
 /// One mode of a group that was fitted.
@@ -25,9 +25,10 @@ pub(super) struct Candidate<'a> {
     pub options: &'a ModalOptions,
     pub group: &'a PeakGroup,
     pub fit: &'a Rational,
-    /// Its place in the fit.
+    /// Index of the mode in the fit.
     pub m: usize,
-    /// Whether the function was averaged, and the lines do not tell over what segments.
+    /// Whether the function was averaged over segments, and neither the file nor the lines determine their
+    /// window.
     pub unsaid: bool,
 }
 
@@ -36,7 +37,7 @@ impl Candidate<'_> {
         self.options.decay.unwrap_or(0.0)
     }
 
-    /// The mode, and what was found of it; `None` where its peak supports none.
+    /// The mode, with its findings; `None` where its peak supports none.
     pub fn mode(&self, sound: bool, findings: &mut Vec<Finding>) -> Option<Mode> {
         let Candidate { measured, group, fit, m, .. } = *self;
         let (pole, mut std) = (&fit.modes[m], fit.std[m]);
@@ -53,7 +54,8 @@ impl Candidate<'_> {
         let span = measured.frequency[group.lines.end - 1] - measured.frequency[group.lines.start];
         let spacing = span / (group.lines.len() - 1) as f64;
         // Averaging segments multiplies the impulse response by the window's autocorrelation, 1 − 2π²t²/3T²
-        // for a Hann window; the pole that fits 1/s − 2κ/s³ best has a decay larger by 2κ/a of a.
+        // = 1 − κt² for a Hann window. The pole that fits 1/s − 2κ/s³ best decays faster, with a + 2κ/a in
+        // place of a.
         let bandwidth = 2.0 * pole.zeta * pole.frequency / spacing;
         let leakage = 4.0 / 3.0 / bandwidth.powi(2);
         let blows = self.options.from_blows;
@@ -66,7 +68,7 @@ impl Candidate<'_> {
         }
         find(measured.window.is_some() && leaks, of(Finding::note("modal-leakage-fitted")));
         if blows {
-            // A record that ends T after the blow lacks e^(sT − iωT) of a mode's part: a factor on A.
+            // A record that ends T after the blow lacks e^(sT − iωT) of a mode: a factor on A.
             let left = (-TAU * pole.frequency * pole.zeta / spacing).exp();
             let cut_off = Finding::caution(code::MODAL_BLOW_CUT_OFF).number("part", left);
             find(left * pole.constant.norm() > std[2], cut_off);
@@ -75,21 +77,23 @@ impl Candidate<'_> {
         let phase = own.constant.arg().to_degrees();
         let no_sign = !measured.magnitude_only && (IN_STEP..180.0 - IN_STEP).contains(&phase.abs());
         find(no_sign, Finding::caution("modal-constant-no-sign").number("phase", phase));
-        // ζωᵣ is known as before, and the constant has the factor that its uncertainty has.
+        // Without the window's decay the uncertainty of ζωᵣ is the same, and that of the constant changes by
+        // the factor of the constant.
         std[1] *= pole.frequency / own.frequency;
         std[2] *= own.constant.norm() / pole.constant.norm();
-        // Two bandwidths on either side.
+        // A further mode matters within two bandwidths on either side.
         let around = |other: f64| (other - pole.frequency).abs() < 4.0 * pole.zeta * pole.frequency;
         let ahead = group.ahead.filter(|(_, other)| around(*other)).map(|(ahead, _)| ahead);
         let two = Finding::doubt("modal-two-modes").number("ahead", ahead.unwrap_or(f64::NAN));
         find(ahead.is_some(), two);
-        // What the phases of residual terms and other modes do to magnitudes is in no residual.
+        // Without phases, errors by residual terms and other modes do not show in the residuals: no
+        // uncertainty is stated.
         let known = ahead.is_none() && !measured.magnitude_only;
         Some(self.estimates(&own, std.map(|s| known.then_some(s))))
     }
 
-    /// The estimates of a mode that has `own` pole without the decay of a window, and standard uncertainties
-    /// of frequency, ζ, modal constant and phase.
+    /// The estimates of a mode by all methods. `own` is its pole without the decay of a window; `std` are
+    /// the standard uncertainties of frequency in Hz, ζ, modal constant, and phase in rad.
     fn estimates(&self, own: &Pole, std: [Option<f64>; 4]) -> Mode {
         let Candidate { measured, options, group, fit, m, .. } = *self;
         let f = &measured.frequency[group.lines.clone()];
@@ -127,7 +131,7 @@ impl Candidate<'_> {
         Mode { frequency, zeta, modal_constant, phase, method, stiffness, lines, by, fitted }
     }
 
-    /// The circle of the response as measured, and its mode without the decay of a window.
+    /// Circle fit of the response as measured, and its mode without the decay of a window.
     fn by_circle(&self, own: &Pole) -> ByMethod {
         let (power, decay) = (self.measured.power(), self.decay());
         let seen = own.without_decay(-decay, power).unwrap_or(*own);
@@ -149,7 +153,7 @@ impl Candidate<'_> {
         }
     }
 
-    /// Distance of the lines around line `at`.
+    /// Distance in Hz of the lines around line `at`.
     fn line(&self, at: usize) -> f64 {
         (self.measured.frequency[at + 1] - self.measured.frequency[at - 1]) / 2.0
     }

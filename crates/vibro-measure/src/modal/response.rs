@@ -6,8 +6,8 @@ use vibro_record::{
     Axis, AxisKind, Error, Finding, Frf, Meta, Place, Record, Result, Scaling, Spectrum, Values, Window,
 };
 
-/// A frequency response function as the estimates of modes take it, complex or in magnitude only, with its
-/// coherence where known.
+/// A frequency response function for modal analysis, complex or in magnitude only, with its coherence where
+/// known.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Measured {
     /// Frequencies of the lines in Hz, rising.
@@ -16,19 +16,19 @@ pub struct Measured {
     pub values: Vec<Complex64>,
     /// Whether phases are unknown.
     pub magnitude_only: bool,
-    /// What the values are.
+    /// Kind of the values, such as receptance or mobility.
     pub kind: Quantity,
     /// Coherence of each line.
     pub coherence: Option<Vec<f64>>,
-    /// Window of the segments that the function was averaged over, each as long as one over the distance of
-    /// the lines; `None` where it was not averaged so, or that is not known.
+    /// Window of the segments that the function was averaged over, each as long as the inverse of the line
+    /// spacing. `None` where it was not averaged so, or that is not known.
     pub window: Option<Window>,
     /// Standard uncertainty of one component of each value, above 0, where it is known.
     pub std: Option<Vec<f64>>,
 }
 
 impl Measured {
-    /// Values over frequencies (Hz) of which nothing else is known.
+    /// Complex values of one kind over frequencies in Hz, without coherence, window or uncertainty.
     pub fn new(frequency: Vec<f64>, values: Vec<Complex64>, kind: Quantity) -> Measured {
         Measured { frequency, values, magnitude_only: false, kind, coherence: None, window: None, std: None }
     }
@@ -43,9 +43,9 @@ impl Measured {
         Measured::new(axis.values(), values, kind)
     }
 
-    /// The function that a record is: a response over a force, complex or in magnitude, or complex values of
-    /// which the file does not say what they are. Complex lines that have no frequencies, or are a
-    /// spectrum by their unit or scaling, are refused.
+    /// The function in a record: a response over a force, complex or in magnitude, or complex values of a
+    /// kind that the file does not state. `None` for traces and other real values. Complex lines without
+    /// frequencies, or with the unit or scaling of a spectrum, are refused.
     fn record(record: &Record) -> Result<Option<Measured>> {
         let spectrum = match record {
             Record::Frf(frf) => return Ok(Some(Measured::complex(frf))),
@@ -81,8 +81,8 @@ impl Measured {
         Ok(Some(Measured::of(axis, values.clone(), kind)))
     }
 
-    /// All functions among records, or those of one name or number, each with its record's meta data. A
-    /// coherence of the same lines among them is theirs where there is just one of each.
+    /// All functions among records, or those of one name or number, each with its record's meta data. One
+    /// function and one coherence belong together.
     ///
     /// # Errors
     /// If there is none.
@@ -130,7 +130,7 @@ impl Measured {
     /// Adds the coherence among records.
     ///
     /// # Errors
-    /// If there is none or several, or it has another number of lines, or lines elsewhere.
+    /// If there is no coherence or more than one, or its lines are not those of the function.
     pub fn with_coherence_of(mut self, records: &[Record]) -> Result<Measured> {
         let all: Vec<&Spectrum> = records.iter().filter_map(coherence).collect();
         let [Spectrum { axis, values, .. }] = all.as_slice() else {
@@ -163,7 +163,7 @@ impl Measured {
         self.frequency.partition_point(|f| *f < low)..self.frequency.partition_point(|f| *f <= high)
     }
 
-    /// How often iω multiplies a receptance to give the values.
+    /// Power of iω that takes a receptance to the values: 1 for a mobility, 2 for an accelerance.
     pub fn power(&self) -> i32 {
         match self.kind {
             Quantity::Mobility => 1,
@@ -172,7 +172,8 @@ impl Measured {
         }
     }
 
-    /// Without the lines that cannot be used, each kind of which is a finding.
+    /// Leaves out the lines that cannot be used, with a finding for each kind; `least` is the lowest
+    /// coherence allowed.
     ///
     /// # Errors
     /// If fewer than five lines are left.
@@ -180,7 +181,7 @@ impl Measured {
         let coherence = self.coherence.take();
         let n = self.frequency.len();
         let of = |i: usize| coherence.as_ref().and_then(|c| c.get(i)).copied();
-        // Rounding takes a coherence of 1 a little beyond.
+        // Rounding may take a coherence a little beyond 0 or 1.
         let possible = -1e-6..=1.0 + 1e-6;
         let wrong = |i: usize| match of(i) {
             _ if !self.values[i].is_finite() => Some("frf-lines-missing"),
@@ -222,7 +223,7 @@ impl Measured {
 /// Most lines that a finding names.
 const NAMED: usize = 6;
 
-/// A record that says that it is a coherence, or is named so and has no unit.
+/// The spectrum of a record that is a coherence by its scaling, or by its name where it has no unit.
 fn coherence(record: &Record) -> Option<&Spectrum> {
     let Record::Spectrum(s) = record else { return None };
     let named = s.meta.name.to_lowercase().contains("coherence") && matches!(s.meta.unit.symbol(), "" | "1");

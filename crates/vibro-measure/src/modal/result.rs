@@ -1,4 +1,4 @@
-//! What is known of each mode.
+//! Results of a modal analysis: modes, with the estimates of every method.
 
 use crate::Estimate;
 use num_complex::Complex64;
@@ -6,22 +6,21 @@ use serde::{Serialize, Serializer};
 use std::f64::consts::TAU;
 use vibro_record::Finding;
 
-/// How modes are looked for.
+/// Options of a modal analysis.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct ModalOptions {
     /// Band in Hz whose peaks are fitted together. Default: a band around each peak.
     pub band: Option<(f64, f64)>,
     /// Mass in kg for the stiffness k = m(2πf)², taken as exact. Default: none.
     pub mass: Option<f64>,
-    /// Lines of a coherence below this are left out; 0.5 where `None`.
+    /// Lines with a coherence below this are left out; 0.5 where `None`.
     pub least_coherence: Option<f64>,
     /// Decay in 1/s that an exponential window added to the response, to be subtracted. Default: none.
     pub decay: Option<f64>,
-    /// Whether the function was averaged over the blows of a hammer, each a record as long as one over the
-    /// distance of the lines. Default: false.
+    /// Whether the function was averaged over the blows of a hammer, each record as long as the inverse of
+    /// the line spacing. Default: false.
     pub from_blows: bool,
-    /// Relative standard uncertainty of the sampling rate, by which all frequencies are off alike. Default
-    /// 0.
+    /// Relative standard uncertainty of the sampling rate, which is common to all frequencies. Default: 0.
     pub clock: f64,
 }
 
@@ -30,7 +29,7 @@ pub struct ModalOptions {
 pub struct ModalResult {
     /// Modes by frequency.
     pub modes: Vec<Mode>,
-    /// What was assumed and left out, and what the lines leave open.
+    /// Findings: assumptions, what was left out, and doubts that the lines leave.
     pub findings: Vec<Finding>,
 }
 
@@ -47,20 +46,20 @@ pub struct Mode {
     /// Phase of the modal constant in degrees: 0 or 180° for a mode of which all parts move in step. `None`
     /// without phases.
     pub phase: Option<Estimate>,
-    /// How these were found.
+    /// Method of these estimates.
     pub method: String,
     /// k = m(2πf)² in N/m; `None` without a mass.
     pub stiffness: Option<Estimate>,
     /// First and last line in Hz, and the number of lines, that were fitted.
     pub lines: (f64, f64, usize),
-    /// What every method gives.
+    /// Results of every method.
     pub by: Vec<ByMethod>,
     /// Frequency and fitted response of the lines that were used, real and imaginary.
     #[serde(skip)]
     pub fitted: Vec<(f64, f64, f64)>,
 }
 
-/// What one method gives.
+/// Result of one method.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ByMethod {
     /// `rational fit` in the complex plane, `circle fit` in the Nyquist plane, `half power` or largest line
@@ -72,12 +71,12 @@ pub struct ByMethod {
     pub zeta: Option<Estimate>,
     /// Modal constant, with the sign of [`Mode::modal_constant`].
     pub modal_constant: Option<Estimate>,
-    /// What limits it; in JSON its code.
+    /// Limitation of the method for this mode; in JSON the code of the finding.
     #[serde(serialize_with = "code")]
     pub note: Option<Finding>,
 }
 
-// serde hands over the field as it is.
+// serde passes a reference to the field: the type of `note` is not free.
 #[allow(clippy::ref_option)]
 fn code<S: Serializer>(note: &Option<Finding>, serializer: S) -> Result<S::Ok, S::Error> {
     serializer.serialize_str(note.as_ref().map_or("", |n| n.code.as_ref()))
@@ -95,7 +94,7 @@ pub struct Pole {
 }
 
 impl Pole {
-    /// Its part of the response at `f`, whose kind is a receptance times (iω)^`power`.
+    /// Response of the mode at `f` in Hz: its receptance times (iω)^`power`.
     pub fn at(&self, f: f64, power: i32) -> Complex64 {
         let (omega, own) = (TAU * f, TAU * self.frequency);
         let factor = Complex64::new(0.0, omega).powi(power);
@@ -106,7 +105,8 @@ impl Pole {
     /// the receptance.
     ///
     /// The window moves the pole s = −ζωᵣ ± iωᵣ√(1 − ζ²) by −σ and leaves its residue, which is `s^power`
-    /// A/(2iωᵣ√(1 − ζ²)). `None` where it decays by less than σ, or does not oscillate (ζ of 1 and more).
+    /// A/(2iωᵣ√(1 − ζ²)). `None` where the mode decays by less than σ, or does not oscillate (ζ of 1 and
+    /// more).
     pub(crate) fn without_decay(&self, decay: f64, power: i32) -> Option<Pole> {
         if self.zeta.is_nan() || self.zeta.abs() >= 1.0 {
             return None;

@@ -307,8 +307,7 @@ mod curved {
         assert!((impulse - 1.6).abs() < STEP, "{impulse}");
     }
 
-    /// The impulse is the change of velocity, 1 + R, whatever low-pass stands between, since its gain at 0 Hz
-    /// is one.
+    /// The impulse is the change of velocity, 1 + R, with any low-pass, since its gain at 0 Hz is one.
     #[test]
     fn a_low_pass_keeps_the_impulse() {
         let contact = Rebound::power_law(0.6, 1.5, 1.5).unwrap();

@@ -11,13 +11,13 @@ use vibro_record::{Error, Result};
 pub(super) struct Samples<'a> {
     /// Sampling interval, in lengths of the pulse.
     pub step: f64,
-    /// What the instrument does to a pulse.
+    /// Low-pass of the instrument, with its corner in cycles per length of the pulse.
     pub filter: Option<&'a LowPass>,
-    /// Places in the record.
+    /// Indices of the samples in the record.
     pub places: Vec<usize>,
     pub times: Vec<f64>,
     pub values: Vec<f64>,
-    /// Ringing after the pulse, which may be within it, too.
+    /// Ringing after the pulse, which may occur within it, too.
     pub rings: Option<Ringing>,
 }
 
@@ -32,7 +32,7 @@ pub(super) struct FittedPulse {
     /// model does, so that the parameters may be anything: coloured residuals are larger around the onset
     /// than elsewhere, or the onset lies outside the two samples between which the contact begins.
     pub widening: Option<f64>,
-    /// First sample inside the contact, where the model begins with a jump.
+    /// Index of the first sample inside the contact, where the model begins with a jump.
     first: Option<usize>,
     /// Fits at further minima of the sum of squares over the exponent of the loss.
     pub also: Vec<FittedPulse>,

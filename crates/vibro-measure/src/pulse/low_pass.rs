@@ -15,7 +15,7 @@ pub struct LowPass {
     parts: Vec<(Complex64, Complex64)>,
 }
 
-/// Beyond this order the residues cancel to fewer than ten digits.
+/// Highest order: beyond it the residues cancel to fewer than ten digits.
 const HIGHEST_ORDER: usize = 10;
 
 impl LowPass {
@@ -49,7 +49,7 @@ impl LowPass {
         self.parts.iter().map(|(p, _)| -1.0 / p).sum::<Complex64>().re
     }
 
-    /// Response at `t` to c e^{st} from 0 to `length` and 0 elsewhere.
+    /// Response at `t` in s to c e^{st} from 0 to `length` in s, and to 0 elsewhere.
     pub(super) fn exponential(&self, c: Complex64, s: Complex64, length: f64, t: f64) -> Complex64 {
         if t <= 0.0 {
             return Complex64::new(0.0, 0.0);
@@ -58,7 +58,7 @@ impl LowPass {
         let driven = (s * inside).exp();
         let one = |(p, r): &(Complex64, Complex64)| {
             let z = (s - p) * inside;
-            // (e^{su} − e^{pu})/(s − p) cancels where the exponents are near each other.
+            // (e^{su} − e^{pu})/(s − p) loses digits where the exponents are near each other.
             let sum = if z.norm() < 1e-2 {
                 (p * inside).exp() * inside * mean_exponentials(z).0
             } else {
@@ -121,7 +121,7 @@ impl Advance {
     }
 }
 
-/// (e^z − 1)/z and (e^z − 1 − z)/z², by their series where they cancel.
+/// (e^z − 1)/z and (e^z − 1 − z)/z², by their series for small z, where the differences lose digits.
 fn mean_exponentials(z: Complex64) -> (Complex64, Complex64) {
     if z.norm() < 0.1 {
         let second =
@@ -167,7 +167,7 @@ mod tests {
             // The trapezoid errs by h²/12 times the change of slope, at most a few ω, of order 10.
             assert!((ramp[i] - sum).abs() < 1e-4 / 12.0 * 10.0, "{} {} {sum}", times[i], ramp[i]);
         }
-        // Once settled a ramp runs behind by exactly the delay.
+        // Once settled, the output lags a ramp by exactly the delay.
         let late = times[399] - ramp[399];
         assert!((late - filter.delay()).abs() < 1e-4, "{late} {}", filter.delay());
     }

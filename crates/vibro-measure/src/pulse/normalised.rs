@@ -24,7 +24,7 @@ pub(super) struct Normalised<'a> {
     pub length: f64,
     /// Height of the pulse, in the unit of the record: unit of the values.
     height: f64,
-    /// The low-pass with its corner in cycles a length.
+    /// The low-pass with its corner in cycles per length of the pulse.
     filter: Option<LowPass>,
 }
 
@@ -245,9 +245,9 @@ pub(super) struct Located {
     pub baseline: f64,
     /// Largest excursion from it, with its sign.
     pub height: f64,
-    /// Places, in samples, where the flanks cross half the height.
+    /// Positions of the flanks at half the height, in samples.
     pub flanks: (f64, f64),
-    /// Place, in samples, where the falling flank has come down to a fifth of the height.
+    /// Index of the sample where the falling flank has come down to a fifth of the height.
     pub low: usize,
     /// Indices of the samples of a flat top.
     pub clipped: Vec<usize>,

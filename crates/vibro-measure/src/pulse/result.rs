@@ -22,7 +22,7 @@ pub enum ContactModel {
     HuntCrossley,
     /// Any exponents of spring and loss.
     PowerLaw,
-    /// A spring that yields, and is stiffer on the way back.
+    /// A spring that yields, and is stiffer on unloading.
     Yielding,
 }
 

@@ -4,8 +4,8 @@ use vibro_record::{Axis, Meta, Severity};
 
 const DT: f64 = 1e-6;
 
-/// A record of 200 samples, a contact of ξ 0.2, 10 kHz and 3 m/s at 80.4 µs on it, and a ripple of 0.1 % for
-/// noise.
+/// A record of 200 samples: a contact of ξ 0.2 and 10 kHz that begins at 80.4 µs with 3 m/s, and a ripple of
+/// 0.1 % as noise.
 fn record() -> Vec<f64> {
     let contact = KelvinVoigt::new(0.2, 10e3).unwrap();
     (0..200)
@@ -26,7 +26,7 @@ fn found(values: Vec<f64>) -> PulseResult {
     let result =
         pulse(&trace(values, "m/s²"), &PulseOptions { mass: Some(0.4), instrument: Instrument::Flat })
             .unwrap();
-    // Five of the uncertainties that are stated, and those within a hundredth of the value.
+    // Within five stated uncertainties, and those within 2 % of the value.
     for (estimate, truth) in [(&result.xi, 0.2), (&result.frequency, 10e3)] {
         let std = estimate.std.unwrap();
         assert!((estimate.value - truth).abs() < 5.0 * std && std < 0.02 * truth, "{result:?}");
@@ -34,7 +34,7 @@ fn found(values: Vec<f64>) -> PulseResult {
     result
 }
 
-/// What is found of a contact of 45 µs and 3 m/s, with the ripple of [`record`].
+/// Result for a contact of 45 µs and 3 m/s, with the ripple of [`record`].
 fn follows(contact: &Rebound) -> PulseResult {
     let times: Vec<f64> = (0..200).map(|i| f64::from(i) * DT - 80.4e-6).collect();
     let shape = contact.decelerations(45e-6, None, &times);
@@ -57,7 +57,8 @@ fn all_that_follows_from_a_pulse() {
     let k = result.stiffness.as_ref().unwrap().value;
     assert!((k / (0.4 * (std::f64::consts::TAU * result.frequency.value).powi(2)) - 1.0).abs() < 1e-12);
     let models: Vec<&str> = result.fits.iter().map(|f| f.model.name()).collect();
-    // A spring that yields finds no minimum, and spring and damper leave nothing to the exponents.
+    // The yielding spring finds no minimum, and free exponents are skipped, since spring and damper leaves
+    // white residuals.
     assert_eq!(models, ["kelvin-voigt", "hertz", "hunt-crossley"]);
     assert!(result.fits[1..].iter().all(|f| f.aicc > result.fits[0].aicc + 10.0), "{:?}", result.fits);
 }
@@ -160,7 +161,7 @@ fn the_contact_of_hunt_and_crossley_is_preferred_where_it_is_one() {
     assert!(says(&result, "pulse-other-model"), "{:?}", result.findings);
     let alpha = &result.fits[2].parameters["alpha"];
     assert!((alpha.value - 0.3).abs() < 5.0 * alpha.std.unwrap(), "{alpha:?}");
-    // That model leads, and what only spring and damper state has no uncertainty.
+    // That model leads, and values that only spring and damper states have no uncertainty.
     let restitution = &result.restitution;
     assert_eq!(restitution.value, result.fits[2].parameters["restitution"].value);
     assert!(
@@ -170,8 +171,8 @@ fn the_contact_of_hunt_and_crossley_is_preferred_where_it_is_one() {
     assert!(result.xi.std.is_none() && result.frequency.std.is_none(), "{result:?}");
 }
 
-/// Neither is one of spring and damper, or of Hunt and Crossley: its restitution comes out, and nothing is
-/// said that is no longer so.
+/// Neither contact is spring and damper, or Hunt and Crossley. Its restitution is found, and the only doubt
+/// is that another model leads.
 #[test]
 fn contacts_of_a_yielding_spring_and_of_other_exponents_keep_their_restitution() {
     for contact in [Rebound::yielding(0.7).unwrap(), Rebound::power_law(0.4, 2.0, 1.0).unwrap()] {
@@ -189,7 +190,7 @@ fn contacts_of_a_yielding_spring_and_of_other_exponents_keep_their_restitution()
     }
 }
 
-/// A contact through a low-pass of 30 kHz, fitted without.
+/// A contact through a low-pass of 30 kHz, fitted without a low-pass.
 #[test]
 fn without_the_low_pass_that_is_there_nothing_is_stated() {
     let contact = KelvinVoigt::new(0.15, 6e3).unwrap();
@@ -216,7 +217,7 @@ fn without_the_low_pass_that_is_there_nothing_is_stated() {
     let without = fitted(None).unwrap();
     assert!(nothing(&without), "{without:?}");
     assert!(says(&without, "pulse-low-pass-missing"), "{:?}", without.findings);
-    // One that is far too high is as good as none, above half the sampling rate as below.
+    // A stated corner that is far too high is as bad as none, above half the sampling rate as below.
     let beyond = fitted(Some(600e3)).unwrap();
     assert!(nothing(&beyond), "{:?} {:?}", beyond.xi, beyond.findings);
     let high = fitted(Some(450e3)).unwrap();
@@ -249,7 +250,7 @@ fn what_is_no_pulse_is_refused() {
     assert_eq!(pulse(&trace(record(), "m/s²"), &options).unwrap_err().exit_code(), 2);
 }
 
-/// The first half swing of a free decay looks like a contact that loses nothing.
+/// The first half swing of a free decay looks like a contact without losses.
 #[test]
 fn a_structure_that_rings_is_no_contact() {
     for zeta in [0.012, 0.05, 0.15] {

@@ -107,7 +107,7 @@ fn a_crossing_beside_a_jump_keeps_its_place_however_the_frequencies_of_the_masse
     // on.
     let grid = |offset: f64| (0..8).map(move |i| 4.515 + 0.5 * f64::from(i) + offset);
     for offset in [0.0, 1e-9, -1e-9, 0.25, 0.25 + 1e-9, 0.25 - 1e-9, -0.25, -0.1] {
-        // They cross at 6.05 on straight lines in the logarithm; behind the jump the second lies above, or
+        // They cross at 6.05 on straight lines in the logarithm; after the jump the second lies above, or
         // below.
         for (behind, expected) in [(2.0, vec![6.05]), (-2.0, vec![6.05, 6.765 + offset])] {
             let first: Vec<_> = grid(0.0).map(|f| (f, (6.05 - f).exp(), 1e-3)).collect();
@@ -116,7 +116,7 @@ fn a_crossing_beside_a_jump_keeps_its_place_however_the_frequencies_of_the_masse
             let jump = jump([second[4], second[5]], Direction::Up);
             let found = crossings(first, second, &[jump]);
             let frequencies: Vec<f64> = found.iter().map(|c| c.frequency).collect();
-            // Behind a fall by four the curves meet again at 8.05, where both reach that far.
+            // After a fall by four the curves meet again at 8.05, where both reach that far.
             let frequencies: Vec<f64> = frequencies.into_iter().filter(|f| *f < 7.6).collect();
             assert_eq!(frequencies.len(), expected.len(), "{offset} {behind}: {found:?}");
             for (found, expected) in frequencies.iter().zip(&expected) {
@@ -155,7 +155,8 @@ fn a_coarse_sweep_of_a_linear_resonance_has_no_jump() {
                 let a: Vec<f64> =
                     f.iter().map(|f| 1.0 / (1.0 - (f / 5.6f64).powi(2)).hypot(f / 5.6 / q)).collect();
                 let std = vec![1e-6; f.len()];
-                // With a second mode at 6.5 Hz, a zero between them or none, the phase is no jump either.
+                // With a second mode at 6.5 Hz, and with a zero between them or without, the phase shows no
+                // jump either.
                 for second in [0.0, 0.3, -0.3] {
                     let motion: Vec<Complex64> = f
                         .iter()
@@ -184,7 +185,8 @@ fn oscillator(f: f64, natural: f64, zeta: f64) -> Complex64 {
 }
 
 /// A mass that strikes a stop moves as one on a stiffer spring, until it lets go near the resonance without
-/// the stop: the amplitude is no more than halved there and falls steeply behind, but the motion turns round.
+/// the stop. There the amplitude is at most halved, and the curve falls steeply afterwards, but the phase
+/// reverses.
 #[test]
 fn a_motion_that_turns_round_within_a_step_has_jumped() {
     let f: Vec<f64> = (16..27).map(f64::from).collect();
@@ -196,7 +198,7 @@ fn a_motion_that_turns_round_within_a_step_has_jumped() {
     let found = NamedCurve::new(curve, &motion, Direction::Up, None);
     assert_eq!(found.jumps.iter().map(|j| (j.from, j.to)).collect::<Vec<_>>(), [(23.0, 24.0)]);
     assert!(found.resonances.iter().all(|r| r.at_jump), "{:?}", found.resonances);
-    // The sweep ends right behind it.
+    // A sweep that ends right after the jump.
     let found = NamedCurve::new(points(&f[..9], &a[..9], &[1e-4; 9]), &motion[..9], Direction::Up, None);
     assert_eq!(found.jumps.iter().map(|j| (j.from, j.to)).collect::<Vec<_>>(), [(23.0, 24.0)]);
 }
@@ -255,10 +257,10 @@ fn a_minimum_in_the_noise_lies_between_what_stands_out() {
     let std = [0.1; 11];
     let found = resonances(&f, &a, &std, &[], Some(1));
     let minimum = found.iter().find(|r| r.kind == ResonanceKind::Antiresonance).unwrap();
-    // Point 5; points 3 and 7 stand out.
+    // The minimum is point 5; points 3 and 7 differ from it by more than noise.
     assert_eq!((minimum.frequency, minimum.frequency_std), (5.0, Some(2.0 / f64::sqrt(3.0))));
     assert_eq!((minimum.amplitude, minimum.amplitude_std), (0.02, Some(0.1)));
-    // Faint points up to the edge of the curve, and behind a jump, are none.
+    // Faint points up to the edge of the curve, or after a jump, are no minima.
     assert!(
         resonances(&f[..7], &a[..7], &std[..7], &[], Some(1))
             .iter()
@@ -268,7 +270,7 @@ fn a_minimum_in_the_noise_lies_between_what_stands_out() {
     assert!(resonances(&f, &a, &std, &[jump], Some(1)).iter().all(|r| r.kind == ResonanceKind::Resonance));
 }
 
-/// Going down, mass 2 begins to move at 5.5; mass 1 falls there by less than a jump that stands on its own,
+/// Going down, mass 2 begins to move at 5.5 Hz. Mass 1 falls there by less than would count as a jump alone,
 /// or goes on.
 #[test]
 fn where_one_mass_jumps_the_other_does_if_its_slopes_do_not_tell() {

@@ -13,10 +13,10 @@ pub struct Harmonic {
     pub order: String,
     /// Frequency in Hz.
     pub frequency: f64,
-    /// Amplitude; no value where the frequency lies outside the lines or below the cut-off. In the noise the
-    /// nearest line as it is.
+    /// Amplitude; NaN where the frequency lies outside the lines or below the cut-off. Where noise may hide
+    /// it, that of the nearest line, noise included.
     pub amplitude: Estimate,
-    /// 95 % upper limit of the true amplitude, where it does not stand out of the noise (Read 2002).
+    /// 95 % upper limit of the true amplitude, where noise may hide it (Read 2002).
     pub upper_limit: Option<f64>,
 }
 
@@ -35,11 +35,10 @@ pub struct ResponsePoint {
     pub frequency: f64,
     /// Its standard uncertainty in Hz.
     pub frequency_std: Option<f64>,
-    /// Peak amplitude at the excitation. Where the response does not stand out of the noise, the line
-    /// nearest to the excitation as it is: noise lifts it, so a faint amplitude is more likely too large
-    /// than too small.
+    /// Peak amplitude at the excitation. Where noise may hide the response, that of the line nearest to the
+    /// excitation, noise included: such an amplitude is biased high.
     pub amplitude: Estimate,
-    /// 95 % upper limit of the true amplitude, where it does not stand out of the noise (Read 2002).
+    /// 95 % upper limit of the true amplitude, where noise may hide it (Read 2002).
     pub upper_limit: Option<f64>,
     /// Orders 2 to 5.
     pub harmonics: Vec<Harmonic>,
@@ -62,7 +61,7 @@ pub struct Receptance {
     pub re: f64,
     /// Imaginary part.
     pub im: f64,
-    /// Standard uncertainty of each of them.
+    /// Standard uncertainty of each part.
     pub std: Option<f64>,
 }
 
@@ -73,7 +72,7 @@ pub struct Response {
     pub name: String,
     /// Direction of the sweep, stated or found from the excitation frequencies.
     pub direction: Option<Direction>,
-    /// Mass, where stated.
+    /// Mass (1 excited, 2 passive), where stated.
     pub mass: Option<u8>,
     /// Quantity of the amplitudes.
     pub quantity: &'static str,
@@ -85,10 +84,10 @@ pub struct Response {
     pub points: Vec<ResponsePoint>,
     /// Maxima and minima of the curve.
     pub resonances: Vec<Resonance>,
-    /// Sudden changes.
+    /// Jumps of the curve.
     pub jumps: Vec<Jump>,
-    /// What limits the curve.
+    /// Findings that limit the curve.
     pub findings: Vec<Finding>,
-    /// Every step from file to curve.
+    /// Processing steps from file to curve.
     pub history: Vec<Step>,
 }

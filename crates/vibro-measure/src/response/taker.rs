@@ -10,17 +10,17 @@ use std::f64::consts::TAU;
 use vibro_record::units::Quantity;
 use vibro_record::{Sweep, SweepPoint, Values, Window};
 
-/// A response peak must stand this factor above the noise of a line; a fainter one is read at the excitation
-/// frequency, where noise cannot choose the line, and gets an upper limit.
+/// Least height of a response peak, over the noise of one component of a line. A fainter one is read at the
+/// excitation frequency, where noise cannot choose the line, and gets an upper limit.
 const PEAK_ABOVE: f64 = 5.0;
-/// A response peak lies within this many lines of the excitation.
+/// Largest distance of a response peak from the excitation, in lines.
 const NEAR: f64 = 1.0;
 
-/// Takes single points.
+/// Reads the points of a response curve from spectra.
 pub(super) struct Taker<'a> {
     pub sweep: &'a Sweep,
     pub options: &'a ResponseOptions,
-    /// Integrations.
+    /// Number of integrations.
     pub times: i8,
     pub df: f64,
     pub fmin: f64,
@@ -36,8 +36,8 @@ impl Taker<'_> {
         (frequency - self.sweep.axis.start()) / self.df
     }
 
-    /// An amplitude of the wanted quantity from one of the measured signal at `frequency`, and the same of
-    /// its upper limit.
+    /// Amplitude and upper limit of the wanted quantity, from those of the measured signal at `frequency` in
+    /// Hz.
     fn estimate(
         &self,
         frequency: f64,
@@ -65,7 +65,7 @@ impl Taker<'_> {
             .filter(|&k| measured[k] >= measured[k - 1] && measured[k] >= measured[k + 1])
             .max_by(|a, b| measured[*a].total_cmp(&measured[*b]));
         let floor = noise::around(&measured, top.unwrap_or(centre), noise::REACH, window);
-        // A hump of noise is not the response, nor is another line beside the excitation, which hides it.
+        // Neither a hump of noise nor another line beside the excitation, which hides it, is the response.
         let clear = |p: &SubLine| floor.is_none_or(|f| p.amplitude >= PEAK_ABOVE * f);
         let peak = top.and_then(|k| {
             let line = interpolate(&measured, k, window, floor).filter(clear)?;
@@ -110,7 +110,7 @@ impl Taker<'_> {
     }
 
     /// Phase of the response against the force, and their ratio, by the line nearest to the excitation of
-    /// complex spectra. Both lines have the same window, which the ratio is free of.
+    /// complex spectra. Both lines have the same window, which cancels in the ratio.
     fn transfer(&self, point: &SweepPoint, excitation: f64) -> Option<(Estimate, Receptance)> {
         let (Values::Complex(response), Values::Complex(force)) = (&point.response.values, &point.force)
         else {
@@ -122,7 +122,8 @@ impl Taker<'_> {
         let noise = |values: &Values| noise::around(&values.magnitudes(), k, noise::REACH, window);
         let (of_x, of_f) = (noise(&point.response.values)?, noise(&point.force)?);
         let relative = (of_x / x.norm()).hypot(of_f / f.norm());
-        // What the analyser divided by at the line is taken to the frequency of the sine.
+        // The analyser's division at the frequency of the line is replaced by one at the frequency of the
+        // sine.
         let undone =
             Complex64::new(0.0, TAU * self.frequency(k as f64)).powi(self.sweep.analyser_integrated.into());
         let times = i32::from(self.sweep.analyser_integrated) + i32::from(self.times);
@@ -149,7 +150,7 @@ impl Taker<'_> {
         Harmonic { order, frequency, amplitude, upper_limit }
     }
 
-    /// Index of the largest line of the wanted quantity, cut-off and above.
+    /// Index of the largest line of the wanted quantity at or above the cut-off.
     fn largest(&self, stored: &[f64]) -> usize {
         let first = self.position(self.fmin).ceil().max(1.0) as usize;
         let wanted = |k: usize| stored[k] / (TAU * self.frequency(k as f64)).powi(i32::from(self.times));
@@ -157,7 +158,7 @@ impl Taker<'_> {
     }
 }
 
-/// Amplitude in the noise, its uncertainty and its upper limit, from one line, because the distribution of
+/// Amplitude near the noise, its uncertainty and its upper limit, from one line, since the distribution of
 /// its magnitude is known.
 fn faint(
     measured: &[f64],

@@ -48,8 +48,8 @@ fn upper_limits_are_passed_by_no_more_than_one_in_twenty_and_by_no_fewer_than_th
     let mut normal = Noise::new(0xfa17);
     let draws = 1000;
     for window in [Window::Rectangular, Window::Hann, Window::FlatTop] {
-        // Height of the line nearest to the sine, three to five times its noise: below, the limit is never
-        // passed.
+        // The line nearest to the sine is three to five times its noise: a fainter sine never exceeds its
+        // limit.
         let gain = line_shape(window, 0.3);
         let truth: Vec<f64> = (0..draws).map(|_| (3.0 + 2.0 * normal.uniform()) / gain).collect();
         let points = truth
@@ -71,8 +71,8 @@ fn upper_limits_are_passed_by_no_more_than_one_in_twenty_and_by_no_fewer_than_th
         }
         println!("{window:?}: of {draws} {limited} limits, {missed} missed");
         // At most 5 % of 1000, and twice the binomial standard deviation of 6.9. At least 2 %: a reading
-        // below 1.38 gives a limit below 3, and one of 3 reads so in 3 % of all cases. Limits that
-        // are much too wide are never passed.
+        // below 1.38 gives a limit below 3, and a line of 3 reads so in 3 % of all cases. Limits that are
+        // much too wide are never exceeded.
         assert!((20..=63).contains(&missed), "{window:?}: {missed} of {limited}");
         assert!(finding(&found, "sweep-below-noise").is_some(), "{:?}", found.findings);
     }

@@ -27,7 +27,7 @@ pub struct Drop {
     pub gravity: f64,
     /// Its standard uncertainty in m/s².
     pub gravity_std: Option<f64>,
-    /// Relative standard uncertainty of the clock that the intervals are counted by, which all drops share.
+    /// Relative standard uncertainty of the clock of the intervals, which all drops share.
     pub clock: f64,
 }
 
@@ -46,7 +46,7 @@ impl Default for Drop {
 }
 
 impl Drop {
-    /// R of one interval.
+    /// R of one interval in s.
     pub fn restitution(&self, interval: f64) -> f64 {
         0.5 * interval * (self.gravity / (2.0 * self.height)).sqrt()
     }
@@ -57,8 +57,8 @@ impl Drop {
         Some(flight).filter(|flight| flight.is_finite() && *flight > 0.0)
     }
 
-    /// With the first flights of trains that begin with the fall. One interval has two onsets; of several
-    /// trains, the root mean square.
+    /// Adds the first flights of trains that begin with the fall. An interval has two onsets, so its
+    /// uncertainty is √2 times theirs, the root mean square over the trains.
     pub fn beginning(mut self, trains: &[Train]) -> Drop {
         self.intervals.extend(trains.iter().filter_map(|t| t.intervals.first()));
         let onset_std = together(trains.iter().map(|t| t.onset_std));
@@ -67,12 +67,13 @@ impl Drop {
         self
     }
 
-    /// Whether the first flights of all trains are among its own.
+    /// Whether the first flights of all trains are among these intervals.
     pub(super) fn begins(&self, trains: &[Train]) -> bool {
         trains.iter().all(|t| t.intervals.first().is_some_and(|first| self.intervals.contains(first)))
     }
 
-    /// What is doubtful where the second flight over the first is not the R that the first gives.
+    /// Doubt where the ratio of the second flight to the first is not the R of the drop, by more than
+    /// [`GROSS`].
     pub(super) fn unlike(&self, trains: &[Train]) -> Option<Finding> {
         let unlike = |train: &Train| {
             let [first, second, ..] = train.intervals[..] else { return None };
@@ -105,7 +106,7 @@ impl Drop {
         Ok(())
     }
 
-    /// Refuses an `interval`, named so, after which R is above 1.
+    /// Refuses an `interval` in s for which R is above 1; `named` is its name in the message.
     ///
     /// # Errors
     /// If it is longer than the fall allows.
@@ -121,9 +122,9 @@ impl Drop {
         Err(Error::refused(why).hint(hint))
     }
 
-    /// `(u_R/R)² = (u_Δt/Δt)² + (u_h/2h)² + (u_g/2g)²`. Every drop shares the height, and each has its own
-    /// timing: neither stands in for the other. The timing of one is no better than the `noise` that the
-    /// flights of trains show: one flight is that of one bounce.
+    /// R with `(u_R/R)² = (u_Δt/Δt)² + (u_h/2h)² + (u_g/2g)²`. Drops share the height, and each has its own
+    /// timing: the uncertainty needs both. The timing of one drop is no better than the `noise` of flights
+    /// in trains, since R scatters from bounce to bounce.
     pub(super) fn answer(
         &self,
         noise: Option<FlightNoise>,
@@ -156,7 +157,8 @@ impl Drop {
         Ok(MethodAnswer { method: "drop", restitution })
     }
 
-    /// Standard deviation of R over drawings of as many drops with replacement; `None` for fewer than five.
+    /// Standard deviation of R over 2000 resamples of the drops with replacement; `None` for fewer than
+    /// five.
     pub(super) fn bootstrap(&self) -> Option<f64> {
         const DRAWINGS: usize = 2000;
         let n = self.intervals.len();

@@ -28,7 +28,7 @@ pub(super) struct Flight {
     pub log: f64,
 }
 
-/// Noise of one flight time: of R, which scatters from bounce to bounce, and of its two onsets.
+/// Noise of one flight time: the scatter of R from bounce to bounce, and the noise of its two onsets.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct FlightNoise {
     /// Variance of ln R from bounce to bounce.
@@ -134,7 +134,7 @@ struct Node {
     variance: f64,
     /// s² and σ², times the scale and the square of Student's factor where the residuals give the scale.
     noise: [f64; 2],
-    /// χ² of the residuals for s² and σ², a degree of freedom.
+    /// χ² of the residuals for s² and σ², per degree of freedom.
     scale: f64,
     /// `mᵀC⁻¹m`.
     information: f64,
@@ -146,9 +146,9 @@ struct Node {
 
 /// Ratios of successive flights, and of first flights after the same fall.
 struct Ratios {
-    /// Their logarithms.
+    /// Logarithms of the ratios.
     y: DVector<f64>,
-    /// Bounces between them.
+    /// Bounces between the two flights of each ratio.
     m: DVector<f64>,
     /// `BBᵀ`, with B the bounces by which the two flights of each ratio differ.
     scatter: DMatrix<f64>,

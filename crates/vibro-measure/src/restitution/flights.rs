@@ -8,34 +8,33 @@ use crate::mean::average;
 use vibro_record::lanes::Extremes;
 use vibro_record::{Error, Finding, Result};
 
-/// A flight this much longer than the first is no bounce of the same fall.
+/// A flight longer than the first by this factor is no bounce of the same fall.
 const LONGER: f64 = 1.2;
-/// So many of them are more than what is heard of a hand before and behind a fall.
+/// Most such flights of a train: more cannot be the taps of a hand before and after a drop.
 const HANDLED: usize = 2;
 
-/// How many flights among the others are longer than the first, where they are too many for one fall: voices
-/// or ringing count as impacts.
+/// Number of flights longer than the first, where they are more than [`HANDLED`]: voices or ringing count as
+/// impacts.
 pub(super) fn longer(train: &Train) -> Option<usize> {
     let (first, rest) = train.intervals.split_first()?;
     let long = |flight: &&f64| **flight > LONGER * first;
-    // What is heard behind the last bounce is another matter.
+    // Sounds after the last bounce make long intervals, too, and do not count.
     let behind = rest.iter().rev().take_while(long).count();
     let n = rest[..rest.len() - behind].iter().filter(long).count();
     (n > HANDLED).then_some(n)
 }
 
-/// Trains from which on their scatter shows all that is uncertain in each.
+/// From this number of trains on, their scatter alone gives the uncertainty.
 const MANY: usize = 4;
 
-/// Chance that trains of one body differ by less than what parts them: beyond it they are not fitted
-/// together.
+/// Confidence level of the test whether trains differ: trains that do are not fitted together.
 const DIFFER: f64 = 0.95;
-/// Beyond this one, that they differ is said.
+/// Confidence level beyond which a finding says that trains differ.
 const SURELY: f64 = 0.999;
 
-/// R of trains of bounces, `None` where no train has two flights; and the noise of their flights, where it
-/// shows. Up to three trains that do not differ share R and noise, and where all begin with the same `fall`,
-/// the first flight; else R is the mean of their ln R.
+/// R of trains of bounces, `None` where no train has two flights, and the noise of their flights where it is
+/// determined. Up to three trains that do not differ share R and noise and, where all begin with the same
+/// `fall`, the first flight. Otherwise R is from the mean of their ln R.
 pub(super) fn answer(
     trains: &[Train],
     fall: bool,
@@ -51,7 +50,7 @@ pub(super) fn answer(
         return Ok((None, None));
     }
     let own = FlightNoise::mean(&fits.iter().filter_map(|fit| fit.noise).collect::<Vec<_>>());
-    // Whether trains are further from this ln R than those of one body are with this chance.
+    // Whether trains lie farther from this ln R than trains of one body do with the probability `chance`.
     let apart = |log: f64, noise: Option<FlightNoise>, chance: f64| {
         let noise = noise.filter(|_| fits.len() > 1);
         noise.is_some_and(|noise| misfit(&all, log, noise) > chi_squared_at(chance, fits.len() - 1))
@@ -110,7 +109,7 @@ fn usable(train: usize, t: &Train, findings: &mut Vec<Finding>) -> Result<Vec<Fl
     Ok(flights)
 }
 
-/// What a train tells by itself; nothing of one flight, which has no ratio.
+/// Fits one train by itself; `None` for one flight, which has no ratio.
 fn fitted(train: usize, flights: &[Flight], onset_std: Option<f64>) -> Result<Option<TrainFit>> {
     if flights.len() < 2 {
         return Ok(None);
@@ -127,10 +126,10 @@ fn fitted(train: usize, flights: &[Flight], onset_std: Option<f64>) -> Result<Op
     Ok(Some(fit))
 }
 
-/// Growth beyond this many standard deviations of the onset noise is none of it.
+/// Growth of a flight beyond this many standard deviations of the onset noise is real.
 const BEYOND: f64 = 4.0;
 
-/// A flight that is longer than the one before it, which the noise of the onsets does not explain.
+/// The first flight that is longer than the one before it by more than the noise of the onsets explains.
 fn grown(flights: &[Flight], onset_std: f64) -> Option<&Flight> {
     let grows = |pair: &&[Flight]| {
         let (before, after) = (pair[0].log.exp(), pair[1].log.exp());
@@ -140,12 +139,13 @@ fn grown(flights: &[Flight], onset_std: f64) -> Option<&Flight> {
     flights.windows(2).find(grows).map(|pair| &pair[1])
 }
 
-/// Quantile of Student's t beyond which one is none of the others.
+/// One-sided probability of the quantile of Student's distribution beyond which a flight is an outlier, or a
+/// change of R is real: by chance one of 1000 passes, on either side together.
 const OUTSIDE: f64 = 0.9995;
 
 /// R of the first and the last bounce by the straight line through ln R of each, where it rises or falls
-/// beyond chance, from four on. Noise of the onsets makes neighbouring R
-/// differ, and the slope seem less sure than it is.
+/// beyond chance; needs four values of R. Noise of the onsets makes neighbouring R differ, so the slope
+/// seems less certain than it is.
 fn changing(flights: &[Flight]) -> Option<[f64; 2]> {
     let ratio = |pair: &[Flight]| {
         let places = (pair[1].place - pair[0].place) as f64;
@@ -162,12 +162,13 @@ fn changing(flights: &[Flight]) -> Option<[f64; 2]> {
     let std = (sum(&|x, y| (y - slope * x).powi(2)) / free as f64 / sxx).sqrt();
     let line = |at: f64| (y + slope * (at - x)).exp();
     let ends = [points.first()?.0, points.last()?.0].map(line);
-    // What does not show in the third digit is rounding of what was typed.
+    // A change of R below 1 % may be the rounding of typed values.
     (slope.abs() > quantile * std && (ends[1] / ends[0]).ln().abs() > 1e-2).then_some(ends)
 }
 
-/// How far the flight `one` is from what the `others` expect, in parts of the quantile, and that logarithm:
-/// by the straight line through the logarithms, where the variance of a logarithm goes as Δt to −`power`.
+/// Residual of the flight `one` from the straight line through the logarithms of the `others`, over the
+/// quantile of Student's distribution, and the logarithm expected. The variance of a logarithm goes as Δt to
+/// −`power`.
 fn off(one: &Flight, others: &[Flight], power: f64) -> Option<(f64, f64)> {
     let free = others.len().checked_sub(2).filter(|free| *free > 1)?;
     let weight = |log: f64| (power * log).exp();
@@ -187,9 +188,9 @@ fn off(one: &Flight, others: &[Flight], power: f64) -> Option<(f64, f64)> {
     Some((score / student_at(OUTSIDE, free), expected))
 }
 
-/// The flight that fits the others worst, where it is an outlier, and the time that they expect of it: one
-/// whether R scatters, which makes the variances of logarithms alike, or the onsets do, which makes them go
-/// as 1/Δt².
+/// The worst outlier among flights, and the time in s that the others expect of it. It must be an outlier
+/// both if R scatters, which makes the variances of logarithms equal, and if the onsets do, which makes them
+/// go as 1/Δt².
 fn worst(flights: &[Flight]) -> Option<(usize, f64)> {
     let scored = |i: usize| {
         let mut others = flights.to_vec();

@@ -1,27 +1,28 @@
-//! The most plausible train of bounces among sounds, and what else the sounds may be.
+//! The most plausible train of bounces among sounds, and other explanations of the sounds.
 
 use super::pairs::{BestTrain, FallRecord, LARGEST, ODDS, Pairs, Rival, SHADOW};
 use crate::impacts::{QUIETER, Sound};
 
-/// Sounds that are looked at: the loudest. Trains take the square of their number.
+/// Most sounds that are used, the loudest: the effort for trains grows as the square of their number.
 const MOST: usize = 128;
-/// Even trains beside which bounces are sought: a record of more is one of a voice or a machine.
+/// Most even trains that are removed in the search for bounces: a record with more is one of a voice or a
+/// machine.
 const EVEN: usize = 4;
-/// Foreign sounds of a record in which none is heard: one in five has a hand, a latch or a voice.
+/// Foreign sounds expected beyond those counted: one record in five has a hand, a latch or a voice.
 const UNHEARD: f64 = 0.2;
 
 /// The most plausible train of bounces.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Plausible {
-    /// Its impacts, as places in the sounds.
+    /// Its impacts, as indices of the sounds.
     pub impacts: Vec<usize>,
-    /// What else is as plausible.
+    /// Another explanation that is as plausible.
     pub rival: Option<Rival>,
-    /// When the next impact is expected, in s, where it would stand out and the record goes on.
+    /// Time in s of the next impact, where it should be heard and the record goes on.
     pub expected: Option<f64>,
-    /// Sounds that are echoes or ringing of its impacts.
+    /// Number of sounds that are echoes or ringing of its impacts.
     pub echoes: usize,
-    /// Sounds that are surely the release, one fall before the first impact, and what echoes it.
+    /// Number of sounds that are surely the release, one fall before the first impact, or its echoes.
     pub release: usize,
     /// Whether its intervals do not shrink, as those of ringing, of a voice or of a machine.
     pub even: bool,
@@ -33,12 +34,12 @@ pub fn plausible(sounds: &[Sound], heard: FallRecord) -> Option<Plausible> {
     order.sort_by(|a, b| sounds[*b].height.total_cmp(&sounds[*a].height));
     order.truncate(MOST);
     order.sort_unstable();
-    // What follows evenly is a voice, a machine or ringing: bounces are sought among the rest.
+    // Sounds at even intervals are a voice, a machine or ringing: bounces are sought among the rest.
     let mut even = None;
     for _ in 0..EVEN {
         let own: Vec<Sound> = order.iter().map(|i| sounds[*i]).collect();
         let Some(found) = best(&own, heard) else { break };
-        // The grid of R ends, and trains may lie between its lines.
+        // The intervals are checked, too: the grid of R ends, and trains may lie between its points.
         let evenly = found.log_r.max(shrinks(&own, &found.train)) > LARGEST.ln();
         let train = Plausible {
             impacts: found.train.iter().map(|i| order[*i]).collect(),
@@ -60,8 +61,7 @@ pub fn plausible(sounds: &[Sound], heard: FallRecord) -> Option<Plausible> {
     even
 }
 
-/// Logarithm of the ratio by which the intervals of a train shrink from one to the next, of four impacts or
-/// more.
+/// Mean logarithm of the ratio of successive intervals of a train of four impacts or more; −∞ for fewer.
 fn shrinks(sounds: &[Sound], train: &[usize]) -> f64 {
     let interval = |pair: &[usize]| sounds[pair[1]].time - sounds[pair[0]].time;
     match train {
@@ -73,8 +73,8 @@ fn shrinks(sounds: &[Sound], train: &[usize]) -> f64 {
     }
 }
 
-/// The best train; foreign sounds are at first all that are no echoes of louder ones, then those that no
-/// impact of the train explains.
+/// The best train, in two passes. Foreign sounds are first all that are no echoes of louder ones, then those
+/// that no impact of the first train explains.
 fn best(sounds: &[Sound], heard: FallRecord) -> Option<BestTrain> {
     let length = heard.ends.1 - heard.ends.0;
     let of = |count: usize| Pairs::new(sounds, heard, (count as f64 + UNHEARD) / length).best();
@@ -99,7 +99,7 @@ mod tests {
     use super::super::pairs::{LOWEST, STEP};
     use super::*;
 
-    /// Three bounces of R 0.8 from 0.5 m, and behind them the pitch of a voice, 7.7 ms apart, whose intervals
+    /// Three bounces of R 0.8 from 0.5 m, and after them the pitch of a voice, 7.7 ms apart, whose intervals
     /// shrink by 0.2 % each.
     #[test]
     fn a_voice_is_no_train_whatever_its_intervals_do() {
@@ -112,15 +112,15 @@ mod tests {
         }
         let heard = FallRecord { reach: 0.01, median: 0.9, ends: (0.0, 4.0), full: None, pause: None };
         let voice = sounds[3..].to_vec();
-        // Its pulses hold trains, and each of them has a rival.
+        // The pulses of the voice contain trains, and each of them has a rival.
         let refused = |train: Plausible| train.even || train.rival.is_some() || train.impacts.len() == 2;
         assert!(plausible(&voice, heard).is_none_or(refused));
         let found = plausible(&sounds, heard).unwrap();
         assert_eq!(found.impacts, [0, 1, 2], "{found:?}");
     }
 
-    /// A voice that falls: 24 sounds whose intervals shrink from 9 ms by 0.96 each, as behind a fall of a
-    /// tenth of a millimetre.
+    /// A voice of falling pitch: 24 sounds whose intervals shrink from 9 ms by 0.96 each, as after a fall of
+    /// 0.1 mm.
     #[test]
     fn no_ball_falls_from_a_tenth_of_a_millimetre() {
         let mut sounds = vec![Sound { time: 1.0, height: 1.0 }];
@@ -135,11 +135,12 @@ mod tests {
             flights[0] >= LOWEST * (flights[flights.len() - 1] / flights[0]).min(0.9)
         };
         assert!(plausible(&sounds, heard).is_none_or(|train| train.even || of_ball(&train)));
-        // A record of a dozen that begins within a train.
+        // A record of twelve sounds may begin within a train.
         assert_eq!(plausible(&sounds[..12], heard).unwrap().impacts.len(), 12);
     }
 
-    /// A fall of 0.3 s whose release is heard, an impact at 1 s, and others by time and height.
+    /// Sounds of a fall of 0.3 s: the release with this height, an impact at 1 s, and others by time in s
+    /// and height.
     fn fall(release: f64, others: &[(f64, f64)]) -> (Vec<Sound>, FallRecord) {
         let all = [(0.7, release), (1.0, 1.0)].into_iter().chain(others.iter().copied());
         let sounds = all.map(|(time, height)| Sound { time, height }).collect();
@@ -149,11 +150,12 @@ mod tests {
 
     #[test]
     fn a_release_is_no_impact_though_the_fall_is_half_a_full_flight() {
-        // R 0.25: the fall and the first flight shrink by one half, as the height says of R, too.
+        // R 0.25, but the fall looks like a flight of R 0.5: it is half of the full flight, and the first
+        // flight half of it.
         let (sounds, heard) = fall(0.2, &[(1.15, 0.25), (1.1875, 0.06)]);
         let found = plausible(&sounds, heard).unwrap();
         assert_eq!((&found.impacts[..], found.rival, found.release), (&[1, 2, 3][..], None, 1), "{found:?}");
-        // Of a body that does not bounce only the release and the impact are heard.
+        // With a body that does not bounce only the release and the impact are heard.
         let (sounds, heard) = fall(0.2, &[]);
         assert_eq!(plausible(&sounds, heard).unwrap().rival, Some(Rival::Fall(0, 1)));
         // A body of R 0.5 has a third impact, and more.
@@ -166,11 +168,11 @@ mod tests {
     #[test]
     fn the_next_impact_is_expected_where_it_would_stand_out() {
         let (sounds, heard) = fall(0.2, &[(1.36, 0.6)]);
-        // R 0.6: the third comes 0.36 · 0.6 s behind the second, and has 0.36 of the height.
+        // R 0.6: the third impact comes 0.36 · 0.6 s after the second, and has 0.36 of the height.
         let found = plausible(&sounds, heard).unwrap();
         let expected = found.expected.unwrap();
         assert!((expected - 1.576).abs() < STEP * 0.216, "{expected}");
-        // Where the record ends before, and where it would drown in noise, it is not.
+        // No impact is expected where the record ends before it, or where noise would hide it.
         let short = FallRecord { ends: (0.0, 1.5), ..heard };
         assert_eq!(plausible(&sounds, short).unwrap().expected, None);
         assert_eq!(plausible(&sounds, FallRecord { reach: 0.15, ..heard }).unwrap().expected, None);

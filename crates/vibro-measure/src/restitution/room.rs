@@ -1,7 +1,7 @@
-//! What a microphone records of a body that bounces in a room: contact noise, ringing of the plate, echoes,
-//! reverberation, mains hum, a voice.
+//! Simulated records of a microphone near a body that bounces in a room: contact noise, ringing of the
+//! plate, echoes, reverberation, mains hum, a voice.
 //!
-//! Written from acoustics alone: it knows nothing of the estimators.
+//! Written from acoustics alone, independent of the estimators.
 
 use std::f64::consts::TAU;
 use vibro_math::Noise;
@@ -11,12 +11,12 @@ pub const RATE: f64 = 24_000.0;
 /// Standard acceleration of free fall in m/s².
 const GRAVITY: f64 = 9.806_65;
 
-/// How hard a room is to listen in.
+/// How difficult the records of a room are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Room {
-    /// Echoes to 25 %, a quiet voice in a tenth of the series.
+    /// Echoes up to 25 %, a quiet voice in one record of ten.
     Ordinary,
-    /// Echoes to 50 %, a voice in four of ten series, up to as loud as the impacts.
+    /// Echoes up to 50 %, a voice in four records of ten, up to as loud as the impacts.
     Hard,
     /// As an ordinary room; bodies that hardly bounce, and the sound of the release in half of the drops.
     Dull,
@@ -35,14 +35,15 @@ pub struct Drops {
     pub records: Vec<Vec<f64>>,
 }
 
-/// What a series shares: the sound of an impact and the room.
+/// What the records of a series share: the sound of an impact and the room.
 struct Sound {
-    /// Decay time of the contact noise, and frequency, decay time and part of the plate's ringing.
+    /// Decay time of the contact noise in s; then frequency in Hz, decay time in s and relative amplitude of
+    /// the plate's ringing.
     noise: f64,
     ring: (f64, f64, f64),
-    /// Delay in s and part of each echo.
+    /// Delay in s and relative amplitude of each echo.
     echoes: Vec<(f64, f64)>,
-    /// Decay time in s and part of the reverberation.
+    /// Decay time in s and relative amplitude of the reverberation.
     tail: (f64, f64),
 }
 
@@ -122,8 +123,8 @@ impl Room {
 }
 
 impl Sound {
-    /// Adds an impact of this part of the first one's speed. Pressure grows as the speed to the power 1.1 and
-    /// scatters by a sixth.
+    /// Adds an impact at the time `at` in s, with `speed` over that of the first one. Pressure grows as the
+    /// speed to the power 1.1 and scatters by a sixth.
     fn strike(&self, noise: &mut Noise, values: &mut [f64], at: f64, speed: f64) {
         let loud = speed.powf(1.1) * (noise.normal() / 6.0).exp();
         let lasts = (12.0 * self.noise.max(self.ring.1).max(self.tail.0 / 3.0)).min(0.5);

@@ -28,7 +28,7 @@ fn answer(drops: &Drops) -> Option<Restitution> {
 #[ignore = "Monte Carlo: cargo test --release -- --ignored"]
 fn drops_in_rooms_are_covered_or_refused() {
     let cases = 24;
-    // Bodies that hardly bounce show few impacts: four of five series are answered.
+    // Bodies that hardly bounce, in the dull room, show few impacts: four of five series are answered.
     for (room, part) in [(Room::Ordinary, 0.97), (Room::Hard, 0.97), (Room::Dull, 0.8)] {
         let score = |seed: u64| {
             let drops = room.drops(seed);

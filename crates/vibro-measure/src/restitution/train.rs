@@ -1,4 +1,4 @@
-//! A train of bounces as it is heard: which of the sounds of a record are the bounces of one falling body.
+//! Trains of bounces in a record: which of its sounds are the impacts of one falling body.
 
 use super::pairs::{FallRecord, LEAST, Rival, SHADOW};
 use super::plausible::{Plausible, plausible};
@@ -16,21 +16,22 @@ pub struct Train {
     pub intervals: Vec<f64>,
     /// Standard uncertainty of one impact's time, in s, where it is known.
     pub onset_std: Option<f64>,
-    /// How long an impact lasts, in s, where the record shows it.
+    /// Contact time of an impact in s, where the record shows it.
     pub contact: Option<Estimate>,
-    /// Relative standard uncertainty of the sampling rate: all intervals are longer or shorter by it.
+    /// Relative standard uncertainty of the sampling rate, which all intervals share.
     pub clock: f64,
 }
 
 impl Train {
-    /// Lowest bounce as a part of the median one.
+    /// Height of the lowest bounce that counts, over the median one.
     pub const THRESHOLD: f64 = 0.02;
 
-    /// Code of a refusal: there are sounds of bounces, and they do not tell which are those of one body.
+    /// Code of a refusal: the record has sounds of bounces, but does not determine which are those of one
+    /// body.
     pub const UNTOLD: &str = "bounces-untold";
 
-    /// The bounces of a falling body, with its impacts: the most plausible train among what is heard. `full`
-    /// is the flight in s that would follow the fall if R were 1, where the height is known.
+    /// The bounces of a falling body, with its impacts: the most plausible train among the sounds. `full` is
+    /// the flight in s that would follow the fall if R were 1, where the height is known.
     ///
     /// # Errors
     /// As those of [`crate::impacts::impacts`]; also where no train of two impacts is more plausible than all
@@ -43,7 +44,7 @@ impl Train {
         })
     }
 
-    /// As [`Train::of`], without advice; what does not tell which sounds are bounces is left in `untold`.
+    /// As [`Train::of`], without advice; sounds that do not determine the bounces are left in `untold`.
     pub(super) fn among(
         trace: &Trace,
         options: &ImpactsOptions,
@@ -52,14 +53,15 @@ impl Train {
     ) -> Result<(Train, Detected)> {
         let (start, rate) = (trace.axis.start(), trace.sampling_rate()?);
         let ends = (start, start + trace.values.len() as f64 / rate);
-        // A record that rings is refused before anything is chosen.
+        // Stays at its largest value where the record is refused before anything is chosen, as one that
+        // rings.
         let heard = Cell::new(usize::MAX);
         let choose = |sounds: &[Sound], reach: f64, median: f64| {
             heard.set(sounds.len());
             choose(sounds, FallRecord { reach, median, ends, full, pause: options.refractory }, untold)
         };
         let mut found = detect_among(trace, options, Some(&choose));
-        // Below the impacts may lie hum or slow levels that hide them.
+        // Hum or slow levels at low frequency may hide the impacts.
         if found.is_err() && heard.get() < 2 && options.band.is_none() {
             found = found.or_else(|error| above_hum(trace, options, &choose).ok_or(error));
         }
@@ -75,11 +77,11 @@ impl Train {
     }
 }
 
-/// Sounds among which a train is sought above a corner: in a band of steady noise sounds have no end.
+/// Most sounds above a corner among which a train is sought: in a band of steady noise sounds have no end.
 const FEW: usize = 32;
 
-/// The train of three impacts or more above the corner that shows most of them, the highest of these: it
-/// times them best.
+/// The train of three impacts or more above a high-pass corner. It is from the corner that shows most
+/// impacts; of equal ones from the highest, which times them best.
 fn above_hum(trace: &Trace, options: &ImpactsOptions, choose: Choose<'_>) -> Option<Detected> {
     let octaves: Vec<(f64, f64)> = octaves(trace.sampling_rate().ok()?).collect();
     let high = octaves.first()?.1;
@@ -101,7 +103,7 @@ fn above_hum(trace: &Trace, options: &ImpactsOptions, choose: Choose<'_>) -> Opt
     octaves.into_iter().rev().filter_map(above).max_by_key(|found| found.times.len())
 }
 
-/// The impacts among sounds, and what the others are.
+/// The impacts among sounds, and findings on the other sounds.
 fn choose(
     sounds: &[Sound],
     heard: FallRecord,
@@ -121,7 +123,7 @@ fn choose(
     if train.even {
         let n = train.impacts.len();
         let why = format!("{n} sounds follow each other evenly: the flights of bounces shrink");
-        // Who states a height has a fall, and a voice over it.
+        // A stated height means that there was a fall, with a voice over it.
         if heard.full.is_some() {
             return refused(why, &train);
         }
@@ -181,8 +183,8 @@ fn choose(
     Ok((train.impacts, findings.into_iter().flatten().collect()))
 }
 
-/// Why a train of one `flight` in s is not told, with so many `foreign` sounds beside it: more impacts than
-/// two show by themselves that they are those of one fall.
+/// Why a train of one `flight` in s is not certain, with `foreign` other sounds in the record. `None` for
+/// more than two impacts, which confirm each other, or where no third is expected.
 fn unconfirmed(train: &Plausible, foreign: usize, flight: f64) -> Option<String> {
     if train.impacts.len() > 2 {
         return None;
@@ -202,7 +204,7 @@ fn unconfirmed(train: &Plausible, foreign: usize, flight: f64) -> Option<String>
     Some(format!("two impacts, and the third, expected at {expected}, is not heard"))
 }
 
-/// Two times in s with as many digits, three at least, as show that they differ.
+/// Two times in s with as many digits as show that they differ, three at least.
 pub(super) fn apart(times: [f64; 2]) -> [String; 2] {
     let shown = |digits| times.map(|time| quantity(time, "s", digits));
     (3..9).map(shown).find(|[a, b]| a != b).unwrap_or_else(|| shown(3))

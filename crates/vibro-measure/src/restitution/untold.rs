@@ -1,5 +1,5 @@
-//! What to try where sounds do not tell which of them are the bounces of one body: each advice is tried
-//! before it is given.
+//! Advice where the sounds do not determine which are the bounces of one body. Each advice is tried before
+//! it is given.
 
 use super::pairs::{FallRecord, Rival, SHADOW};
 use super::plausible::{Plausible, alone, plausible};
@@ -8,21 +8,22 @@ use crate::impacts::{ImpactsOptions, Sound};
 use std::cell::RefCell;
 use vibro_record::{Error, Trace};
 
-/// A part of the record leaves out fewer sounds before a fall than these.
+/// The part of the record that is advised leaves out fewer sounds than this before a fall.
 const CLAPS: usize = 4;
 
-/// Difference of first flights, as a part of them, that is none: a train with the echo of its first impact in
-/// place of it.
+/// Relative difference of first flights below which two trains are the same, one with the echo of the first
+/// impact in place of that impact.
 const SAME: f64 = 0.05;
 
-/// Sounds among which a threshold is sought: what is as quiet as so many others is no bounce that stands out.
+/// A threshold that leaves this many sounds or more is not advised: a sound as quiet as many others is no
+/// clear bounce.
 const FEW: usize = 32;
 
-/// What a record was read with: its trace, the options, and the flight in s that would follow the fall if R
-/// were 1.
+/// Arguments of a reading: the trace, the options, and the flight in s that would follow the fall if R were
+/// 1.
 type Read<'a> = (&'a Trace, &'a ImpactsOptions, Option<f64>);
 
-/// Sounds of a fall that do not tell which are the bounces.
+/// Sounds of a fall that do not determine the bounces.
 pub(super) struct Untold {
     pub sounds: Vec<Sound>,
     pub heard: FallRecord,
@@ -31,7 +32,7 @@ pub(super) struct Untold {
 }
 
 impl Untold {
-    /// The refusal with the first advice that was tried and tells the bounces.
+    /// Adds to a refusal the first advice that finds the bounces when tried.
     pub fn advise(&self, refused: Error, read: Read<'_>) -> Error {
         if let Some(threshold) = self.threshold(read) {
             return refused
@@ -63,8 +64,8 @@ impl Untold {
         }
     }
 
-    /// Whether the record, so read, tells its bounces: three impacts, or two where the height is known,
-    /// which holds their flight to be that of a bounce.
+    /// Whether this reading finds the bounces: three impacts, or two where the height is known, which
+    /// confirms that their flight is that of a bounce.
     fn is_told(&self, read: Read<'_>) -> bool {
         told(read).is_some_and(|train| train.intervals.len() + 1 >= self.enough())
     }
@@ -73,16 +74,16 @@ impl Untold {
         if self.heard.full.is_some() { 2 } else { 3 }
     }
 
-    /// As [`Untold::is_told`], by a part of the sounds alone: it costs little.
+    /// As [`Untold::is_told`] from a part of the sounds, without a new reading: it costs little.
     fn may_tell(&self, sounds: &[Sound]) -> Option<Plausible> {
         let told =
             |train: &Plausible| !train.even && train.rival.is_none() && train.impacts.len() >= self.enough();
         plausible(sounds, self.heard).filter(told)
     }
 
-    /// The lowest threshold in hundredths from which on one train of three impacts or more is left, all of
-    /// them impacts of the most plausible train of all sounds: what is found only without the quieter ones
-    /// may be an echo.
+    /// The lowest threshold, in hundredths of the median height, that leaves one train of three impacts or
+    /// more. All must be impacts of the most plausible train of all sounds: a train that appears only
+    /// without the quieter sounds may be one of echoes.
     fn threshold(&self, (trace, options, full): Read<'_>) -> Option<f64> {
         self.train.rival?;
         let known = |sound: &Sound| self.train.impacts.iter().any(|k| self.sounds[*k] == *sound);
@@ -107,8 +108,7 @@ impl Untold {
         lowest.filter(|threshold| self.is_told((trace, &with(*threshold), full)))
     }
 
-    /// A pause in s behind each impact, a half more than the delay of what follows it, that tells the
-    /// bounces.
+    /// A pause in s after each impact that finds the bounces: 1.5 times the delay of the sound that follows.
     fn pause(&self, (trace, options, full): Read<'_>) -> Option<f64> {
         let Some(Rival::Train(i, j)) = self.train.rival else { return None };
         let (a, b) = (self.train.impacts[0], self.train.impacts[1]);
@@ -121,7 +121,7 @@ impl Untold {
         self.is_told((trace, &with, full)).then_some(pause)
     }
 
-    /// The part of the record in s that ends before a third impact which is expected and not heard.
+    /// The part of the record in s that ends before a third impact which is expected but not heard.
     fn before_third(&self, (trace, options, full): Read<'_>) -> Option<(f64, f64)> {
         let (Some(expected), None, &[_, second]) =
             (self.train.expected, self.train.rival, &self.train.impacts[..])
@@ -138,8 +138,8 @@ impl Untold {
         self.is_told((&part, options, full)).then_some((from, to))
     }
 
-    /// The part of the record in s behind the first sounds that tells the bounces: three, whose R by their
-    /// flights is that by the height. What is cut off may be the first impact.
+    /// The part of the record in s after the first sounds that finds the bounces: three impacts, whose R by
+    /// flights agrees with that by the height. Otherwise the first impact may have been cut off.
     fn part(&self, (trace, options, full): Read<'_>) -> Option<(f64, f64)> {
         // What follows a sound at once is its echo, and goes with it.
         let behind = |first: &usize| {
@@ -156,12 +156,12 @@ impl Untold {
     }
 }
 
-/// The train of the record, so read, where it is told.
+/// The train that this reading of a record finds, where it does.
 fn told((trace, options, full): Read<'_>) -> Option<Train> {
     Train::among(trace, options, full, &RefCell::new(None)).ok().map(|(train, _)| train)
 }
 
-/// A time as it is typed.
+/// A time rounded to hundredths of a second, as it is typed.
 fn hundredths(time: f64) -> f64 {
     (100.0 * time).round() / 100.0
 }

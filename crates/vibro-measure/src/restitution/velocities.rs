@@ -10,13 +10,13 @@ use vibro_record::{Error, Result};
 pub struct Velocities {
     /// Before the impact: mass 1 and 2.
     pub before: (f64, f64),
-    /// Of mass 1 after the impact.
+    /// Velocity of mass 1 after the impact.
     pub after1: Option<f64>,
-    /// Of mass 2 after the impact.
+    /// Velocity of mass 2 after the impact.
     pub after2: Option<f64>,
     /// Masses in kg.
     pub masses: Option<(f64, f64)>,
-    /// Standard uncertainty of each velocity.
+    /// Standard uncertainty of each velocity in m/s.
     pub std: Option<f64>,
 }
 
@@ -58,7 +58,8 @@ impl Velocities {
             let r = by.iter().zip(known).map(|(b, v)| b * v).sum::<f64>() / approach;
             let slopes = [by[0] - r, by[1] + r, by[2], by[3]].map(|d| d / approach);
             let std = self.std.map(|u| u * slopes.iter().map(|d| d * d).sum::<f64>().sqrt());
-            // Beyond twice its uncertainty it is no restitution; roundings of equal numbers are no velocity.
+            // R beyond 0 to 1 by more than twice its uncertainty is refused, but not for the rounding of
+            // equal numbers.
             if (-r).max(r - 1.0) > std.map_or(0.0, |u| 2.0 * u).max(1e-12) {
                 let why = format!("R = {r:.4} by the {method}: outside 0 to 1");
                 let hint =

@@ -1,4 +1,4 @@
-//! How a spectrum or a frequency response function is taken.
+//! Options of spectra and frequency response functions.
 
 use serde::Deserialize;
 use vibro_record::{Error, Result, Scaling, Window};
@@ -15,18 +15,18 @@ pub enum Method {
     Welch,
 }
 
-/// What is left open takes its default.
+/// Options of a spectrum or a frequency response function; options not stated take their defaults.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct SpectralOptions {
-    /// Default: Welch; one transform where tones are wanted.
+    /// Method. Default: Welch; one transform where tones are wanted.
     pub method: Option<Method>,
     /// Samples of a segment. Default: 8192, or the whole of a shorter record.
     pub segment: Option<usize>,
-    /// Part of a segment that it shares with the next. Default: 0.5.
+    /// Overlap of segments, over their length. Default: 0.5.
     pub overlap: Option<f64>,
-    /// Whether the mean is taken out. Default: of segments, and where integrated.
+    /// Whether the mean is subtracted. Default: from segments, and where integrated.
     pub detrend: Option<bool>,
-    /// Default: Hann.
+    /// Window. Default: Hann.
     pub window: Option<Window>,
     /// Peak, RMS, power or density. Default: peak.
     pub scaling: Option<Scaling>,
@@ -34,47 +34,49 @@ pub struct SpectralOptions {
     pub integrate: i8,
     /// Lowest frequency in Hz. Default: two lines where integrated, else 0.
     pub fmin: Option<f64>,
-    /// The function from the first channel to the second, by this estimator; `None` for a spectrum.
+    /// Estimator of the frequency response function from the first channel to the second; `None` for a
+    /// spectrum.
     pub estimator: Option<Estimator>,
     /// Whether the first channel is the force of a hammer: one record of `segment` samples a blow.
     pub hammer: bool,
     /// Width of the force window in s.
     pub force_window: Option<f64>,
-    /// What an exponential window leaves of the response at the end of a record.
+    /// Value of the exponential window on the response at the end of a record.
     pub left_at_end: Option<f64>,
-    /// Time in s by which the response was recorded late, as the decoder of a vibrometer does: its phase is
+    /// Time in s by which the response was recorded late, as by the decoder of a vibrometer: its phase is
     /// corrected.
     pub delay: Option<f64>,
     /// Reference of levels in decibels, in the unit of the trace (of the function, with a reference
     /// channel).
     pub decibel: Option<f64>,
-    /// Sines to be fitted to the whole record, 1 to 10.
+    /// Number of sines to fit to the whole record, 1 to 10.
     pub tones: Option<usize>,
 }
 
 impl SpectralOptions {
-    /// The method that is meant.
+    /// The method, stated or by default.
     pub fn method(&self) -> Method {
         self.method.unwrap_or(if self.tones.is_some() { Method::Fft } else { Method::Welch })
     }
 
-    /// The window that is meant.
+    /// The window, stated or by default.
     pub(super) fn window(&self) -> Window {
         self.window.unwrap_or(Window::Hann)
     }
 
-    /// Whether the mean is taken out: that of segments, and what would be divided by nothing, unless told
-    /// otherwise.
+    /// Whether the mean is subtracted. By default it is from segments, and where integration would divide it
+    /// by 0 Hz.
     pub(super) fn detrended(&self) -> bool {
         self.detrend.unwrap_or(self.method() == Method::Welch || self.integrate > 0)
     }
 
-    /// The lowest frequency: two lines where an integral divides noise by the frequency.
+    /// Lowest frequency in Hz for lines `step` apart. By default two lines where integrated, since
+    /// integration divides noise by the frequency.
     pub(super) fn lowest(&self, step: f64) -> f64 {
         self.fmin.unwrap_or(if self.integrate > 0 { 2.0 * step } else { 0.0 })
     }
 
-    /// Names of what is given that may contradict another option.
+    /// Names of the options given that may contradict another one.
     fn given(&self) -> impl Iterator<Item = &'static str> {
         let all = [
             ("method", self.method.is_some()),
@@ -94,7 +96,7 @@ impl SpectralOptions {
         all.into_iter().filter(|(_, given)| *given).map(|(name, _)| name)
     }
 
-    /// The first of these that is given.
+    /// Name of the first option given that may contradict another one.
     pub fn first(&self) -> Option<&'static str> {
         self.given().next()
     }
@@ -102,7 +104,7 @@ impl SpectralOptions {
     /// Checks that no option contradicts another.
     ///
     /// # Errors
-    /// It names the two that do.
+    /// Names the option, and what it contradicts or which values are possible.
     pub fn check(&self) -> Result<()> {
         let (tones, function) = (self.tones.is_some(), self.estimator.is_some());
         let whole = "the whole record of one channel as it is";

@@ -1,4 +1,4 @@
-//! What a spectrum or a frequency response function says.
+//! Results of a spectrum or a frequency response function.
 
 use super::SpectralOptions;
 use crate::tones::Tone;
@@ -9,7 +9,8 @@ use vibro_record::{Axis, Finding, Frf, Grid, Meta, Record, Scaling, Spectrum, Va
 use vibro_signal::impact::Blow;
 use vibro_signal::transfer::{Estimator, Transfer};
 
-/// Lines, and what they mean. Magnitudes of a frequency response function where there is a reference.
+/// Lines of a spectrum, or with a reference channel magnitudes of a frequency response function; and their
+/// meaning.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct SpectralResult {
     /// Name of the channel, or of both.
@@ -18,39 +19,39 @@ pub struct SpectralResult {
     pub frequency: Vec<f64>,
     /// Values in `unit`; NaN (null in JSON) where there are none.
     pub value: Vec<f64>,
-    /// Their standard deviations; NaN where not known.
+    /// Their standard uncertainties; NaN where not known.
     pub value_std: Vec<f64>,
-    /// What a line means.
+    /// Scaling of the lines by name; `frf` for functions.
     pub scaling: &'static str,
-    /// Unit.
+    /// Unit of the values.
     pub unit: String,
-    /// Quantity.
+    /// Quantity of the values.
     pub quantity: &'static str,
     /// Levels in `level_unit`; empty where no reference was given.
     pub level: Vec<f64>,
     /// `dB re` the reference.
     pub level_unit: Option<String>,
-    /// Window.
+    /// Window, by name.
     pub window: &'static str,
     /// Equivalent noise bandwidth in lines.
     pub enbw: f64,
-    /// What was taken out first.
+    /// What was subtracted before the transform.
     pub detrend: &'static str,
-    /// Segments or blows.
+    /// Number of segments or blows averaged.
     pub averages: usize,
-    /// What a function has beside its magnitude.
+    /// What a function has beside its magnitude, such as phase and coherence.
     #[serde(flatten)]
     pub response: Option<FrfDetails>,
     /// Sines fitted to the whole record, the strongest first; empty where none were asked for.
     pub tones: Vec<Tone>,
     /// Probability that noise alone shows a peak or a tone; null for functions.
     pub false_alarms: Option<f64>,
-    /// Whether each line is a peak that stands out of the noise; empty for functions.
+    /// Whether each line is a peak above the noise; empty for functions.
     #[serde(skip)]
     pub clear: Vec<bool>,
-    /// What was left out, and what limits the lines.
+    /// Findings: what was left out, and what limits the lines.
     pub findings: Vec<Finding>,
-    /// The lines as they were found.
+    /// The lines as a spectrum or function.
     #[serde(skip)]
     pub found: Lines,
 }
@@ -58,20 +59,20 @@ pub struct SpectralResult {
 /// Lines of one channel or of two.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Lines {
-    /// Of one.
+    /// Of one channel.
     Spectrum(Spectrum),
-    /// Of one over the other.
+    /// Of one channel over the other.
     Transfer(Transfer),
 }
 
-/// What a frequency response function has beside its magnitude.
+/// Phase, coherence and blows of a frequency response function.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct FrfDetails {
     /// `h1`, `h2` or `hv`.
     pub estimator: &'static str,
-    /// Degrees.
+    /// Phase in degrees.
     pub phase: Vec<f64>,
-    /// Degrees.
+    /// Its standard uncertainty in degrees.
     pub phase_std: Vec<f64>,
     /// Coherence γ²; null for one blow alone.
     pub coherence: Option<Vec<f64>>,
@@ -144,8 +145,8 @@ impl SpectralResult {
         });
     }
 
-    /// Spectrum, or function and coherence, without the lines that have no value: files have no word for
-    /// them.
+    /// Spectrum, or function and coherence, as records for a file. Lines without a value are left out, since
+    /// files cannot state them.
     pub fn records(&self) -> Vec<Record> {
         let known = |spectrum: Spectrum| {
             let (axis, kept) = finite(&spectrum.axis, |k| spectrum.values.magnitude(k).is_finite());
@@ -185,8 +186,7 @@ impl SpectralResult {
         height > self.height(k.wrapping_sub(1)) && height >= self.height(k + 1)
     }
 
-    /// Indices of the largest peaks, at most so many, in order of frequency; of a spectrum those that stand
-    /// out of the noise.
+    /// Indices of at most `most` largest peaks, in order of frequency; of a spectrum those above the noise.
     pub fn peaks(&self, most: usize) -> Vec<usize> {
         let listed = |k: &usize| self.clear.get(*k).copied().unwrap_or_else(|| self.is_peak(*k));
         let mut largest: Vec<usize> = (0..self.value.len()).filter(listed).collect();
@@ -197,7 +197,7 @@ impl SpectralResult {
     }
 }
 
-/// Lines with a value, evenly spaced where none is missing between them, and their places.
+/// Axis of the lines with a value, evenly spaced where none is missing between them, and their indices.
 fn finite(axis: &Axis, is_finite: impl Fn(usize) -> bool) -> (Axis, Vec<usize>) {
     let kept: Vec<usize> = (0..axis.len()).filter(|k| is_finite(*k)).collect();
     let [first, last] = [kept.first(), kept.last()].map(|k| k.copied().unwrap_or(0));

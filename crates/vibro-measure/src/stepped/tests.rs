@@ -9,15 +9,15 @@ const OWN: f64 = 30.0;
 const ZETA: f64 = 0.02;
 const MASS: f64 = 0.5;
 
-/// Receptance of the oscillator.
+/// Receptance of the oscillator in m/N.
 fn receptance(frequency: f64) -> Complex64 {
     let (omega, own) = (TAU * frequency, TAU * OWN);
     1.0 / (MASS * Complex64::new(own * own - omega * omega, 2.0 * ZETA * own * omega))
 }
 
-/// A step at `frequency` of `seconds` at 2000 Hz, the oscillator starting with its steady motion and a
-/// transient of the part `transient` of it; noise of the part `noise` of both amplitudes. The response is its
-/// velocity.
+/// A step of `seconds` at `frequency` in Hz, sampled at 2000 Hz. The oscillator starts with its steady
+/// motion and a transient of `transient` times its amplitude; `noise` is relative to both amplitudes. The
+/// response is its velocity.
 fn step(frequency: f64, seconds: f64, transient: f64, noise: (f64, &mut Noise)) -> StepTraces {
     let rate = 2000.0;
     let n = (seconds * rate) as usize;
@@ -79,8 +79,8 @@ fn response_of(steps: &[StepTraces]) -> Response {
     stepped(named(), read(steps), &ResponseOptions::default()).unwrap().1
 }
 
-/// Draws of steps in noise; how many amplitudes, phases and real parts lie within 1.96 of their standard
-/// uncertainties, of how many, and the worst in them.
+/// Number of amplitudes, phases and real parts of steps in noise that lie within 1.96 standard
+/// uncertainties, how many there are, and the largest error in standard uncertainties.
 fn counted(draws: u64) -> ([usize; 3], usize, f64) {
     let (mut held, mut all, mut worst) = ([0; 3], 0, 0.0_f64);
     for seed in 0..draws {
@@ -130,7 +130,7 @@ fn a_transient_is_left_out_and_what_has_not_settled_is_doubted() {
     let point = &found.points[0];
     let error = (point.amplitude.value / (3.0 * receptance(25.0).norm()) - 1.0).abs();
     assert!(error < 2e-3 && point.amplitude.std.is_some(), "{error}");
-    // Steps as short as the transient: their scatter holds it, or it is named.
+    // Steps as short as the transient: their scatter covers it, or a finding names it.
     let mut doubted = 0;
     for tenths in 4..16 {
         let found = response_of(&[step(29.0, 0.1 * f64::from(tenths), 3.0, (1e-4, &mut noise))]);
@@ -170,7 +170,8 @@ fn steps_that_do_not_go_together_are_refused() {
     assert!(stepped(named(), read(&[one]), &how).unwrap_err().to_string().contains("sampled together"));
 }
 
-/// A step with the shaker off and a file that was not read: the others have the numbers that they have alone.
+/// A step with the shaker off and a file that was not read: the other steps keep the values that they have
+/// alone.
 #[test]
 fn a_step_without_an_answer_is_left_out_and_named() {
     let mut noise = Noise::new(4);
@@ -198,7 +199,7 @@ fn a_step_without_an_answer_is_left_out_and_named() {
         named_there[1].fact("why"),
         Some(&vibro_record::Fact::Name("line 5: \"x\"; expected a number".into()))
     );
-    // Nothing is left: the first step's reason, with its name.
+    // No step is left: the error is the first step's, with its name.
     let none =
         ["a.csv", "b.csv"].map(|name| (PathBuf::from(name), Err(Error::refused(format!("no {name}")))));
     assert_eq!(stepped(named(), none.into(), &how).unwrap_err().to_string(), "a.csv: no a.csv");

@@ -16,11 +16,11 @@ fn pair(noise: &mut Noise, scale: f64) -> Complex64 {
     Complex64::new(scale * noise.normal(), scale * noise.normal())
 }
 
-/// Lines of a spectrum.
+/// Number of lines of a spectrum.
 pub const LINES: usize = 161;
 
-/// Magnitudes of sines (position, complex amplitude) in white noise of `sigma` a component of a line: noise
-/// of lines without a window, then the window's weights over neighbouring lines.
+/// Magnitudes of sines (position in lines, complex amplitude) in white noise of `sigma` a component of a
+/// line: noise of lines without a window, then the window's weights over neighbouring lines.
 pub fn spectrum(window: Window, sines: &[(f64, Complex64)], sigma: f64, normal: &mut Noise) -> Vec<f64> {
     let a = window.coefficients();
     let reach = a.len() - 1;

@@ -23,7 +23,7 @@ fn a_clean_sine_is_exact_from_two_periods_on() {
 fn the_line_that_is_meant_is_fitted() {
     let two = |i: i32| (0.5 * f64::from(i)).cos() + 0.01 * (1.1 * f64::from(i)).cos();
     let found = sine(&trace((0..2000).map(two).collect()), Some(1.1e3 / TAU)).unwrap();
-    // The larger sine is what the smaller one has for noise: 1/√2 over 2000 samples.
+    // For the smaller sine the larger one is noise: 1/√2 over 2000 samples.
     assert!((found.tones[0].frequency.value - 1.1e3 / TAU).abs() < 0.1, "{:?}", found.tones[0].frequency);
     assert!((found.tones[0].amplitude.value - 0.01).abs() < 5e-3);
 }
@@ -48,8 +48,8 @@ fn another_sine_beside_is_said_and_half_the_rate_is_refused() {
     assert!(error.contains("half the sampling rate"), "{error}");
 }
 
-/// What is found of a sine of amplitude 1 with another of amplitude `size` so many lines apart, in noise;
-/// frequency and phase of the first.
+/// Result for a sine of amplitude 1 with another of amplitude `size`, `apart` lines above it, in noise of
+/// `floor`; and frequency in Hz and phase in rad of the first.
 fn beside_another(seed: u64, apart: f64, size: f64, floor: f64) -> (Tones, f64, f64) {
     let mut noise = Noise::new(seed);
     let (f, p, q) = (noise.between(50.0, 400.0), noise.between(0.0, TAU), noise.between(0.0, TAU));
@@ -60,7 +60,7 @@ fn beside_another(seed: u64, apart: f64, size: f64, floor: f64) -> (Tones, f64, 
     (sine(&trace((0..1000).map(&mut value).collect()), None).unwrap(), f, p)
 }
 
-/// A sine of half a hundredth of the amplitude 0.7 to 2 lines off is allowed for.
+/// The uncertainty covers another sine of 0.5 % of the amplitude, 0.7 to 2 lines away.
 #[test]
 fn a_small_sine_beside_is_allowed_for() {
     for apart in [0.7, 1.0, 2.0] {
@@ -84,8 +84,8 @@ fn a_small_sine_beside_is_allowed_for() {
     }
 }
 
-/// A sine of half the amplitude 5 to 40 lines off is noise to this one, and counted in its uncertainty; 1 to
-/// 2 lines off there is none.
+/// Another sine of half the amplitude counts as noise in the uncertainty where it is 5 to 40 lines away; at
+/// 1 to 2 lines no uncertainty is stated.
 #[test]
 fn what_is_stated_beside_another_sine_holds() {
     for (apart, stated) in [(1.0, 0), (2.0, 0), (5.0, 100), (16.0, 100), (40.0, 100)] {
@@ -95,7 +95,7 @@ fn what_is_stated_beside_another_sine_holds() {
             if let Some(std) = found.tones[0].frequency.std {
                 all += 1;
                 let off = (found.tones[0].frequency.value - f).abs() / std;
-                // Four standard uncertainties of 300: one of 50 cases.
+                // Of 300 values one is beyond four standard uncertainties in one of 50 cases.
                 assert!(off < 4.0, "{apart} lines apart, seed {seed}: {off}");
             }
         }
@@ -113,8 +113,7 @@ fn what_is_no_sine_is_refused() {
     assert!(short.err().unwrap().to_string().contains("periods"));
 }
 
-/// Of three sines two are asked for; what is left stands 1.5 lines beside one of them, 40 lines from the
-/// other.
+/// Two of three sines are fitted; the third lies 1.5 lines from one of them, 40 lines from the other.
 #[test]
 fn the_tone_beside_which_another_is_left_has_no_uncertainty() {
     let mut noise = Noise::new(5);
@@ -131,7 +130,7 @@ fn the_tone_beside_which_another_is_left_has_no_uncertainty() {
     let all = [&doubtful.frequency, &doubtful.amplitude, &doubtful.phase];
     assert!(all.iter().all(|e| e.std.is_none()), "{found:?}");
     assert!(found.findings.iter().any(|f| f.code == "sine-not-alone"), "{found:?}");
-    // With the third nothing is left beside any.
+    // With all three fitted, no sine is left beside any.
     let found = tones(&trace, 3).unwrap();
     assert!(found.tones.iter().all(|t| t.frequency.std.is_some()), "{found:?}");
 }
@@ -153,7 +152,7 @@ fn clean_sines_are_exact() {
     assert!(more.tones.len() == 3 && more.findings[0].code == "tones-fewer", "{:?}", more.findings);
 }
 
-/// Clipped at 80 % of its amplitude: the samples in between hold it.
+/// Clipped at 80 % of its amplitude: the samples in between determine it.
 #[test]
 fn the_amplitude_of_a_clipped_sine_is_covered() {
     let mut far = [0.0; 2];
@@ -201,13 +200,14 @@ fn uncertainties_in_pink_noise_are_those_of_the_noise_around_the_sine() {
     for line in [5.0, 20.0, 100.0, 400.0, 800.0] {
         let spread = spread_in_pink_noise(line, 150);
         println!("line {line}: {spread:.2?}");
-        // A standard deviation of 150 scatters by 6 %, four times that; near 0 Hz few lines tell the noise.
+        // A standard deviation of 150 values scatters by 6 %, four times that; near 0 Hz few lines estimate
+        // the noise.
         let least = if line < 10.0 { 0.6 } else { 0.75 };
         assert!(spread.iter().all(|s| (least..1.25).contains(s)), "{line}: {spread:?}");
     }
 }
 
-/// Sines of a record that is cut off are told from what the cut makes of them.
+/// Sines of a clipped record are distinguished from the lines that clipping adds.
 #[test]
 fn sums_of_sines_that_are_clipped_are_found() {
     let truth = [(33.5, 0.54), (122.0, 0.15), (157.2, 0.87)];
@@ -232,8 +232,8 @@ fn sums_of_sines_that_are_clipped_are_found() {
     }
 }
 
-/// A sine sampled at 200 Hz with steps that are uneven by a third, interpolated on an even grid: what that
-/// takes of its amplitude is within the stated uncertainty, which is no more than ten times as large.
+/// A sine sampled at 200 Hz with steps that are uneven by a third, interpolated on an even grid: the
+/// amplitude lost is within the stated uncertainty, which is no more than ten times as large.
 #[test]
 fn what_interpolation_takes_is_in_the_uncertainty() {
     for frequency in [5.0f64, 20.0, 35.0] {
