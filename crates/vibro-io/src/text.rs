@@ -13,6 +13,7 @@ pub(crate) mod decoded;
 mod dialect;
 pub(crate) mod encoding;
 mod fast;
+mod head_number;
 mod header;
 mod headings;
 mod lines;
@@ -23,6 +24,7 @@ mod records;
 mod row_names;
 mod rows;
 mod runs;
+mod stated_scale;
 mod stream;
 mod table;
 mod tables;
@@ -67,16 +69,22 @@ pub(crate) fn read_table(source: &Source, options: &Options, survey: bool) -> Re
         .hint("read numbers without names as the format ascii")
         .setting("format")
     };
-    with_text(source, options.limit, |text| match table::detect(text, options) {
-        _ if let Some(plain) = row_names::without(text)? => read_table(&plain, options, survey),
-        Some(dialect) if !runs::others_of(&dialect).is_empty() => read_runs(text, &dialect, options, survey),
-        Some(dialect) if let Some(joined) = two_parts::joined(text, &dialect)? => {
-            read_table(&joined, options, survey)
+    with_text(source, options.limit, |text| {
+        if let Some(plain) = row_names::without(text)? {
+            return read_table(&plain, options, survey);
         }
-        Some(dialect) => read(text, &dialect, options, survey)
-            .or_else(|why| one_table(text, options, why))
-            .or_else(|why| without_words(text, options, why)),
-        None => without_words(text, options, without_names()),
+        match table::detect(text, options) {
+            Some(dialect) if !runs::others_of(&dialect).is_empty() => {
+                read_runs(text, &dialect, options, survey)
+            }
+            Some(dialect) if let Some(joined) = two_parts::joined(text, &dialect)? => {
+                read_table(&joined, options, survey)
+            }
+            Some(dialect) => read(text, &dialect, options, survey)
+                .or_else(|why| one_table(text, options, why))
+                .or_else(|why| without_words(text, options, why)),
+            None => without_words(text, options, without_names()),
+        }
     })
 }
 
@@ -95,10 +103,14 @@ fn read_runs(text: &Text, dialect: &Dialect, options: &Options, survey: bool) ->
 }
 
 pub(crate) fn read_numbers(source: &Source, options: &Options, survey: bool) -> Result<Contents> {
-    with_text(source, options.limit, |text| match numbers::detect(text, options) {
-        _ if let Some(plain) = row_names::without(text)? => read_table(&plain, options, survey),
-        Ok(dialect) => read(text, &dialect, options, survey).or_else(|why| one_table(text, options, why)),
-        Err(why) => without_words(text, options, why),
+    with_text(source, options.limit, |text| {
+        if let Some(plain) = row_names::without(text)? {
+            return read_table(&plain, options, survey);
+        }
+        match numbers::detect(text, options) {
+            Ok(dialect) => read(text, &dialect, options, survey).or_else(|why| one_table(text, options, why)),
+            Err(why) => without_words(text, options, why),
+        }
     })
 }
 

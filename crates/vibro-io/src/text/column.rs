@@ -1,6 +1,6 @@
 //! One column of a text, and what its values tell of it.
 
-use super::names::Name;
+use super::names::{Name, label};
 use crate::assemble::kind_of;
 use crate::held::{Held, rises};
 use num_complex::Complex64;
@@ -158,7 +158,7 @@ impl Column {
     }
 
     pub fn label(&self) -> String {
-        if self.name.name.is_empty() { format!("column {}", self.at) } else { self.name.name.clone() }
+        label(&self.name.name, self.at)
     }
 }
 

@@ -1,8 +1,11 @@
 //! What header lines state: lines, base band, sampling rate, unit, window, date.
 
+use super::head_number::{
+    HERTZ, MILLIHERTZ, SECONDS, checked, doubtful_mark, other_mark, quantity, samples_a_second, scaled,
+    without_blanks,
+};
 use super::names::Name;
-use crate::number;
-use crate::options::POSSIBLE;
+use super::stated_scale::StatedScale;
 use vibro_record::Window;
 
 /// Statements of a header that are understood; the rest stays as notes.
@@ -64,23 +67,6 @@ pub struct PerhapsRate {
     pub grouped: f64,
 }
 
-/// A factor of the values, as a head states it.
-#[derive(Debug, Clone, PartialEq)]
-pub struct StatedScale {
-    /// As it is written: with its key, but for a plain scale factor.
-    pub said: String,
-    /// Whether it takes the signal of a sensor to what it measures, or is a gain of that signal: values in a
-    /// unit of motion or force have it in them.
-    pub of_signal: bool,
-}
-
-/// Keys of a factor of the values, and of one of a signal.
-const SCALE: &str = "slope|scale factor|scaling factor|multiplier|multiplikator|multiplicator|scale|skalierung|faktor|factor|\
-                     conversion factor|umrechnungsfaktor";
-const OF_SIGNAL: &str = "sensitivity|sensor sensitivity|transducer sensitivity|empfindlichkeit|sensibilité|sensibilità|sensibilidad|\
-                         gain|verstärkung|amplification|amplifier gain|gain factor|voltage divider|spannungsteiler|divider|\
-                         calibration factor|kalibrierfaktor|cal factor|sens|calibration|attenuation|dämpfung";
-
 /// Keys of a sampling rate, and of the step of time.
 const RATE: &str = "sampling rate|sample rate|sampling frequency|sample frequency|samplerate|samp freq|sampling freq|data rate|fs|rate|abtastrate|\
                     abtastfrequenz|fréquence d'échantillonnage|samples per second|scan rate|update rate|messrate|\
@@ -92,9 +78,6 @@ const STEP: &str = "dt|delta t|sampling interval|sample interval|sampling period
                     x delta|xdelta|abtastintervall|サンプリング周期";
 /// Keys of what the abscissa is, or of its unit.
 const AXIS: &str = "x-axis|x axis|x-axis unit|x axis unit|xunit|xunits|x unit|hunit|horizontal units";
-
-/// `mHz`, apart from megahertz in lower case.
-const MILLIHERTZ: &str = "millihertz";
 
 /// Relative difference of two rates of a head that rounding explains: of a step in two digits.
 const ROUNDED_RATE: f64 = 0.05;
@@ -319,7 +302,7 @@ fn keyed(key: &str, value: &str, stated: &mut Stated) {
         "y axis" if value.ends_with([']', ')']) => {
             stated.unit = stated.unit.take().or(Name::parse(value).unit);
         }
-        key if is_scale(key) => stated.scales.extend(scale(&of_any_channel(key), value)),
+        key if StatedScale::is_key(key) => stated.scales.extend(StatedScale::of(key, value)),
         "window" | "weighting" | "window type" => {
             stated.window = Window::from_name(value.split([' ', '(']).next().unwrap_or(""))
                 .or_else(|| Window::from_name(value));
@@ -329,43 +312,6 @@ fn keyed(key: &str, value: &str, stated: &mut Stated) {
         }
         _ => {}
     }
-}
-
-/// A key without the channel that it is of: `ch1 sensitivity`, `sensitivity channel 2`.
-fn of_any_channel(key: &str) -> String {
-    let channel = |word: &&str| {
-        let name = word.trim_end_matches(|c: char| c.is_ascii_digit());
-        !matches!(name, "" | "ch" | "channel" | "kanal" | "canal" | "voie" | "ai")
-    };
-    key.split_whitespace().filter(channel).collect::<Vec<_>>().join(" ")
-}
-
-fn is_scale(key: &str) -> bool {
-    let key = of_any_channel(key);
-    SCALE.split('|').chain(OF_SIGNAL.split('|')).any(|known| known == key)
-}
-
-/// What a factor under its key says, where one of its numbers is not 1, or it is a quotient of units:
-/// `1 V/g`.
-fn scale(key: &str, value: &str) -> Option<StatedScale> {
-    let words: Vec<&str> = value.split([';', ' ']).map(str::trim).filter(|word| !word.is_empty()).collect();
-    let first = number::either(words.first()?.trim_matches(['x', 'X', '×', '*']).as_bytes());
-    let quotient = first.is_some() && words.iter().any(|word| word.contains('/'));
-    let other =
-        |word: &&str| number::either(word.as_bytes().trim_ascii()).is_some_and(|factor| factor != 1.0);
-    // No gain in dB is none.
-    let none = first == Some(0.0);
-    let states = !none && (quotient || first.is_some_and(|factor| factor != 1.0) || words.iter().any(other));
-    let plain = matches!(key, "slope" | "scale factor" | "scaling factor");
-    let said = if plain { value.to_owned() } else { format!("{key}: {value}") };
-    let of_signal = quotient || OF_SIGNAL.split('|').any(|known| known == key);
-    states.then_some(StatedScale { said, of_signal })
-}
-
-/// Samples a second, as they are written, in Hz: `2 kS/s`, `100 samples/s`.
-fn samples_a_second(text: &str) -> String {
-    let words = ["samples per second", "samples/second", "samples/sec", "samples/s", "sa/s", "sps", "s/s"];
-    words.iter().fold(text.to_lowercase(), |text, word| text.replace(word, "hz"))
 }
 
 /// Lines without a key: `20 Hz 400 lines`, `64 samples, 2000 sps`.
@@ -388,90 +334,6 @@ fn free_text(line: &str, stated: &mut Stated) {
     if band.is_some() && lines.is_some() {
         (stated.base_band, stated.lines) = (band, lines);
     }
-}
-
-const HERTZ: [(&str, f64); 9] = [
-    (MILLIHERTZ, 1e-3),
-    ("mhz", 1e6),
-    ("khz", 1e3),
-    ("hz", 1.0),
-    ("1/s", 1.0),
-    ("samples/min", 1.0 / 60.0),
-    ("samples per minute", 1.0 / 60.0),
-    ("1/min", 1.0 / 60.0),
-    ("", 1.0),
-];
-
-const SECONDS: [(&str, f64); 7] =
-    [("ns", 1e-9), ("us", 1e-6), ("µs", 1e-6), ("ms", 1e-3), ("s", 1.0), ("sec", 1.0), ("", 1.0)];
-
-/// A number with one of `units` behind it (or the unit from the key), checked.
-fn quantity(value: &str, unit_in_key: &str, units: &[(&str, f64)], mark: Option<u8>) -> Option<f64> {
-    scaled(value, unit_in_key, units, mark).and_then(checked)
-}
-
-/// The number that a text begins with, as it is printed.
-fn printed(value: &str) -> &str {
-    value.split(|c: char| !c.is_ascii_digit() && !"+-.,".contains(c)).next().unwrap_or_default()
-}
-
-/// The mark of the number that a text begins with, where it alone does not show whether that is the decimal
-/// one: `51,200`.
-fn doubtful_mark(value: &str) -> Option<u8> {
-    let printed = printed(value.trim()).as_bytes();
-    let mut marks = printed.iter().filter(|b| matches!(b, b'.' | b','));
-    let mark = marks.next().filter(|_| marks.next().is_none())?;
-    number::may_be_grouped(printed).then_some(*mark)
-}
-
-fn other_mark(mark: u8) -> u8 {
-    if mark == b',' { b'.' } else { b',' }
-}
-
-/// The decimal mark of a printed number: the last of two, none of several that are alike.
-fn decimal_mark(printed: &str) -> u8 {
-    let mut marks = printed.bytes().rev().filter(|b| matches!(b, b'.' | b','));
-    let last = marks.next().unwrap_or(b'.');
-    if marks.next() == Some(last) { other_mark(last) } else { last }
-}
-
-/// A value whose number has blanks between groups of three digits, without them: `1 000 Hz`.
-fn without_blanks(value: &str) -> String {
-    let digits = |word: &str| word.bytes().take_while(u8::is_ascii_digit).count();
-    let mut words = value.split([' ', '\u{a0}', '\u{202f}', '\u{2009}']);
-    let mut whole = words.next().unwrap_or_default().to_owned();
-    let mut groups = (1..=3).contains(&whole.len()) && digits(&whole) == whole.len();
-    for word in words {
-        groups &= digits(word) == 3 && !whole.ends_with(|c: char| !c.is_ascii_digit());
-        whole += if groups { "" } else { " " };
-        whole += word;
-    }
-    whole
-}
-
-/// As [`quantity`], of any sign. A mark that may be the decimal one or group digits is what `mark` of the
-/// rows says; without that it is nothing.
-fn scaled(value: &str, unit_in_key: &str, units: &[(&str, f64)], mark: Option<u8>) -> Option<f64> {
-    let value = value.trim();
-    let printed = printed(value);
-    let exponent = value[printed.len()..].starts_with(['e', 'E']);
-    let doubtful = doubtful_mark(value).is_some() && !exponent;
-    let decimal = if doubtful { mark? } else { decimal_mark(printed) };
-    let (number, used) = match number::parse_stated(printed.as_bytes(), decimal).filter(|_| !exponent) {
-        Some(number) => (number, printed.len()),
-        None => number::prefix(value.as_bytes(), decimal)?,
-    };
-    // `44100 Hz.  Linear scale.`, `1.0 kHz / filter 400 Hz`
-    let rest = value.get(used..)?.split(" / ").next()?.trim();
-    let first = rest.split_whitespace().next().filter(|word| word.ends_with(['.', ',', ';'])).unwrap_or(rest);
-    let rest = first.trim_end_matches(['.', ',', ';']).trim_matches(['[', ']']).to_lowercase();
-    let unit = if rest.is_empty() { unit_in_key.to_lowercase() } else { rest };
-    let factor = units.iter().find(|u| u.0 == unit)?.1;
-    Some(number * factor)
-}
-
-fn checked(value: f64) -> Option<f64> {
-    POSSIBLE.contains(&value).then_some(value)
 }
 
 fn line_count(lines: f64) -> Option<f64> {

@@ -27,6 +27,11 @@ pub enum ComplexPart {
     Imaginary,
 }
 
+/// A name of a column, else its place `at`, counted from 1.
+pub fn label(name: &str, at: usize) -> String {
+    if name.is_empty() { format!("column {at}") } else { name.to_owned() }
+}
+
 impl Name {
     /// Reads `velocity [mm/s]`, `velocity (mm/s)`, `velocity / mm/s`, `velocity, mm/s`, `velocity in mm/s`,
     /// `velocity mm/s` and `velocity_mm/s`.

@@ -16,7 +16,7 @@ use super::dialect::Dialect;
 use super::header::Stated;
 use super::headings::{headings, is_title, is_types, names_in, rate_of_columns};
 use super::lines::{Fields, Line, Lines, Separator, fields, is_torn};
-use super::names::Name;
+use super::names::{Name, label};
 use super::preamble::{BESIDE, Preamble, beside, beside_rows, key_and_value};
 use crate::format::Format;
 use crate::number;
@@ -159,11 +159,10 @@ pub fn grouped(text: &Text, dialect: &Dialect) -> Result<Option<Finding>> {
             .hint("say which mark is the decimal one: comma or point; the other groups digits")
             .setting("decimal"));
     }
-    let name = |at: usize| dialect.names.as_ref().map_or("", |names| &names[at].name);
-    let label = |at: usize| Some(name(at).to_owned()).filter(|name| !name.is_empty());
+    let names = dialect.names.as_deref().unwrap_or_default();
+    let label = |at: usize| label(names.get(at).map_or("", |name| &name.name), at + 1);
     let all = columns.iter().enumerate().filter_map(|(at, (first, _))| Some((at, first.as_ref()?)));
-    let labels: Vec<String> =
-        all.clone().map(|(at, _)| label(at).unwrap_or_else(|| format!("column {}", at + 1))).collect();
+    let labels: Vec<String> = all.clone().map(|(at, _)| label(at)).collect();
     let first = all.map(|(_, (_, cell))| cell).next();
     Ok(first.map(|cell| {
         let other = if dialect.decimal == b',' { "point" } else { "comma" };

@@ -5,7 +5,7 @@ use super::clock;
 use super::decoded::{Text, in_line, shorten};
 use super::encoding;
 use super::lines::{Fields, Line, Lines, Separator, fields};
-use super::names::Name;
+use super::names::{Name, label};
 use super::numbers::complex;
 use super::preamble::{UNIT, key};
 use super::unit_words::symbol;
@@ -139,8 +139,7 @@ impl Scan {
     fn named_with_units(&mut self, separator: Separator, columns: &[bool]) -> Vec<Finding> {
         let units: Vec<Option<&str>> = (0..columns.len()).map(|i| self.unit_behind(i, columns)).collect();
         let name = |i: usize| self.head.as_ref().map_or("", |head| &head.names[i]);
-        let numbered =
-            |i: usize| if name(i).is_empty() { format!("column {}", i + 1) } else { name(i).to_owned() };
+        let numbered = |i: usize| label(name(i), i + 1);
         let is_unit = |i: usize| i > 0 && units[i - 1].is_some();
         let words = self.held.iter().enumerate().filter(|(i, _)| !is_unit(*i));
         let words: Vec<String> =

@@ -151,17 +151,7 @@ fn choose(
     let other = n - train.impacts.len() - before - train.echoes;
     let foreign = before - train.release + other;
     let flight = time(b) - time(a);
-    if let &[_, second, third] = &train.impacts[..]
-        && heard.full.is_none()
-        && time(third) - time(second) < SHADOW
-    {
-        let flight = quantity(time(third) - time(second), "s", 3);
-        let why = format!(
-            "two flights, the second of {flight}: without the height of the fall the third sound may be the echo of the second"
-        );
-        return refused(why, &train);
-    }
-    if let Some(why) = unconfirmed(&train, foreign, flight) {
+    if let Some(why) = unconfirmed(&train, foreign, sounds, heard.full.is_some()) {
         return refused(why, &train);
     }
     if let Some(full) = heard.full
@@ -183,19 +173,28 @@ fn choose(
     Ok((train.impacts, findings.into_iter().flatten().collect()))
 }
 
-/// Why a train of one `flight` in s is not certain, with `foreign` other sounds in the record. `None` for
-/// more than two impacts, which confirm each other, or where no third is expected.
-fn unconfirmed(train: &Plausible, foreign: usize, flight: f64) -> Option<String> {
-    if train.impacts.len() > 2 {
+/// Why a train of one or two flights is not certain, with `foreign` other sounds in the record, and with or
+/// without the `height` of the fall. Four impacts confirm each other.
+fn unconfirmed(train: &Plausible, foreign: usize, sounds: &[Sound], height: bool) -> Option<String> {
+    let flight = |pair: &[usize]| sounds[pair[1]].time - sounds[pair[0]].time;
+    let shown = |time| quantity(time, "s", 3);
+    if let [_, second, third] = train.impacts[..] {
+        let flight = flight(&[second, third]);
+        return (!height && flight < SHADOW).then(|| {
+            let flight = shown(flight);
+            format!("two flights, the second of {flight}: without the height of the fall the third sound may be the echo of the second")
+        });
+    }
+    if train.impacts.len() > 3 {
         return None;
     }
+    let flight = flight(&train.impacts);
     if foreign > 0 {
         let others = counted(foreign, "other sound");
         return Some(format!(
             "one flight beside {others}: no second flight shows that it is that of a bounce"
         ));
     }
-    let shown = |time| quantity(time, "s", 3);
     if flight < SHADOW {
         let flight = shown(flight);
         return Some(format!("one flight, of {flight}: the second sound may be the echo of the first"));

@@ -1,0 +1,101 @@
+//! Numbers with a unit, as heads print them: digits in groups, and a mark that only the rows explain.
+
+use crate::number;
+use crate::options::POSSIBLE;
+
+/// `mHz`, apart from megahertz in lower case.
+pub const MILLIHERTZ: &str = "millihertz";
+
+/// Units of a frequency or a rate in lower case, with their factors to Hz; none counts as Hz.
+pub const HERTZ: [(&str, f64); 9] = [
+    (MILLIHERTZ, 1e-3),
+    ("mhz", 1e6),
+    ("khz", 1e3),
+    ("hz", 1.0),
+    ("1/s", 1.0),
+    ("samples/min", 1.0 / 60.0),
+    ("samples per minute", 1.0 / 60.0),
+    ("1/min", 1.0 / 60.0),
+    ("", 1.0),
+];
+
+/// Units of a time in lower case, with their factors to s; none counts as s.
+pub const SECONDS: [(&str, f64); 7] =
+    [("ns", 1e-9), ("us", 1e-6), ("µs", 1e-6), ("ms", 1e-3), ("s", 1.0), ("sec", 1.0), ("", 1.0)];
+
+/// A number with one of `units` behind it (or the unit from the key), checked.
+pub fn quantity(value: &str, unit_in_key: &str, units: &[(&str, f64)], mark: Option<u8>) -> Option<f64> {
+    scaled(value, unit_in_key, units, mark).and_then(checked)
+}
+
+/// The number that a text begins with, as it is printed.
+fn printed(value: &str) -> &str {
+    value.split(|c: char| !c.is_ascii_digit() && !"+-.,".contains(c)).next().unwrap_or_default()
+}
+
+/// The mark of the number that a text begins with, where it alone does not show whether that is the decimal
+/// one: `51,200`.
+pub fn doubtful_mark(value: &str) -> Option<u8> {
+    let printed = printed(value.trim()).as_bytes();
+    let mut marks = printed.iter().filter(|b| matches!(b, b'.' | b','));
+    let mark = marks.next().filter(|_| marks.next().is_none())?;
+    number::may_be_grouped(printed).then_some(*mark)
+}
+
+/// The comma for the point, and the point for the comma.
+pub fn other_mark(mark: u8) -> u8 {
+    if mark == b',' { b'.' } else { b',' }
+}
+
+/// The decimal mark of a printed number: the last of two, none of several that are alike.
+fn decimal_mark(printed: &str) -> u8 {
+    let mut marks = printed.bytes().rev().filter(|b| matches!(b, b'.' | b','));
+    let last = marks.next().unwrap_or(b'.');
+    if marks.next() == Some(last) { other_mark(last) } else { last }
+}
+
+/// A value whose number has blanks between groups of three digits, without them: `1 000 Hz`.
+pub fn without_blanks(value: &str) -> String {
+    let digits = |word: &str| word.bytes().take_while(u8::is_ascii_digit).count();
+    let mut words = value.split([' ', '\u{a0}', '\u{202f}', '\u{2009}']);
+    let mut whole = words.next().unwrap_or_default().to_owned();
+    let mut groups = (1..=3).contains(&whole.len()) && digits(&whole) == whole.len();
+    for word in words {
+        groups &= digits(word) == 3 && !whole.ends_with(|c: char| !c.is_ascii_digit());
+        whole += if groups { "" } else { " " };
+        whole += word;
+    }
+    whole
+}
+
+/// As [`quantity`], of any sign. A mark that may be the decimal one or group digits is what `mark` of the
+/// rows says; without that it is nothing.
+pub fn scaled(value: &str, unit_in_key: &str, units: &[(&str, f64)], mark: Option<u8>) -> Option<f64> {
+    let value = value.trim();
+    let printed = printed(value);
+    let exponent = value[printed.len()..].starts_with(['e', 'E']);
+    let doubtful = doubtful_mark(value).is_some() && !exponent;
+    let decimal = if doubtful { mark? } else { decimal_mark(printed) };
+    let (number, used) = match number::parse_stated(printed.as_bytes(), decimal).filter(|_| !exponent) {
+        Some(number) => (number, printed.len()),
+        None => number::prefix(value.as_bytes(), decimal)?,
+    };
+    // `44100 Hz.  Linear scale.`, `1.0 kHz / filter 400 Hz`
+    let rest = value.get(used..)?.split(" / ").next()?.trim();
+    let first = rest.split_whitespace().next().filter(|word| word.ends_with(['.', ',', ';'])).unwrap_or(rest);
+    let rest = first.trim_end_matches(['.', ',', ';']).trim_matches(['[', ']']).to_lowercase();
+    let unit = if rest.is_empty() { unit_in_key.to_lowercase() } else { rest };
+    let factor = units.iter().find(|u| u.0 == unit)?.1;
+    Some(number * factor)
+}
+
+/// A value that may be measured at all.
+pub fn checked(value: f64) -> Option<f64> {
+    POSSIBLE.contains(&value).then_some(value)
+}
+
+/// Samples a second, as they are written, in Hz: `2 kS/s`, `100 samples/s`.
+pub fn samples_a_second(text: &str) -> String {
+    let words = ["samples per second", "samples/second", "samples/sec", "samples/s", "sa/s", "sps", "s/s"];
+    words.iter().fold(text.to_lowercase(), |text, word| text.replace(word, "hz"))
+}
