@@ -5,7 +5,7 @@ use crate::analysis::{self, Progress, Recordings};
 use crate::campaign::{Campaign, Reading};
 use crate::error::{Error, Result};
 use crate::read::{Folder, Header, MAGNITUDE, SweepList};
-use crate::record::{Fact, shown};
+use crate::record::{Fact, code, shown};
 use rayon::prelude::*;
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
@@ -42,8 +42,34 @@ pub struct FileSeries {
 /// A file and its channels.
 type Member = (PathBuf, Vec<Header>);
 
-/// Whether a file states its sampling times, and its channels.
-type Surveyed = (bool, Result<Vec<Header>>);
+/// A file's channels, and how they are read.
+struct Surveyed {
+    /// Whether the file states its sampling times.
+    timed: bool,
+    /// Number of the longest even stretch, where samples are lost.
+    stretch: Option<usize>,
+    headers: Result<Vec<Header>>,
+}
+
+impl Surveyed {
+    /// Reads with what the file states itself, else with the stated rate; where samples are lost, the longest
+    /// even stretch.
+    fn of(path: &Path, reading: &Reading, folder: &Folder) -> Surveyed {
+        let survey = |reading: &Reading| reading.reader()?.within(folder).survey(path);
+        let untimed_reading = reading.untimed();
+        let own = survey(&untimed_reading);
+        let timed = own.as_ref().is_ok_and(|(_, headers, _)| !untimed(headers));
+        let stated = reading.rate.or(reading.base_band).is_some();
+        let found = if timed || !stated { own } else { survey(reading) };
+        let stretch = found.as_ref().ok().filter(|(_, headers, _)| untimed(headers)).and_then(|(.., all)| {
+            let lost = all.iter().find(|found| found.code == code::SAMPLES_LOST)?;
+            lost.get("longest").map(|number| number as usize)
+        });
+        let longest = stretch.map(|_| survey(&Reading { stretch, ..untimed_reading }));
+        let headers = longest.unwrap_or(found).map(|(_, headers, _)| headers);
+        Surveyed { timed, stretch, headers }
+    }
+}
 
 /// Key by which files are grouped into a series.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
@@ -54,6 +80,8 @@ struct FileKind {
     channels: String,
     /// Whether the files state their sampling times.
     timed: bool,
+    /// Number of the even stretch that is read.
+    stretch: Option<usize>,
 }
 
 impl FileKind {
@@ -97,8 +125,8 @@ impl Inventory {
         progress: &dyn Progress,
     ) -> Result<Inventory> {
         let untimed_reading = reading.untimed();
-        let (reader, with_rate) =
-            (untimed_reading.reader()?.within(folder), reading.reader()?.within(folder));
+        let reader = untimed_reading.reader()?.within(folder);
+        reading.reader()?;
         let Recordings { files: all, others, skipped } = analysis::recordings(folder)?;
         let root = folder.root();
         let new = known.map(|campaign| analysis::unnamed(campaign, &all)).transpose()?;
@@ -121,21 +149,17 @@ impl Inventory {
         let names: Vec<String> = paths.iter().map(|path| within(path)).collect();
         let numbers = numbers(&names);
         let every: Vec<String> = all.iter().map(|path| within(path)).collect();
-        let stated = reading.rate.or(reading.base_band).is_some();
-        let surveyed: Vec<Surveyed> = paths
-            .par_iter()
-            .map(|path| {
-                let own = reader.survey(path);
-                let timed = own.as_ref().is_ok_and(|(_, headers, _)| !untimed(headers));
-                progress.step();
-                let found = if timed || !stated { own } else { with_rate.survey(path) };
-                (timed, found.map(|(_, headers, _)| headers))
-            })
-            .collect();
+        let survey = |path: &PathBuf| {
+            let found = Surveyed::of(path, reading, folder);
+            progress.step();
+            found
+        };
+        let surveyed: Vec<Surveyed> = paths.par_iter().map(survey).collect();
         for (kind, members) in found.kinds(paths.into_iter().zip(surveyed), &numbers, &within) {
             let files: Vec<String> = members.iter().map(|(path, _)| within(path)).collect();
             let pattern = kind.pattern(&files, &every, &numbers);
-            let reading = if kind.timed { &untimed_reading } else { reading }.clone();
+            let reading = if kind.timed || kind.stretch.is_some() { &untimed_reading } else { reading };
+            let reading = Reading { stretch: kind.stretch, ..reading.clone() };
             let headers = named_alike(&members.iter().map(|(_, all)| all.as_slice()).collect::<Vec<_>>());
             let name = name(&files);
             found.series.push(FileSeries { name, files, headers, pattern, alike: false, reading });
@@ -172,11 +196,11 @@ impl Inventory {
     ) -> Vec<(FileKind, Vec<Member>)> {
         let mut kinds: Vec<(FileKind, Vec<Member>)> = Vec::new();
         let mut places: HashMap<FileKind, usize> = HashMap::new();
-        for (path, (timed, headers)) in surveyed {
+        for (path, Surveyed { timed, stretch, headers }) in surveyed {
             let why = match headers {
                 Ok(headers) if headers.is_empty() => "no records".to_owned(),
                 Ok(headers) if untimed(&headers) && headers.iter().any(|h| h.dx.is_none()) => {
-                    "its samples are unevenly spaced; cut the file where samples are lost, or fill them in"
+                    "its samples are unevenly spaced; `vibro spectrum` with --resample HZ interpolates them"
                         .to_owned()
                 }
                 Ok(headers) if untimed(&headers) => {
@@ -185,7 +209,7 @@ impl Inventory {
                 }
                 Ok(headers) => {
                     let name = apart(&within(&path), numbers).join("*");
-                    let kind = FileKind { name, channels: signature(&headers), timed };
+                    let kind = FileKind { name, channels: signature(&headers), timed, stretch };
                     let place = *places.entry(kind.clone()).or_insert(kinds.len());
                     if place == kinds.len() {
                         kinds.push((kind, Vec::new()));

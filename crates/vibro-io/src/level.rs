@@ -48,7 +48,7 @@ pub fn needs_values(contents: &Contents) -> bool {
 
 /// Refuses a channel named as a spectrum over time, unless the user states its sampling rate.
 fn no_spectrum(trace: &Trace, options: &Options) -> Result<()> {
-    let stated = options.rate.is_some() && !options.rate_of_band;
+    let stated = options.rate.is_some() && options.rate_of_band.is_none();
     if stated || !is_spectral(&trace.meta.name) || trace.axis.kind != AxisKind::Time || trace.axis.is_empty()
     {
         return Ok(());

@@ -20,8 +20,8 @@ pub struct Options {
     pub allow_missing: bool,
     /// Sampling rate in Hz: the values are a time trace.
     pub rate: Option<f64>,
-    /// Whether `rate` was computed from a base band.
-    pub rate_of_band: bool,
+    /// The base band in Hz from which `rate` was computed.
+    pub rate_of_band: Option<f64>,
     /// Base band in Hz: the values are a spectrum from 0 to it.
     pub base_band: Option<f64>,
     /// Unit of the values.

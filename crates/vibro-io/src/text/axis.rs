@@ -1,7 +1,7 @@
 //! The abscissa of a text: what a person states, what a column holds, what the header states.
 
 use super::header::{PerhapsRate, Stated};
-use crate::assemble::{NOMINAL, domain, short};
+use crate::assemble::{NOMINAL, PERHAPS_LOST, domain, short};
 use crate::options::Options;
 use vibro_record::code;
 use vibro_record::{Axis, AxisKind, Clock, Error, Finding, Grid, Result, evened};
@@ -232,19 +232,21 @@ fn batch(instants: &[f64]) -> Option<f64> {
 
 /// A printed axis, compared with what the header states.
 fn trusted(printed: PrintedAbscissa, header: &Stated, findings: &mut Vec<Finding>) -> Axis {
-    let PrintedAbscissa { axis, label, findings: said, .. } = printed;
-    findings.extend(said);
+    let PrintedAbscissa { axis, label, findings: mut said, .. } = printed;
     let header = match axis.kind {
         AxisKind::Time => header.rate.map(|rate| 1.0 / rate),
         AxisKind::Frequency => header.line_width,
         AxisKind::Index | AxisKind::Other(_) => None,
     };
-    if let (Some(header), Some(step)) = (header, axis.step())
-        && (step / header - 1.0).abs() > 1e-3
-    {
-        let found = Finding::caution("header-step-differs").name("column", label);
-        findings.push(found.number("header", header).number("step", step));
+    if let (Some(header), Some(step)) = (header, axis.step()) {
+        if (step / header - 1.0).abs() > 1e-3 {
+            let found = Finding::caution("header-step-differs").name("column", label);
+            findings.push(found.number("header", header).number("step", step));
+        } else {
+            said.retain(|found| found.code != PERHAPS_LOST);
+        }
     }
+    findings.extend(said);
     axis
 }
 

@@ -18,7 +18,7 @@ use num_complex::Complex64;
 use std::borrow::Cow;
 use vibro_record::code;
 use vibro_record::lanes::Extremes;
-use vibro_record::units::Unit;
+use vibro_record::units::{Unit, is_level};
 use vibro_record::units::notation::counted;
 use vibro_record::{Axis, AxisKind, Error, Finding, Grid, Meta, Record, Result, Scaling, Values, Window};
 
@@ -78,7 +78,11 @@ pub fn build(
     }
     let (resolution, origin) =
         printed.as_ref().map_or((0.0, 0.0), |printed| (printed.resolution, printed.origin));
-    let (clock, mut axis) = choose(printed, n, &made.stated, options, &mut of_axis)?;
+    let band = options.rate_of_band.filter(|_| !has_axis && made.holds_lines(&table, n));
+    let of_lines = band.map(|band| Options { rate: None, base_band: Some(band), ..options.clone() });
+    of_axis.extend(band.map(|band| Finding::caution("values-are-lines").count("n", n).number("band", band)));
+    let stated = of_lines.as_ref().unwrap_or(options);
+    let (clock, mut axis) = choose(printed, n, &made.stated, stated, &mut of_axis)?;
     if let (AxisKind::Index, Some(first), Grid::Even { start, .. }) = (&axis.kind, first, &mut axis.grid) {
         *start = first;
     }
@@ -100,7 +104,7 @@ pub fn build(
     }
     let mut built = Vec::new();
     let table = made.joined(table, &axis, &mut of_axis)?;
-    of_axis.extend(made.said_of(&table));
+    of_axis.extend(made.said_of(&table, &axis));
     for (i, column) in table.into_iter().enumerate() {
         let sparse = column.sparse;
         let mut column = match sparse {
@@ -129,6 +133,9 @@ pub fn build(
     }
     Ok(built)
 }
+
+/// Numbers of spectral lines that analysers offer, not counting 0 Hz.
+const LINES: [usize; 10] = [100, 200, 400, 800, 1600, 3200, 6400, 12800, 25600, 51200];
 
 /// Refuses rows of several channels or sensors below each other, which a column numbers. Where all columns
 /// go in turns, they are values.
@@ -182,6 +189,20 @@ impl RecordContext<'_> {
         let headed = self.stated.rate.is_some() || self.stated.line_width.is_some();
         let counts = table.len() > 1 && table[0].values.len() > 2 && table[0].name.name.is_empty();
         !self.is_table && counts && table[0].counts() && (headed || beside())
+    }
+
+    /// Whether `n` values without an axis are the lines of a spectrum: an analyser's number of them, and all
+    /// of one sign or levels in dB.
+    fn holds_lines(&self, table: &[Column], n: usize) -> bool {
+        let is_level = |column: &Column| {
+            column.name.unit.as_deref().or(self.stated.unit.as_deref()).is_some_and(is_level)
+        };
+        let is_one_sided = |column: &Column| {
+            let values = column.reals();
+            let one_sign = values.iter().all(|v| *v >= 0.0) || values.iter().all(|v| *v <= 0.0);
+            !values.is_empty() && (one_sign || is_level(column))
+        };
+        LINES.into_iter().any(|lines| n == lines || n == lines + 1) && table.iter().all(is_one_sided)
     }
 
     /// Takes out the columns that only count, unless there are no others; gives the first value of the first.
@@ -365,7 +386,7 @@ impl RecordContext<'_> {
     }
 
     /// What is to be said of the columns of values together.
-    fn said_of(&self, table: &[Column]) -> Vec<Finding> {
+    fn said_of(&self, table: &[Column], axis: &Axis) -> Vec<Finding> {
         let mut found = Vec::new();
         let signal = table.iter().any(Column::may_be_signal);
         let scales = self.stated.scales.iter().filter(|scale| signal || !scale.of_signal);
@@ -385,6 +406,19 @@ impl RecordContext<'_> {
         if let Some((n, all)) = repeats(table) {
             found.push(Finding::caution("rows-repeat").count("n", n).count("all", all));
         }
+        let marked = table.iter().filter_map(|column| Some((column.label(), column.missing_mark()?)));
+        found.extend(marked.map(|(label, (mark, n))| {
+            let marked = Finding::caution("missing-marked").name("column", label);
+            marked.number("mark", mark).count("n", n)
+        }));
+        let filled = table.iter().filter_map(|column| Some((column.label(), column.filled_with_zeros()?)));
+        found.extend(filled.map(|(label, n)| {
+            let filled = Finding::caution("filled-with-zeros").name("column", label).count("n", n);
+            match &axis.kind {
+                AxisKind::Time => filled.number("end", axis.at(axis.len().saturating_sub(n))),
+                _ => filled,
+            }
+        }));
         let held = table.iter().filter_map(|column| Some((column.held()?, column.label())));
         let held: Vec<(usize, String)> = held.collect();
         for of_length in held.chunk_by(|a, b| a.0 == b.0) {
@@ -464,6 +498,7 @@ impl RecordContext<'_> {
     /// The record of one column.
     fn record(&self, i: usize, column: Column, axis: &Axis) -> Result<Built> {
         let unknown = column.name.unknown_unit().map(str::to_owned);
+        let head_differs = self.head_differs(&column.name).filter(|_| self.options.unit.is_none());
         let whole = || column.reals().iter().all(|v| v.fract() == 0.0);
         let against = column.name.against_unit(self.naturals, whole).filter(|_| self.options.unit.is_none());
         let differs = column.name.unit_differs().filter(|_| self.options.unit.is_none());
@@ -503,11 +538,19 @@ impl RecordContext<'_> {
         } else {
             self.options.adopt(&mut meta, said)
         };
-        meta.findings.extend(differs);
+        meta.findings.extend(differs.or(head_differs));
         values.scale(factor)?;
         let spectral = self.spectral(&meta.name, unit);
         let (record, ends) = values.record(meta, axis.clone(), spectral)?;
         Ok(Built { record, ends, at: at - 1, factor })
+    }
+
+    /// Says that the head holds another unit of the same quantity than the name: `Unit: mm/s` over `v (m/s)`.
+    fn head_differs(&self, name: &Name) -> Option<Finding> {
+        let (head, used) = (self.stated.unit.as_deref()?, name.unit.as_deref()?);
+        let (of_head, of_name) = (Unit::parse(head)?, Unit::parse(used)?);
+        let same = of_head.dimension() == of_name.dimension() && of_head.factor() != of_name.factor();
+        same.then(|| Finding::caution("unit-head-differs").name("head", head).name("used", used))
     }
 
     /// What remarks and the unit of a column say of its spectrum.
