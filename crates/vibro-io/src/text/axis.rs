@@ -6,7 +6,8 @@ use crate::options::Options;
 use vibro_record::code;
 use vibro_record::{Axis, AxisKind, Clock, Error, Finding, Grid, Result, evened};
 
-/// Relative difference up to which a stated number and a column agree: no statement means a smaller one.
+/// Relative difference up to which a stated number and the column agree: nobody states a number to correct
+/// less.
 const SURE: f64 = 1e-6;
 /// Relative difference up to which a stated number is a rounded form of the column's, with fewer digits.
 const ROUNDED: f64 = 1e-4;
@@ -18,7 +19,7 @@ pub struct PrintedAbscissa {
     pub label: String,
     /// Half a unit in the last digit of the printed values, in s or Hz.
     pub resolution: f64,
-    /// Whether its name and the header do not say that it is time or frequency: this is only assumed.
+    /// Whether it is only assumed to be time or frequency: neither its name nor the header states it.
     pub assumed: bool,
     /// Time of its 0 in s since 1970, where the column counts from there; else 0.
     pub origin: f64,
@@ -74,8 +75,8 @@ impl Statement {
     }
 }
 
-/// Chooses the axis of `n` values: from the options, else from the printed column, else from the header.
-/// Before it gives the relative standard uncertainty of the step, 0 where no column was used.
+/// Chooses the axis of `n` values: from the options, else from the printed column, else from the header. The
+/// first value returned is the relative standard uncertainty of the step; 0 where no column is used.
 ///
 /// # Errors
 /// If the options contradict the printed column, or that runs backwards.

@@ -175,8 +175,8 @@ const FEWEST_RUNS: usize = 20;
 /// Smallest part of the rows that repeat the row before, for a sensor that is read faster than it measures.
 const REPEATS: f64 = 0.05;
 
-/// Number of rows that repeat the row before in all columns, and of all rows looked at. `None` unless they
-/// are single rows between rows that differ: a motion at rest or coarse digits repeat many in a row.
+/// Number of rows that repeat the row before in all columns, and number of all rows looked at. `None` unless
+/// they are single rows between rows that differ: a motion at rest or coarse digits repeat many in a row.
 pub fn repeats(table: &[Column]) -> Option<(usize, usize)> {
     let measured = table.iter().filter(|column| !column.rises());
     let columns: Vec<&[f64]> = measured.map(|column| column.values.opening()).collect();

@@ -1,7 +1,7 @@
 //! The fast path: rectangular rows of real numbers and nothing else, read in pieces by several threads.
 //!
 //! Anything unexpected (a comment, a missing value, a ragged row, a word) makes this path give up, and
-//! [`super::rows`] reads the file again, line by line, to say exactly what stands where.
+//! [`super::rows`] reads the file again, line by line, so that an error names line and column.
 
 use super::dialect::Dialect;
 use super::lines::Separator;
@@ -18,7 +18,7 @@ use vibro_record::{Error, Result, Values};
 /// Bytes read at a time: small enough to stay in the second-level cache.
 const BLOCK: usize = 256 * 1024;
 
-/// Fewest bytes that a thread is started for.
+/// Smallest piece of a file in bytes: smaller ones are not worth a thread.
 const SMALLEST_PIECE: u64 = 1024 * 1024;
 
 /// Number of first rows from which the shape is taken.
@@ -36,7 +36,7 @@ pub struct RowShape {
     first_byte: u64,
     /// Parser and width in bytes of unsigned numbers, where the first rows print them all like `1.234e+05`.
     exponential: Option<(Exponential, usize)>,
-    /// Bytes of a row and of its part up to the end of its one number, where the first rows are all alike.
+    /// Length of a row in bytes, and offset of the end of its one number, where the first rows are all alike.
     fixed: Option<(usize, usize)>,
 }
 

@@ -79,7 +79,8 @@ const STEP: &str = "dt|delta t|sampling interval|sample interval|sampling period
 /// Keys of the quantity or the unit of the abscissa.
 const AXIS: &str = "x-axis|x axis|x-axis unit|x axis unit|xunit|xunits|x unit|hunit|horizontal units";
 
-/// Two stated rates that differ relatively by less are one: the step may be rounded to two digits.
+/// Largest relative difference of two stated rates that rounding explains: a step of two digits, 1.0, is
+/// rounded by up to 5 %.
 const ROUNDED_RATE: f64 = 0.05;
 
 /// Most spectral lines that a header may state: far more than any analyser has.
@@ -372,7 +373,7 @@ mod tests {
         assert_eq!((s.lines, s.base_band), (Some(400.0), Some(20.0)));
     }
 
-    /// It may be 51.2 Hz or 51 200 Hz: where the rows do not tell, both are said and none is used.
+    /// It may be 51.2 Hz or 51 200 Hz: where the rows do not show which, both are kept and none is used.
     #[test]
     fn a_rate_in_groups_of_digits_is_a_question() {
         for text in ["Sampling rate: 51,200", "Sample rate [Hz]: 51,200", "fs = 51,200 Hz", "fs = 51.200 Hz"]

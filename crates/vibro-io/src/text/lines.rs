@@ -1,7 +1,7 @@
 //! Cuts text into lines and fields after RFC 4180, with any separator.
 //!
 //! The crate `csv` is not used here: it reads `"2"3` as 23, lets a stray quote swallow the rest of a file,
-//! and does not say in which column of a line a field stands.
+//! and does not tell the column of a line in which a field begins.
 
 use super::clock;
 use super::unit_words::is_unit_row;

@@ -271,8 +271,8 @@ impl RecordContext<'_> {
             _ if clock || epoch.is_some() => Some(Finding::note("axis-clock")),
             _ => assumed,
         };
-        // Some instruments hold times in single precision, whose digits end before the printed ones do. Steps
-        // that are all finer show double precision.
+        // Some instruments print times of single precision with more digits than it has. Steps that are all
+        // finer than its last digit show double precision.
         let largest = values.iter().fold(0.0, |max: f64, x| max.max(x.abs()));
         let single = largest * f64::from(f32::EPSILON) / 2.0;
         let finer = values.windows(2).all(|w| (w[1] - w[0]).abs() < single);

@@ -59,7 +59,7 @@ pub fn joined(text: &Text, dialect: &Dialect) -> Result<Option<Source>> {
             }
             false => return Ok(None),
         };
-        // A decimal comma does not stand between commas.
+        // Decimal commas and commas as separators do not occur together.
         let behind = cells.get(at + 2).map_or("", |(from, _)| &line.text[*from..]);
         let ends = if behind.is_empty() { String::new() } else { char::from(mark).to_string() };
         kept = kept + &line.text[..cells[at].0] + &joined + &ends + behind + "\n";

@@ -59,8 +59,8 @@ struct Held {
     names: bool,
 }
 
-/// The text without its columns of text, those with no number in any row; `None` where there are none, so
-/// that the text cannot be read for another reason.
+/// The text without its columns of text, which have no number in any row. `None` where there are none: the
+/// text is unreadable for another reason.
 ///
 /// # Errors
 /// If the texts of a column return often: rows of several channels or sensors may be below each other.
