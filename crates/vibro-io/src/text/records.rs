@@ -534,8 +534,8 @@ impl RecordContext<'_> {
         self.stated.notes.iter().filter(move |(k, _)| k.eq_ignore_ascii_case(key)).map(|(_, v)| v.as_str())
     }
 
-    /// Lower-case value of the remark on this column, `key: value of name`, else of one on all columns, `key:
-    /// value`.
+    /// Lower-case value of the remark on this column (`key: value of name`), else of one on all columns
+    /// without `of`.
     fn remark_about(&self, key: &str, name: &str) -> Option<String> {
         let of = format!(" of {name}");
         let own = self.remarks(key).find_map(|v| v.strip_suffix(of.as_str()));
