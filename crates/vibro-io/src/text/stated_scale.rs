@@ -26,8 +26,8 @@ impl StatedScale {
         SCALE.split('|').chain(OF_SIGNAL.split('|')).any(|known| known == key)
     }
 
-    /// The factor in the value of a key, if one of its numbers is not 1 or it is a quotient of units (`1
-    /// V/g`).
+    /// The factor in the value of a key, if one of its numbers is not 1 or it is a quotient of units,
+    /// such as `1 V/g`.
     pub fn of(key: &str, value: &str) -> Option<StatedScale> {
         let key = of_any_channel(key);
         let words: Vec<&str> =
