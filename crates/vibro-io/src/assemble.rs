@@ -8,7 +8,7 @@ use vibro_record::{
     Trace, Values, Window, is_fine, stretches, uniform_std,
 };
 
-/// What a file says about a spectrum.
+/// Statements of a file about a spectrum.
 #[derive(Debug, Clone, Default)]
 pub struct Spectral {
     /// Scaling, where it is stated.
@@ -17,7 +17,7 @@ pub struct Spectral {
     pub enbw: Option<f64>,
     /// Whether complex values are stated to be a frequency response function.
     pub frf: bool,
-    /// Finding for an unknown scaling; `None` for the usual one, that the file does not state it.
+    /// Finding for an unknown scaling; `None` for the usual one, which says that the file states none.
     pub doubt: Option<Finding>,
 }
 
@@ -100,7 +100,7 @@ pub fn domain(kind: &AxisKind) -> (&'static str, &'static str) {
     }
 }
 
-/// An axis made from individually stored values, and how good it is.
+/// An axis made from individually stored values, and its quality.
 #[derive(Debug, Clone, PartialEq)]
 pub struct JudgedAxis {
     pub axis: Axis,
@@ -191,8 +191,8 @@ fn with_gaps(all: &[Stretch], code: &'static str) -> Option<Finding> {
     Some(if all.len() <= LISTED { found.numbers("durations", durations) } else { found })
 }
 
-/// Tolerance for equal steps, over half a unit in the last digit: doubles of s since 1970 are rounded by 1e-7
-/// s.
+/// Tolerance for equal steps with coarse digits, over half a unit in the last digit. Doubles of s since 1970
+/// are rounded by 1e-7 s.
 const EQUAL: f64 = 1e-2;
 
 /// Largest relative difference between the nominal rate of a logger or telephone and the rate of its clock.
@@ -201,7 +201,7 @@ pub const NOMINAL: f64 = 1e-2;
 /// Most stretches whose durations a finding lists one by one.
 const LISTED: usize = 12;
 
-/// What a file says about an abscissa, in SI units.
+/// Statements of a file about an abscissa, in SI units.
 pub struct Abscissa {
     pub kind: AxisKind,
     /// Start and step.
@@ -212,8 +212,8 @@ pub struct Abscissa {
     pub resolution: f64,
 }
 
-/// Largest relative distance between the end of the spectral lines and a stated base band: three digits are
-/// stated.
+/// Largest relative distance between the last spectral line and a stated base band, which may be rounded to
+/// three digits.
 const BAND: f64 = 5e-3;
 
 impl Abscissa {
@@ -230,8 +230,8 @@ impl Abscissa {
         }
     }
 
-    /// The axis of `n` values. A stated rate wins, then the file's step, then stored values. Sample numbers
-    /// are used if the step is not positive and finite, or the file says nothing.
+    /// The axis of `n` values: from a stated rate, else from the file's step, else from stored values. Sample
+    /// numbers are used if the step is not positive and finite, or the file has none of these.
     pub fn axis(self, n: usize, options: &Options, meta: &mut Meta) -> Axis {
         let Abscissa { kind, even, stored, resolution } = self;
         let silent = even.is_none() && stored.len() != n;
@@ -253,7 +253,7 @@ impl Abscissa {
             (Some(rate), _) => {
                 let (start, step) = even.unzip();
                 let said = 1.0 / rate;
-                // Files print six digits: smaller differences are rounding.
+                // Files print steps with six digits: smaller differences are rounding.
                 if !silent && step.is_none_or(|step| (step / said - 1.0).abs() > 1e-5) {
                     let found = match step {
                         Some(step) => Finding::caution("rate-overrides-step").number("step", step),

@@ -123,8 +123,9 @@ impl Reader {
     }
 }
 
-/// Index of the trace that is most likely meant: the one with the largest sum of squares about its mean, in
-/// the unit of the first; no magnitude, and no trace that only rises, as a counter does.
+/// Index of the trace that is most likely meant: among those in the unit of the first, the one with the
+/// largest sum of squares about its mean. Magnitudes are excluded, and traces that only rise, as a counter
+/// does.
 fn likeliest(traces: &[(usize, &Trace)]) -> usize {
     let suited = |i: &usize| !traces[*i].1.meta.has(MAGNITUDE) && !rises(&traces[*i].1.values);
     let Some(first) = (0..traces.len()).find(suited) else { return 0 };

@@ -27,7 +27,7 @@ const SEISMIC: &str = "write it as SLIST, TSPAIR or CSV, e.g. with ObsPy";
 const EBCDIC: &[u8] = b"\xc3\x40\xf1";
 const AUDIO: &str = "turn it into WAV, e.g. with Audacity; a lossy recording is no measurement";
 
-/// Name of a format, how it is recognised, and the export to choose.
+/// Name of each format, its signature, and the export to choose.
 const TABLE: &[(&str, Signature, &str)] = &[
     ("a Polytec vibrometer file", Ending(&["svd", "pvd"]), UFF),
     ("a Dewesoft recording", Ending(&["dxd", "d7d", "dxz"]), DEWESOFT),

@@ -41,7 +41,7 @@ const SCALE: [&[&str]; 6] = [
 type Scale = [f64; SCALE.len()];
 /// Scale of numbers that are stored as the values themselves.
 const AS_STORED: Scale = [1.0, 0.0, 0.0, 1.0, 0.0, f64::NAN];
-/// Names of factors of integers that say neither of what nor in which direction: such a dataset is left out.
+/// Names of factors of integers that state neither quantity nor direction: such a dataset is left out.
 const FACTORS: [&str; 3] = ["scale", "gain", "conversion"];
 
 static DIALECT: Dialect = Dialect {

@@ -12,7 +12,7 @@ use vibro_record::{AxisKind, Error, Meta, Record, Result, Spectrum, Trace, Value
 /// Words by which a channel calls itself a spectrum.
 const SPECTRAL: [&str; 7] = ["fft", "psd", "asd", "spectrum", "spectra", "spectral", "autospectrum"];
 
-/// dB for a factor of ten: of an amplitude, and of a power density.
+/// Level difference in dB of ten times the amplitude, and of ten times the power density.
 const AMPLITUDE: f64 = 20.0;
 const POWER: f64 = 10.0;
 

@@ -7,7 +7,7 @@ use vibro_record::{Error, Result};
 
 /// Bytes in a GB.
 const GB: f64 = 1e9;
-/// Memory in bytes that is assumed for a machine that does not tell its own.
+/// Memory in bytes that is assumed where the machine's own is unknown.
 const UNKNOWN: f64 = 4.0 * GB;
 /// Largest part of the machine's memory that a hint suggests as limit: the system and other programs need the
 /// rest.
@@ -28,7 +28,7 @@ static STATED: OnceLock<f64> = OnceLock::new();
 pub struct Limit(pub f64);
 
 impl Default for Limit {
-    /// What [`Limit::state`] stated, else a quarter of the machine's memory.
+    /// The limit from [`Limit::state`], else a quarter of the machine's memory.
     fn default() -> Limit {
         Limit(STATED.get().copied().unwrap_or_else(|| machine() / 4.0))
     }

@@ -1,4 +1,4 @@
-//! Numbers as instruments print them.
+//! Parses numbers as instruments print them.
 //!
 //! In addition to what Rust's own parser reads: Fortran's `1.0D+03`, exponents without a letter
 //! (`1.234-101`), three-digit exponents, a decimal comma, blanks around and between sign and digits of a
@@ -15,11 +15,11 @@ const POWERS: [f64; 23] = [
     1e19, 1e20, 1e21, 1e22,
 ];
 
-/// What instruments print in place of a value that is missing or over-range, in lower case.
+/// Words that instruments print for a missing or over-range value, in lower case, separated by `|`.
 const MISSING: &str = "novalue|nan|nat|inf|infinity|∞|na|n/a|null|none|ol|over|overload|overrange|over range|ovld|burnout|fffffff\
                        |#div/0!|#n/a|#num!|#value!|#ref!|#name?|#null!";
 
-/// What instruments print for infinity and for "not a number" (SCPI-1999, volume 1, 7.2.1.4 and 7.2.1.5).
+/// Numbers that instruments print for infinity and "not a number" (SCPI-1999, volume 1, 7.2.1.4 and 7.2.1.5).
 const OVERLOAD: [f64; 2] = [9.9e37, 9.91e37];
 
 /// Parses one number with a decimal point. Blanks around it are allowed; anything else left over gives
@@ -43,8 +43,8 @@ pub(crate) fn parse_with(text: &[u8], decimal: u8) -> Option<f64> {
     }
 }
 
-/// A number whose minus is a typographic one, or stands behind it as sheets and old programs write: `−0.5`,
-/// `0.5-`.
+/// A number with a typographic minus, or with the minus behind it, as spreadsheets and old programs write it:
+/// `−0.5`, `0.5-`.
 #[cold]
 fn negative(text: &[u8], decimal: u8) -> Option<f64> {
     let before = || ["−", "–"].iter().find_map(|minus| text.strip_prefix(minus.as_bytes()));
@@ -53,7 +53,7 @@ fn negative(text: &[u8], decimal: u8) -> Option<f64> {
     (used == magnitude.len() && magnitude[0] != b'-' && magnitude[0] != b'+').then_some(-value)
 }
 
-/// As [`parse_with`], where a person stated the decimal mark: then the other mark groups digits, also of
+/// As [`parse_with`], where the user stated the decimal mark: then the other mark groups digits, also of
 /// whole numbers.
 pub(crate) fn parse_stated(text: &[u8], decimal: u8) -> Option<f64> {
     parse_with(text, decimal).or_else(|| ungrouped(text.trim_ascii(), decimal, true))
@@ -109,7 +109,7 @@ pub(crate) fn is_missing(text: &[u8]) -> bool {
 
 /// Parses the number at the start of `text`: its value and the bytes it took. Leading blanks are not allowed.
 ///
-/// An exponent that would overflow gives `None`; one that underflows gives 0 or a subnormal, as it should.
+/// A number that overflows a double gives `None`; one that underflows gives 0 or a subnormal.
 #[inline]
 pub fn prefix(text: &[u8], decimal: u8) -> Option<(f64, usize)> {
     // No branch on the sign: signs come at random, and a wrong branch prediction costs more than the whole
@@ -179,7 +179,8 @@ pub fn scientific<const W: usize>(field: &[u8; W]) -> Option<f64> {
 #[allow(clippy::inline_always)] // the length must be known to the compiler
 pub fn exponential(field: &[u8]) -> Option<f64> {
     let w = field.len();
-    // Nineteen digits always fit into 64 bits; the check for an exact integer comes below.
+    // Up to nineteen digits always fit into 64 bits. Whether the integer is exact in a double is checked
+    // below.
     if !(8..=24).contains(&w) {
         return None;
     }
@@ -211,7 +212,8 @@ pub fn exponential(field: &[u8]) -> Option<f64> {
     Some(if exponent < 0 { mantissa as f64 / power } else { mantissa as f64 * power })
 }
 
-/// Eight ASCII digits as a number: joined to pairs, fours and eight side by side in one register.
+/// Eight ASCII digits as a number: pairs, fours and then eight digits are joined in one register. `None` for
+/// others.
 #[inline]
 fn eight_digits(text: [u8; 8]) -> Option<u64> {
     const ZEROS: u64 = 0x3030_3030_3030_3030;

@@ -1,4 +1,4 @@
-//! What the user states about a file.
+//! Statements of the user about a file.
 
 use crate::limit::Limit;
 use std::path::Path;
@@ -12,8 +12,8 @@ pub const POSSIBLE: std::ops::RangeInclusive<f64> = 1e-12..=1e15;
 /// Bytes of a value in memory.
 const VALUE: f64 = 8.0;
 
-/// What the user states about a file because the file does not say it. A statement that contradicts the file
-/// wins, with a finding in the record.
+/// Statements of the user about a file that lacks them. One that contradicts the file wins, with a finding in
+/// the record.
 #[derive(Debug, Clone, Default)]
 pub struct Options {
     /// Keep NaN, Inf, over-range and blank values as missing (NaN) instead of refusing them.

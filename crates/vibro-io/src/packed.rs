@@ -63,7 +63,8 @@ impl Member {
     }
 }
 
-/// Parts with their rows, longest first, and how many have more than 1/`LONGER` of the rows of the longest.
+/// Parts with their numbers of rows, longest first, and how many parts have more than 1/`LONGER` of the most
+/// rows.
 type Ranked = (Vec<(usize, Member)>, usize);
 
 /// All parts of an archive or a workbook; `None` for other files.

@@ -56,7 +56,7 @@ impl Reader {
         Reader::default()
     }
 
-    /// States where paths lie: on a disk, or in memory. Default: on the disk.
+    /// Sets the folder of all paths, on the disk or in memory. Default: on the disk.
     pub fn within(mut self, folder: &Folder) -> Reader {
         self.folder = folder.clone();
         self
@@ -92,13 +92,13 @@ impl Reader {
         self
     }
 
-    /// States the sampling rate in Hz. Default: the file says it, or the abscissa is the sample number.
+    /// States the sampling rate in Hz. Default: the file's, else the abscissa is the sample number.
     pub fn rate(mut self, rate: Option<f64>) -> Reader {
         self.options.rate = rate;
         self
     }
 
-    /// States the base band in Hz of a spectrum. Default: the file says it.
+    /// States the base band in Hz of a spectrum. Default: the file's.
     pub fn base_band(mut self, base_band: Option<f64>) -> Reader {
         self.options.base_band = base_band;
         self
@@ -113,7 +113,7 @@ impl Reader {
         self
     }
 
-    /// States the unit of the values. Default: the file says it.
+    /// States the unit of the values. Default: the file's.
     pub fn unit(mut self, unit: Option<Unit>) -> Reader {
         self.options.unit = unit;
         self
@@ -131,8 +131,8 @@ impl Reader {
         self
     }
 
-    /// States whether rows of several columns continue each other as one series. Default: the header says it;
-    /// rows that look continued without such a header are refused.
+    /// States whether rows of several columns continue each other as one series. Default: as the header
+    /// states. Without such a header, rows that look continued are refused.
     pub fn wrapped(mut self, wrapped: Option<bool>) -> Reader {
         self.options.wrapped = wrapped;
         self
@@ -256,10 +256,10 @@ impl Reader {
 
     fn contents_of(&self, source: &Source, survey: bool) -> Result<(Format, Contents)> {
         let entry = self.entry(source)?;
-        // These readers hold all bytes of the file beside the values, which take at least as much memory.
+        // These readers hold all bytes of the file in memory, and values that take at least as much.
         let whole = matches!(entry.format, Format::Mat | Format::Lvm | Format::Uff);
         let room = self.options.limit.hold(if whole { 2.0 * source.len() as f64 } else { 0.0 });
-        // The wave reader reads only the span: nothing is left to cut.
+        // The wave reader already reads only the span.
         let span = self.options.span.filter(|_| entry.format != Format::Wav);
         let read = |survey| (entry.read)(source, &self.options, survey);
         let changes = span.is_some() || self.options.stretch.is_some() || self.options.resample.is_some();
@@ -306,7 +306,7 @@ impl Reader {
 /// Largest file in bytes that is tried as a sweep list: 10 000 points of about 100 bytes.
 const LONGEST_LIST: u64 = 1 << 20;
 
-/// Adds to a reading `error` that the file is a sweep list, if it is one: users easily take a list for a
+/// Adds to a reading `error` that the file is a sweep list, if it is one: a list is easily taken for a
 /// measurement.
 fn no_list(source: &Source, error: Error) -> Error {
     let short = source.len() <= LONGEST_LIST;

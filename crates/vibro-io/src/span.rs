@@ -41,12 +41,13 @@ pub fn cut(mut contents: Contents, span: Option<(f64, f64)>) -> Result<Contents>
         if trace.axis.kind != AxisKind::Time || trace.axis.is_empty() {
             continue;
         }
-        // Only times that rise have one part between two times; stretches are numbered in the whole trace.
+        // Only in rising times is a span one part. For others the error names the stretches, which are
+        // numbered in the whole trace.
         let rises = |instants: &[f64]| instants.is_sorted_by(|a, b| a < b);
         if matches!(&trace.axis.grid, Grid::Uneven(instants) if !rises(instants)) {
             trace.sampling_rate()?;
         }
-        // A span counts from 1970, in the file's unit, or from the first row, in s.
+        // The times of a span count from 1970, in the file's unit, or from the first row, in s.
         let counted = [span.0, span.1].into_iter().find_map(|t| if t.is_finite() { epoch(t) } else { None });
         let (from, factor) = counted.map_or((0.0, 1.0), |(_, factor)| (trace.meta.origin, factor));
         let part = within(&trace.axis, (span.0 * factor - from, span.1 * factor - from))?;

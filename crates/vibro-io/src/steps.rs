@@ -14,9 +14,9 @@ pub struct Steps {
     pub files: Vec<PathBuf>,
     /// Channel of the force; in a single file, one channel a step.
     pub force: Vec<String>,
-    /// Channel of the response, likewise.
+    /// Channel of the response; in a single file, one channel a step.
     pub response: Vec<String>,
-    /// Sampling rate in Hz, where the files do not say it.
+    /// Sampling rate in Hz, where the files do not state it.
     pub rate: Option<f64>,
 }
 

@@ -164,9 +164,9 @@ impl SweepReader {
         Ok((meta, values, window))
     }
 
-    /// Factor from what the reader made of a file to SI units, and the unit.
+    /// Factor to SI units from the values as the reader gives them, and that unit.
     fn factor(&self, meta: &Meta, force: bool, found: &mut impl FnMut(Finding)) -> Result<(f64, Unit)> {
-        // The reader has taken a unit that the file states to SI already.
+        // The reader has already converted values with a stated unit to SI, by the factor `taken`.
         let (written, taken) = (&meta.unit, factor_to_si(meta));
         let meant = self.meant();
         let raw = matches!(written.quantity(), Quantity::Voltage | Quantity::Ratio);

@@ -152,7 +152,8 @@ struct Channel<'a> {
     clock: Option<Arc<AbscissaChannel>>,
 }
 
-/// Says which unit or scale changes between values of a channel, so that none holds for all.
+/// Text on the unit or scale that changes between values of a channel, which has then no scale for all; else
+/// `None`.
 fn changed(object: &Object) -> Option<String> {
     let text = |value: &Value| value.text().unwrap_or_default();
     let scales = |key: &str| UNITS.contains(&key) || key == "wf_xunit_string" || key.starts_with("NI_");

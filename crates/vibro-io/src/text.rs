@@ -1,10 +1,10 @@
-//! Text of analysers, loggers and spreadsheets: dialect → rows → records.
+//! Reads text of analysers, loggers and spreadsheets: dialect → rows → records.
 //!
-//! A [`dialect`] says, as data, where names, units and abscissa stand and how a row is cut. It is found out
-//! from the first bytes: [`table`] knows tables with names above their columns or behind the keys of a
-//! [`preamble`], [`numbers`] plain columns of numbers; both know a [`clock`]. The dialect of another
-//! instrument is one more function beside these two. Clean rows are read in parallel ([`fast`]), all others
-//! one by one ([`rows`]), so that a complaint names line and column. Columns become records in [`records`].
+//! A [`dialect`] describes, as data, the names, the units, the abscissa and how a row is cut. It is found
+//! from the first bytes: [`table`] detects tables with names above their columns or behind the keys of a
+//! [`preamble`], [`numbers`] plain columns of numbers; both know a [`clock`]. Another instrument needs one
+//! more function beside these two. Clean rows are read in parallel ([`fast`]), all others one by one
+//! ([`rows`]), so that an error names line and column. Columns become records in [`records`].
 
 mod axis;
 mod clock;
@@ -51,9 +51,10 @@ pub(crate) use tail::Digits;
 use vibro_record::{AxisKind, Error, Finding, Record, Result, Trace, Values, code};
 use word_columns::LeftOut;
 
-/// Whether a text begins with a table under names.
+/// Whether a text begins with a table with names above its columns.
 pub(crate) fn is_table(head: &[u8], source: &Source) -> bool {
-    // Names need a letter that numbers do not hold; most files of numbers have none.
+    // Names have a letter that no number holds; most files of numbers have none, and are not examined
+    // further.
     let letter = |b: &u8| !b.is_ascii() || b.is_ascii_alphabetic() && !b"eEdDqQijIJ".contains(b);
     let words = head[..head.len().min(encoding::LOOK)].iter().any(letter);
     let found = || with_text(source, Limit::default(), |text| Ok(table::detect(text, &Options::default())));
@@ -88,13 +89,13 @@ pub(crate) fn read_table(source: &Source, options: &Options, survey: bool) -> Re
     })
 }
 
-/// The runs of a text that stand side by side, one after the other.
+/// Reads the runs of a text that are side by side, one after the other.
 fn read_runs(text: &Text, dialect: &Dialect, options: &Options, survey: bool) -> Result<Contents> {
     let mut all = Contents::default();
     for others in runs::others_of(dialect) {
         let run = read_table(&runs::alone(text, dialect, &others)?, options, survey)?;
         all.records.extend(run.records);
-        // What holds for each of them is said once.
+        // Equal findings of several runs are reported once.
         all.findings.extend(
             run.findings.into_iter().filter(|found| !all.findings.contains(found)).collect::<Vec<_>>(),
         );
@@ -114,7 +115,7 @@ pub(crate) fn read_numbers(source: &Source, options: &Options, survey: bool) -> 
     })
 }
 
-/// What is left without its columns of words; where it has none, the complaint `why` it cannot be read.
+/// Reads a text without its columns of words; fails with the first error `why` where it has none.
 fn without_words(text: &Text, options: &Options, why: Error) -> Result<Contents> {
     let Some(LeftOut { source, found, changes }) = word_columns::left_out(text)? else { return Err(why) };
     let contents = without((source, found), options)?;
@@ -123,12 +124,13 @@ fn without_words(text: &Text, options: &Options, why: Error) -> Result<Contents>
     let is_said = |code: &str| findings.iter().any(|found| found.code == code);
     let timed = contents.records.iter().all(|(record, _)| record.axis().kind == AxisKind::Time);
     let rises = timed && !is_said(code::AXIS_BACKWARDS);
-    // Rows of several channels below each other have times of their own: those of a rate tell nothing.
+    // Rows of several channels below each other may each have rising times. Only printed times that rise
+    // exclude them, not times that follow from a rate.
     let by_rate = options.rate.is_some() || is_said(code::RATE_FROM_HEAD);
     if changes && (!rises || by_rate) { Err(why) } else { Ok(contents) }
 }
 
-/// The longest of several tables; where none is, the complaint `why` they cannot be read as one.
+/// Reads the longer of two tables; fails with the first error `why` where neither is much longer.
 fn one_table(text: &Text, options: &Options, why: Error) -> Result<Contents> {
     let Some(line) = why.line().filter(|_| why.advice() == rows::TABLES) else { return Err(why) };
     let Some(left) = tables::longest(text, line)? else { return Err(why) };
@@ -136,7 +138,7 @@ fn one_table(text: &Text, options: &Options, why: Error) -> Result<Contents> {
     without((source, vec![found]), options).map_err(|_| why)
 }
 
-/// The contents of what is left of a text, and what was left out of it.
+/// Reads a text of which parts were left out, and adds the findings `found` on these parts.
 fn without((source, found): (Source, Vec<Finding>), options: &Options) -> Result<Contents> {
     let read = if is_table(source.head(), &source) { read_table } else { read_numbers };
     let mut contents = read(&source, options, false)?;
@@ -144,15 +146,15 @@ fn without((source, found): (Source, Vec<Finding>), options: &Options) -> Result
     Ok(contents)
 }
 
-/// What a column that rises takes while it is looked whether it is an even axis, beside itself and in its
+/// Memory to test whether a rising column is an even axis, beside the column itself and as a multiple of its
 /// size.
 const ABSCISSA: f64 = 1.5;
 
-/// What was read of a text.
+/// Columns of a text as records, and findings on the text.
 struct Read {
     columns: Vec<records::Built>,
     findings: Vec<Finding>,
-    /// Where clean rows stand: their shape, and the byte behind the last.
+    /// Shape of the rows and the byte offset behind the last one, where all are clean.
     clean: Option<(RowShape, u64)>,
 }
 
@@ -164,16 +166,17 @@ fn read(text: &Text, dialect: &Dialect, options: &Options, survey: bool) -> Resu
 
 /// A text whose values are read block by block.
 pub(crate) struct Streamed {
-    /// Its traces without their values.
+    /// The traces without their values.
     pub traces: Vec<Trace>,
-    /// What is said of the text.
+    /// Findings on the text as a whole.
     pub findings: Vec<Finding>,
-    /// Its values.
+    /// The reader of the values.
     pub columns: stream::Columns,
 }
 
-/// The traces of a text without their values, which are read again block by block, and what is said of the
-/// text; `None` of a text that must be held, for it is in memory, has rows that are not clean, or no traces.
+/// The traces of a text without their values, which are read again block by block, and the findings; `None`
+/// for a text that must be held in memory: it is there already, has rows that are not clean, or has no
+/// traces.
 ///
 /// # Errors
 /// As reading the text.
@@ -206,10 +209,10 @@ pub(crate) fn stream(source: &Source, options: &Options, format: Format) -> Resu
 fn read_rows(text: &Text, dialect: &Dialect, options: &Options, survey: bool) -> Result<Read> {
     let stated = Stated::of(dialect.header.iter().map(String::as_str), dialect.shown_mark(&text.head));
     let kept = kept(dialect, options, &stated, survey);
-    // As many rows as the first bytes let expect.
+    // Number of rows, estimated from the length of the first lines.
     let lines = text.head.lines().count() as f64 / text.head.len().max(1) as f64;
     let bytes = text.source.len() as f64;
-    // A value takes two bytes with what ends it.
+    // A value and its separator take at least two bytes.
     let rows = (bytes * lines).min(bytes / (2.0 * dialect.columns as f64));
     let held = kept.iter().filter(|kept| **kept).count() as f64;
     options.hold(rows * (held + if dialect.columns > 1 { ABSCISSA } else { 0.0 }))?;
@@ -231,7 +234,7 @@ fn read_rows(text: &Text, dialect: &Dialect, options: &Options, survey: bool) ->
         Some(columns) => (Rows { columns, ..Rows::default() }, shape.map(|shape| (shape, end))),
         None => (
             carefully(text, dialect, options).map_err(|why| {
-                // The last line of one series is shorter.
+                // A series over several columns often has a shorter last line.
                 let short = plain && options.wrapped.is_none() && wrapped::ends_short(text, dialect);
                 if one_step && dialect.columns > 2 || short {
                     wrapped::question(dialect.columns)
@@ -254,17 +257,17 @@ fn read_rows(text: &Text, dialect: &Dialect, options: &Options, survey: bool) ->
     Ok(Read { clean, ..read })
 }
 
-/// The columns whose values are held: all, or, where a `survey` asks for the ends of traces, what may be an
-/// abscissa.
+/// Which columns are held in memory: all, or, where a `survey` needs only extremes, those that may be an
+/// abscissa or a counter.
 fn kept(dialect: &Dialect, options: &Options, stated: &Stated, survey: bool) -> Vec<bool> {
     let names = dialect.names.iter().flatten();
     let complex = options.complex
         || stated.complex
         || names.clone().any(|name| name.part().is_some() || name.phase().is_some());
-    // Columns without names may continue each other, which their values tell.
+    // Columns without names may continue each other, which only their values show.
     let plain = dialect.names.is_none() && dialect.columns > 2;
     let all = !survey || complex || plain;
-    // Whether a column counts, or repeats the times, is told by its values.
+    // Only values show whether a column counts, or repeats the times.
     let told = |name: &Name| name.may_count() || name.seconds().is_some();
     let told = |i: usize| dialect.names.as_ref().is_some_and(|names| told(&names[i]));
     let abscissa = |i: usize| dialect.named_abscissa() == Some(i) || told(i) || i == 0 && dialect.columns > 1;
@@ -287,7 +290,7 @@ fn records_of(text: &Text, tail: &[u8], dialect: &Dialect, rows: Rows, options: 
     Ok(Read { columns, findings, clean: None })
 }
 
-/// How many lines of a head are rows of another table: numbers alone, as many as in the line above or below.
+/// Number of lines in a header that are rows of another table: numbers only, as many as in a line next to it.
 fn rows_in(head: &[String]) -> usize {
     let numbers = |line: &String| {
         let cells = line.split([',', ';', '\t', ' ']).filter(|cell| !cell.is_empty());
@@ -298,7 +301,7 @@ fn rows_in(head: &[String]) -> usize {
     widths.chunk_by(|a, b| a == b).filter(|rows| rows[0] > 1 && rows.len() > 1).map(<[usize]>::len).sum()
 }
 
-/// Row by row, each complaint with its place.
+/// Reads row by row, so that an error names its place.
 fn carefully(text: &Text, dialect: &Dialect, options: &Options) -> Result<Rows> {
     let bytes = text.source.all()?;
     let bytes =

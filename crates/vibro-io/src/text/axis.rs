@@ -1,4 +1,4 @@
-//! The abscissa of a text: what a person states, what a column holds, what the header states.
+//! Chooses the abscissa of a text: from the options, from a column, or from the header.
 
 use super::header::{PerhapsRate, Stated};
 use crate::assemble::{NOMINAL, PERHAPS_LOST, domain, short};
@@ -6,37 +6,38 @@ use crate::options::Options;
 use vibro_record::code;
 use vibro_record::{Axis, AxisKind, Clock, Error, Finding, Grid, Result, evened};
 
-/// Relative difference that no statement means: six digits are the least that a person states.
+/// Relative difference up to which a stated number and the column agree: nobody states a number to correct
+/// less.
 const SURE: f64 = 1e-6;
-/// Relative difference of a statement that was rounded to fewer digits than the column has.
+/// Relative difference up to which a stated number is a rounded form of the column's, with fewer digits.
 const ROUNDED: f64 = 1e-4;
 
-/// An abscissa that stands in the file as a column.
+/// An abscissa that the file holds as a column.
 pub struct PrintedAbscissa {
     pub axis: Axis,
     /// Names the column, e.g. `column "t"`.
     pub label: String,
-    /// Half a unit in the last digit that it was printed with, in s or Hz.
+    /// Half a unit in the last digit of the printed values, in s or Hz.
     pub resolution: f64,
-    /// Whether it is time or frequency only because a person's statement says so.
+    /// Whether it is only assumed to be time or frequency: neither its name nor the header states it.
     pub assumed: bool,
-    /// Its 0 in s since 1970, where it counts from there; else 0.
+    /// Time of its 0 in s since 1970, where the column counts from there; else 0.
     pub origin: f64,
     /// Relative standard uncertainty of its step, if it is even.
     pub clock: f64,
-    /// What is to be said of it, if it is used.
+    /// Findings on it, reported if it is used.
     pub findings: Vec<Finding>,
 }
 
-/// What a person states of the abscissa.
+/// Sampling rate or base band from the options.
 struct Statement {
     /// `sampling rate` of values over time, `base band` of a spectrum.
     what: &'static str,
     setting: &'static str,
     hertz: f64,
-    /// What the header says of the same.
+    /// The same quantity in Hz, as the header states it.
     header: Option<f64>,
-    /// The axis that it makes.
+    /// The axis that follows from it.
     axis: Axis,
 }
 
@@ -59,7 +60,7 @@ impl Statement {
         Some(Statement { what, setting, hertz, header, axis })
     }
 
-    /// Says where it and the header differ.
+    /// Adds findings where it differs from the header.
     fn against(&self, header: &Stated, findings: &mut Vec<Finding>) {
         let mut differ = |what: &str, file: Option<f64>, used: f64| {
             let found = Finding::caution("statement-overrides-file").name("what", what);
@@ -74,11 +75,11 @@ impl Statement {
     }
 }
 
-/// The axis of `n` values: what a person states, then the printed one, then what the header states. Before it
-/// the relative standard uncertainty of its step, where that is printed.
+/// Chooses the axis of `n` values: from the options, else from the printed column, else from the header. The
+/// first value returned is the relative standard uncertainty of the step; 0 where no column is used.
 ///
 /// # Errors
-/// If a person's statement contradicts a whole printed column.
+/// If the options contradict the printed column, or that runs backwards.
 pub fn choose(
     printed: Option<PrintedAbscissa>,
     n: usize,
@@ -86,7 +87,7 @@ pub fn choose(
     options: &Options,
     findings: &mut Vec<Finding>,
 ) -> Result<(f64, Axis)> {
-    // Times that are made even afterwards keep theirs until then.
+    // Uneven times that are to be stretched or resampled are kept until then.
     let evened = options.stretch.is_some() || options.resample.is_some();
     let own = evened && printed.as_ref().is_some_and(|p| p.axis.step().is_none());
     let Some(statement) = Statement::of(options, header, printed.as_ref(), n).filter(|_| !own) else {
@@ -131,15 +132,16 @@ impl PrintedAbscissa {
         self.axis.at(self.axis.len().saturating_sub(1))
     }
 
-    /// Whether what was stated can be meant by the digits of the column: a time may begin anywhere, lines
-    /// that do not begin at 0 Hz must end at the base band.
+    /// Whether column and statement agree within the printed digits and a `relative` difference. Times may
+    /// begin anywhere; spectral lines that do not begin at 0 Hz must end at the base band.
     fn goes_with(&self, statement: &Statement, relative: f64) -> bool {
         let (axis, given) = (&self.axis, &statement.axis);
         if axis.is_empty() || axis.kind != given.kind {
             return false;
         }
         let close = |a: f64, b: f64, resolution: f64| (a - b).abs() <= resolution + relative * b.abs();
-        // Both ends are rounded; a lost sample makes a whole step, an unsteady clock less than half of one.
+        // Both ends are rounded. In uneven times a lost sample adds a whole step, an unsteady clock less than
+        // half of one.
         let uneven = || self.batch().unwrap_or(0.5 * given.step().unwrap_or(0.0));
         let tolerance = axis.step().map_or_else(uneven, |_| 2.0 * self.resolution);
         let span = close(self.last() - axis.start(), given.at(axis.len() - 1), tolerance);
@@ -147,12 +149,13 @@ impl PrintedAbscissa {
         if given.kind == AxisKind::Time { span } else { ends() || (span && self.begins_at_zero()) }
     }
 
-    /// The time of a batch of samples, where several share one.
+    /// Time in s from one batch of samples to the next, where the samples of a batch share one time.
     fn batch(&self) -> Option<f64> {
         if let Grid::Uneven(instants) = &self.axis.grid { batch(instants) } else { None }
     }
 
-    /// Relative difference of a statement that means this column.
+    /// Relative difference up to which a statement is a rounded form of this column; larger for a clock with
+    /// jitter.
     fn rounded(&self) -> f64 {
         if self.findings.iter().any(|found| found.code == Clock::JITTERS) { NOMINAL } else { ROUNDED }
     }
@@ -176,13 +179,13 @@ impl PrintedAbscissa {
     fn stops_before(&self, base_band: f64) -> bool {
         let many = self.axis.len() > 1 && self.axis.kind == AxisKind::Frequency;
         self.axis.step().filter(|_| many).is_some_and(|step| {
-            // Half a step tells this from lines that end at the base band.
+            // Less than half a step excludes lines that end at the base band itself.
             let tolerance = (self.resolution * 2.0 + ROUNDED * base_band).min(0.5 * step);
             self.begins_at_zero() && (self.last() + step - base_band).abs() <= tolerance
         })
     }
 
-    /// A statement that is a rounded number of what the column holds.
+    /// Finding that the stated number is a rounded form of the column's, which is used.
     fn refines(&self, Statement { what, hertz, axis, .. }: &Statement) -> Finding {
         let step = self.axis.step().unwrap_or(f64::NAN);
         let holds = match axis.kind {
@@ -222,7 +225,7 @@ impl PrintedAbscissa {
     }
 }
 
-/// The median step between different instants, where some are equal and none goes back.
+/// Median step in s between different instants, where some are equal and none goes back.
 fn batch(instants: &[f64]) -> Option<f64> {
     let steps: Vec<f64> = instants.windows(2).map(|w| w[1] - w[0]).collect();
     let batched = steps.contains(&0.0) && steps.iter().all(|step| *step >= 0.0);
@@ -230,7 +233,7 @@ fn batch(instants: &[f64]) -> Option<f64> {
     (batched && !apart.is_empty()).then(|| vibro_record::median(&apart))
 }
 
-/// A printed axis, compared with what the header states.
+/// The printed axis, with a finding where the header states another step.
 fn trusted(printed: PrintedAbscissa, header: &Stated, findings: &mut Vec<Finding>) -> Axis {
     let PrintedAbscissa { axis, label, findings: mut said, .. } = printed;
     let header = match axis.kind {
@@ -250,7 +253,7 @@ fn trusted(printed: PrintedAbscissa, header: &Stated, findings: &mut Vec<Finding
     axis
 }
 
-/// The axis that the header states.
+/// The axis from the header, else an index.
 fn headed(n: usize, header: &Stated, findings: &mut Vec<Finding>) -> Axis {
     match (header.spacing(n), header.rate) {
         (Some(df), rate) if rate.is_none() || header.all_lines(n) => Axis::frequency(0.0, df, n),

@@ -13,14 +13,14 @@ use std::ops::Range;
 const MONTHS: [&str; 12] =
     ["jan", "feb", "mar", "apr", "may", "jun", "jul", "aug", "sep", "oct", "nov", "dec"];
 
-/// A date, a time of day in s, or the half of the day that it is in (true: the second).
+/// One word of a clock: the parts of a date, a time of day in s, or AM (false) or PM (true).
 enum ClockField<'a> {
     Date(Vec<&'a str>),
     Time(f64),
     Half(bool),
 }
 
-/// The cells of a row that hold a date or a time side by side; `None` where none of them holds a time of day.
+/// The cells side by side that hold date and time; `None` where none of them holds a time of day.
 pub fn columns(fields: &[(usize, Cow<str>)]) -> Option<Range<usize>> {
     let start = fields.iter().position(|(_, field)| is_clock(field))?;
     let end = start + fields[start..].iter().take_while(|(_, field)| is_clock(field)).count();
@@ -36,12 +36,12 @@ pub fn is_clock(text: &str) -> bool {
     unsigned.starts_with(|c: char| c.is_ascii_alphanumeric()) && words(text).all(|word| part(word).is_some())
 }
 
-/// Cells side by side as one.
+/// Joins cells side by side with blanks.
 pub fn joined(fields: &[(usize, Cow<str>)]) -> String {
     fields.iter().map(|(_, field)| field.as_ref()).collect::<Vec<&str>>().join(" ")
 }
 
-/// The seconds of a clock as they are printed, `01.123`, for their digits.
+/// The seconds of a clock as printed, `01.123`, so that their digits show the resolution.
 pub fn printed_seconds(text: &str) -> String {
     if let Some(seconds) = text.strip_suffix(" sec") {
         return seconds.to_owned();
@@ -57,12 +57,12 @@ pub fn printed_seconds(text: &str) -> String {
     thousandths.map_or(seconds.clone(), |ms| format!("{seconds}.{}", ms.replace(['.', ','], "")))
 }
 
-/// Seconds since the first instant that it is given.
+/// Gives seconds since the first instant that it was given.
 #[derive(Debug, Default)]
 pub struct Stopwatch {
     first: Option<(f64, f64)>,
     last: f64,
-    /// Days that passed without a date to say so.
+    /// Midnights that passed where no date shows them.
     days: f64,
 }
 
@@ -79,7 +79,7 @@ impl Stopwatch {
     }
 }
 
-/// Words of a clock: ISO 8601 joins date and time by a `T`.
+/// Words of a clock without its time zone. ISO 8601 joins date and time by a `T`.
 fn words(text: &str) -> impl Iterator<Item = &str> {
     let iso =
         text.as_bytes().windows(3).any(|w| w[0].is_ascii_digit() && w[1] == b'T' && w[2].is_ascii_digit());
@@ -94,7 +94,7 @@ fn is_zone(word: &str) -> bool {
     digits.is_some_and(|digits| digits.len() == 4 && digits.bytes().all(|b| b.is_ascii_digit()))
 }
 
-/// Day, where there is one, and seconds of that day.
+/// Number of the day, where there is a date, and seconds of that day.
 fn parse(text: &str) -> Option<(Option<f64>, f64)> {
     if let Some(seconds) = duration(text) {
         return Some((None, seconds));
@@ -117,7 +117,7 @@ fn parse(text: &str) -> Option<(Option<f64>, f64)> {
     Some((if let Some(day) = date { Some(day?) } else { None }, seconds))
 }
 
-/// `0.5 sec`, as MATLAB writes durations.
+/// Seconds of a duration as MATLAB writes it, `0.5 sec`.
 fn duration(text: &str) -> Option<f64> {
     number(text.strip_suffix(" sec")?)
 }
@@ -139,10 +139,10 @@ fn number(text: &str) -> Option<f64> {
     number::either(text.as_bytes())
 }
 
-/// `h:m`, `h:m:s`, `d.h:m:s`, `h:m:s:ms` and, where the last has decimals, `m:s`; a zone behind them says
-/// nothing within one file.
+/// Reads `h:m`, `h:m:s`, `d.h:m:s`, `h:m:s:ms` and, where the last part has decimals, `m:s`, in s. A zone
+/// behind them is ignored: it is the same in a whole file.
 fn seconds(word: &str) -> Option<f64> {
-    // Before a trigger.
+    // A negative time lies before a trigger.
     if let Some(before) = word.strip_prefix('-') {
         return seconds(before).map(|seconds| -seconds);
     }
@@ -158,7 +158,7 @@ fn seconds(word: &str) -> Option<f64> {
         return None;
     }
     let of = |h: f64, m: f64, s: f64| (m < 60.0 && s < 61.0).then_some((h * 60.0 + m) * 60.0 + s);
-    // `10:11:12:05` may be hundredths or frames of a film.
+    // Two last digits, `10:11:12:05`, may be hundredths or frames of a film.
     let thousandths = word.rsplit(':').next().is_some_and(|cell| cell.len() == 3);
     match *cells {
         [m, s] if word.contains(['.', ',']) => of(0.0, m, s),
@@ -169,8 +169,8 @@ fn seconds(word: &str) -> Option<f64> {
     }
 }
 
-/// Days of a date since some day: year first, else day first, but for slashes with AM and PM and where no
-/// month has that number.
+/// Days since a fixed date. The order is year first where that has four digits, month first with AM or PM or
+/// where the second number is above 12, else day first.
 fn day(cells: &[&str], american: bool) -> Option<f64> {
     let &[a, b, c] = cells else { return None };
     let whole = |cell: &str| cell.parse::<u16>().ok().map(f64::from);
@@ -184,7 +184,7 @@ fn day(cells: &[&str], american: bool) -> Option<f64> {
         _ => (whole(c)?, month(b)?, whole(a)?),
     };
     let year = if year < 100.0 { year + 2000.0 } else { year };
-    // Years that begin in March end with the day that leaps.
+    // Years are counted from March, so that the leap day is their last.
     let (year, months) = if month > 2.0 { (year, month - 3.0) } else { (year - 1.0, month + 9.0) };
     let leaps = (year / 4.0).floor() - (year / 100.0).floor() + (year / 400.0).floor();
     (1.0..=31.0).contains(&day).then_some(365.0 * year + leaps + ((153.0 * months + 2.0) / 5.0).floor() + day)

@@ -1,4 +1,4 @@
-//! One column of a text, and what its values tell of it.
+//! One column of a text, and checks of its values: counters, clocks, channel numbers, repeated values.
 
 use super::names::{Name, label};
 use crate::assemble::kind_of;
@@ -14,12 +14,12 @@ pub struct Column {
     pub at: usize,
     pub name: Name,
     pub values: Held,
-    /// First row and distance of its rows, where it has a value in some only.
+    /// First row and distance in rows of its values, where it has one only in some rows.
     pub sparse: Option<(usize, usize)>,
 }
 
 impl Column {
-    /// Its values, of complex ones the real parts; none that were not held.
+    /// Its values, or the real parts of complex ones; empty where values were not kept.
     pub fn reals(&self) -> Cow<'_, [f64]> {
         match &self.values {
             Held::Values(Values::Complex(values)) => values.iter().map(|v| v.re).collect(),
@@ -31,12 +31,12 @@ impl Column {
         !matches!(self.values, Held::Ends(_)) && rises(&self.reals())
     }
 
-    /// Whether it rises as a clock or a counter does, and has no unit of anything else.
+    /// Whether it rises in even steps, as a clock or counter does, and has no unit of another quantity.
     pub fn rises_evenly(&self) -> bool {
         let unit = self.name.unit.as_deref();
         let other = unit.is_some_and(|unit| Unit::parse(unit).is_none_or(|unit| kind_of(&unit).is_none()));
         let values = Some(self.values.reals()).filter(|values| !other && values.len() > 10);
-        // Ends with the first step that is another: long records hold it soon.
+        // Stops at the first step of another size, which long records have early.
         let even = |(low, high): (f64, f64), step: f64| {
             let (low, high) = (low.min(step), high.max(step));
             (low > 0.0 && high <= 2.0 * low).then_some((low, high))
@@ -49,7 +49,7 @@ impl Column {
         })
     }
 
-    /// Whether it holds the instants of `axis` from another start and in other units: `elapsed (s)` beside
+    /// Whether it holds the same instants as `axis` with another start or unit: `elapsed (s)` beside
     /// milliseconds since 1970.
     pub fn is_clock_of(&self, axis: &Column) -> bool {
         let time = axis.name.axis(true) == Some(AxisKind::Time);
@@ -57,9 +57,10 @@ impl Column {
         let (own, other) = (self.reals(), axis.reals());
         let (Some(first), Some(last)) = (own.first(), own.last()) else { return false };
         let units = axis.name.seconds().map_or(vec![1.0, 1e-3, 1e-6, 1e-9], |unit| vec![unit]);
-        // Nanoseconds since 1970 are whole in steps of 256.
+        // Largest difference: 1 % of a step. Doubles of nanoseconds since 1970 are rounded to multiples of
+        // 256.
         let most = 1e-2 * (last - first) / own.len() as f64;
-        // Another clock drifts.
+        // The same instants stay this close everywhere; another clock drifts away.
         let is_same = |unit: f64| {
             let off = |(v, t): (&f64, &f64)| ((v - first) - unit / own_unit * (t - other[0])).abs();
             own.iter().zip(other.iter()).all(|pair| off(pair) <= most)
@@ -75,8 +76,8 @@ impl Column {
             && values.iter().enumerate().all(|(i, v)| *v == first + i as f64)
     }
 
-    /// The two neighbours between which a column that counts the samples leaves some out: whole numbers that
-    /// rise, by one nine times in ten.
+    /// Two neighbours between which a counter of samples leaves some out: whole numbers that rise, in at
+    /// least 90 % of the rows by one.
     pub fn leaves_out(&self) -> Option<[f64; 2]> {
         let values = self.reals();
         let steps = || values.windows(2).map(|pair| pair[1] - pair[0]);
@@ -87,8 +88,8 @@ impl Column {
         (10 * ones >= 9 * (values.len() - 1)).then(|| [values[first], values[first + 1]])
     }
 
-    /// Two values of a column that numbers the channel or the sensor of each row, the first and one that
-    /// follows: whole numbers in turns, or few of them that come back under a name that says so.
+    /// First and another value of a column that numbers the channel or the sensor of each row: whole numbers
+    /// in a fixed cycle, or a few repeated ones in a column named so.
     pub fn numbers_channels(&self) -> Option<[f64; 2]> {
         let values = self.values.opening();
         let first = *values.first().filter(|_| self.sparse.is_none() && self.name.unit.is_none())?;
@@ -111,7 +112,8 @@ impl Column {
         (known.len() > 1 && (in_turns() || named())).then(|| [first, known[1]])
     }
 
-    /// Whether its unit is that of a signal, unknown or none: such values may lack a factor.
+    /// Whether its unit is one of a signal (voltage, ratio), unknown or missing: such values may lack a scale
+    /// factor.
     pub fn may_be_signal(&self) -> bool {
         let unit = self.name.unit.as_deref().and_then(Unit::parse);
         unit.is_none_or(|unit| {
@@ -119,8 +121,8 @@ impl Column {
         })
     }
 
-    /// How many times each value stands, where nearly all stand as often: a sensor that is slower than the
-    /// rows. Where most steps between them are the smallest one, it is the digits that are coarse.
+    /// Number of rows for which each value is held, where nearly all are held as long: the sensor is slower
+    /// than the rows. Coarse digits are excluded: there, most steps are as small as the smallest.
     pub fn held(&self) -> Option<usize> {
         let values = self.values.opening();
         let runs: Vec<&[f64]> = values.chunk_by(|a, b| a == b).collect();
@@ -184,7 +186,8 @@ impl Column {
     }
 }
 
-/// Most channels or sensors whose rows stand below each other, and words for what numbers them.
+/// Most channels or sensors in one table with a column of their numbers, and last words of that column's
+/// name.
 const TURNS: usize = 64;
 const NUMBERED: [&str; 9] = ["channel", "chan", "ch", "sensor", "node", "device", "probe", "id", "kanal"];
 
@@ -204,11 +207,11 @@ const RARE: f64 = 0.01;
 /// Fewest values, each of which stands several times, that show that this is how they are stored.
 const FEWEST_RUNS: usize = 20;
 
-/// Least part of the rows that repeat the one before where a sensor is read more often than it measures.
+/// Smallest part of the rows that repeat the row before, for a sensor that is read faster than it measures.
 const REPEATS: f64 = 0.05;
 
-/// How many of the first rows, of how many, repeat the one before in all of several columns, where these are
-/// alone, between rows that differ: a motion that rests, or coarse digits, repeat many in a row.
+/// Number of rows that repeat the row before in all columns, and number of all rows looked at. `None` unless
+/// they are single rows between rows that differ: a motion at rest or coarse digits repeat many in a row.
 pub fn repeats(table: &[Column]) -> Option<(usize, usize)> {
     let measured = table.iter().filter(|column| !column.rises());
     let columns: Vec<&[f64]> = measured.map(|column| column.values.opening()).collect();

@@ -1,4 +1,4 @@
-//! A text as characters, whatever its encoding.
+//! Gives texts of any encoding as UTF-8 or Latin-1.
 
 use super::encoding;
 use crate::limit::Limit;
@@ -6,7 +6,7 @@ use crate::source::Source;
 use std::borrow::Cow;
 use vibro_record::{Place, Result};
 
-/// A text and what is known of it before its rows are read.
+/// A text, with its first lines, before its rows are read.
 pub struct Text<'a> {
     /// UTF-8 or Latin-1, with LF or CR LF.
     pub source: &'a Source,
@@ -26,18 +26,19 @@ impl<'a> Text<'a> {
         Text { source, head: encoding::decode(&whole[..ends]), encoding }
     }
 
-    /// Whether the file calls itself CSV: then one column will do, and names need not fit the rows.
+    /// Whether the ending of the file is that of a table: then one column is enough, and names need not fit
+    /// the rows.
     pub fn called_csv(&self) -> bool {
         matches!(self.source.extension().as_str(), "csv" | "tsv") || self.source.is_sheet()
     }
 }
 
-/// Hands a source to `read`, UTF-16, other scripts and lone CRs turned into UTF-8 with LF.
+/// Hands a source to `read`; UTF-16, other scripts and lone CRs are converted to UTF-8 with LF.
 pub fn with_text<T>(source: &Source, limit: Limit, read: impl FnOnce(&Text) -> Result<T>) -> Result<T> {
     let head = source.head();
     let cut = source.len() > head.len() as u64;
     if encoding::is_utf16(head) || encoding::foreign(head).is_some() || encoding::lone_cr(head, cut) {
-        // The bytes, and twice their text.
+        // Memory for the bytes, and for twice their text.
         limit.hold(3.0 * source.len() as f64)?;
     }
     let converted = if encoding::is_utf16(head) {
@@ -54,7 +55,7 @@ pub fn with_text<T>(source: &Source, limit: Limit, read: impl FnOnce(&Text) -> R
     read(&Text::of(converted.as_ref().unwrap_or(source), encoding::name(head)))
 }
 
-/// The place of a complaint; the reader adds the file.
+/// The place of an error; the reader adds the file.
 pub fn in_line(line: u64) -> Place {
     Place { line: Some(line), ..Place::default() }
 }

@@ -1,4 +1,4 @@
-//! How a text of numbers is laid out, as data.
+//! The layout of a text of numbers, as data.
 
 use super::clock;
 use super::lines::{Fields, Line, Lines, Separator, fields};
@@ -7,10 +7,10 @@ use crate::format::Format;
 use crate::number;
 use std::ops::Range;
 
-/// Rows that show the decimal mark.
+/// Most rows that are searched for the decimal mark.
 const ENOUGH: usize = 1000;
 
-/// How rows are to be cut and read, and what stands above them.
+/// How rows are cut and read, and what the lines above them hold.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Dialect {
     /// CSV: the abscissa is the first column whose name says so. ASCII: it is the first column, by its name
@@ -19,30 +19,30 @@ pub struct Dialect {
     pub separator: Separator,
     /// Decimal mark.
     pub decimal: u8,
-    /// Whether a person stated the decimal mark.
+    /// Whether the user stated the decimal mark.
     pub stated: bool,
     /// Whether a cell holds `(re+imj)`, `re+imj`, `re - im i`, … in place of one real number.
     pub complex: bool,
-    /// Columns of a row.
+    /// Columns of a row; date and time count as one.
     pub columns: usize,
-    /// Columns before those, which hold a preamble beside the first rows.
+    /// Number of cells before these columns, which hold a preamble beside the first rows.
     pub skipped: usize,
-    /// Cells of date and time behind those, which count as one column.
+    /// Cells of date and time, counted behind the skipped ones; together they are one column.
     pub clock: Option<Range<usize>>,
-    /// One a column, where the text has them.
+    /// One name for each column, where the text has names.
     pub names: Option<Vec<Name>>,
-    /// What begins a remark.
+    /// Marks that begin a remark.
     pub remarks: &'static [&'static str],
     /// Preamble and remarks above the rows.
     pub header: Vec<String>,
-    /// Line that the number of columns is taken from.
+    /// Number of the line from which the number of columns is taken, from 1.
     pub columns_from: u64,
-    /// Line of the first row, from 1.
+    /// Number of the line of the first row, from 1.
     pub first_line: u64,
 }
 
 impl Dialect {
-    /// Byte of the first row in the bytes of a head.
+    /// Byte offset of the first row in `head`, behind a byte order mark.
     pub(crate) fn first_byte(&self, head: &[u8]) -> usize {
         let mark = if head.starts_with(b"\xef\xbb\xbf") { 3 } else { 0 };
         line_start(head, self.first_line).unwrap_or(head.len()).max(mark)
@@ -54,7 +54,7 @@ impl Dialect {
         Lines::new(text, from, self.first_line, self.remarks)
     }
 
-    /// The column of a table that its name makes the abscissa.
+    /// The column of a table that is the abscissa by its name.
     pub(crate) fn named_abscissa(&self) -> Option<usize> {
         let names = self.names.as_deref().filter(|_| self.format == Format::Csv)?;
         let named = |i: &usize| names[*i].axis(*i == 0).is_some() && self.clock_at() != Some(*i);
@@ -67,7 +67,7 @@ impl Dialect {
         self.clock.as_ref().map(|cells| cells.start)
     }
 
-    /// The decimal mark, where a person stated it or a number of the first rows shows it: `1.000` does not.
+    /// The decimal mark, where the user stated it or a number in the first rows shows it: `1.000` does not.
     pub(crate) fn shown_mark(&self, head: &str) -> Option<u8> {
         let has =
             |cell: &str| cell.as_bytes().contains(&self.decimal) && !number::may_be_grouped(cell.as_bytes());
@@ -79,17 +79,17 @@ impl Dialect {
         (self.stated || rows.take(ENOUGH).any(shows)).then_some(self.decimal)
     }
 
-    /// A real number as a cell holds it.
+    /// The real number in a cell; `None` where there is none.
     pub(crate) fn number(&self, cell: &[u8]) -> Option<f64> {
         let parse = if self.stated { number::parse_stated } else { number::parse_with };
         parse(cell, self.decimal)
     }
 
-    /// Fields of a row; a complex number may have blanks in it. Blank fields behind the last column do not
-    /// count.
+    /// Fields of a row. A single complex number may have blanks in it. Blank fields behind the last column do
+    /// not count.
     ///
     /// # Errors
-    /// The byte at which something stands behind a closing quote.
+    /// The byte offset of text that follows a closing quote.
     pub fn cut<'a>(&self, line: &Line<'a>) -> Result<Fields<'a>, usize> {
         if self.columns == 1 && self.complex {
             let text = line.text.trim();
@@ -108,7 +108,7 @@ impl Dialect {
     }
 }
 
-/// Where line `number` begins, counted from 1.
+/// Byte offset at which line `number`, counted from 1, begins.
 fn line_start(bytes: &[u8], number: u64) -> Option<usize> {
     let mut ends = bytes.iter().enumerate().filter(|(_, b)| **b == b'\n').map(|(at, _)| at + 1);
     if number <= 1 { Some(0) } else { ends.nth(number as usize - 2) }

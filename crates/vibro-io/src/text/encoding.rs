@@ -1,10 +1,10 @@
-//! Bytes to text, whatever the instrument's code page.
+//! Decodes bytes to text, in any code page of an instrument.
 
 use chardetng::{EncodingDetector, Iso2022JpDetection, Utf8Detection};
 use encoding_rs::Encoding;
 use std::borrow::Cow;
 
-/// How many bytes are looked at to tell text from binary data.
+/// Number of first bytes that tell text from binary data.
 pub const LOOK: usize = 2048;
 
 /// Whether the first bytes look like text: UTF-16, or no control characters but blanks, line ends and the end
@@ -33,7 +33,7 @@ pub fn name(head: &[u8]) -> Option<&'static str> {
 /// The encoding of a text with words in another script, such as Shift JIS, GBK or Windows-1251; `None` for
 /// UTF-8 and Latin-1.
 ///
-/// What stands alone among ASCII, as in `µm` or `Prüfkörper`, is taken as Latin-1 whatever else it may be.
+/// Single characters among ASCII, as in `µm` or `Prüfkörper`, are always taken as Latin-1.
 pub(crate) fn foreign(head: &[u8]) -> Option<&'static Encoding> {
     const FEWEST: usize = 4;
     let pairs = || head.windows(2).filter(|pair| !pair[0].is_ascii() && !pair[1].is_ascii());
@@ -47,17 +47,17 @@ pub(crate) fn foreign(head: &[u8]) -> Option<&'static Encoding> {
     (![encoding_rs::UTF_8, encoding_rs::WINDOWS_1252].contains(&found)).then_some(found)
 }
 
-/// Whether a CR stands before anything but LF or another CR; the last byte of a head that is `cut` off tells
-/// nothing.
+/// Whether any CR is followed by anything but LF or CR. The last byte of a head that was `cut` off is not
+/// judged.
 pub(crate) fn lone_cr(bytes: &[u8], cut: bool) -> bool {
-    // Most files have none at all, and that is told quickly.
+    // Fast for most files, which have no CR at all.
     bytes.contains(&b'\r')
         && (bytes.windows(2).any(|w| w[0] == b'\r' && !matches!(w[1], b'\r' | b'\n'))
             || (!cut && bytes.last() == Some(&b'\r')))
 }
 
-/// Every CR that no LF follows becomes LF; several CRs before LF are one line end, as text that was converted
-/// twice has it.
+/// Replaces every CR by LF that no LF follows. Several CRs before LF stay one line end: text that was
+/// converted twice has them.
 pub(crate) fn with_lf(mut bytes: Vec<u8>) -> Vec<u8> {
     let mut before_lf = false;
     for b in bytes.iter_mut().rev() {
@@ -70,11 +70,10 @@ pub(crate) fn with_lf(mut bytes: Vec<u8>) -> Vec<u8> {
     bytes
 }
 
-/// Text without a byte order mark: UTF-8 borrowed as it is, UTF-16 converted, everything else taken as
-/// Latin-1.
+/// Decodes to text without a byte order mark: UTF-8 is borrowed, UTF-16 converted, all else taken as Latin-1.
 ///
-/// Latin-1 gives every byte a character, so that nothing is lost and a later complaint can show what stands
-/// there. Half a pair of surrogates becomes U+FFFD.
+/// Latin-1 gives every byte a character, so that nothing is lost and an error can show it. Half a pair of
+/// surrogates becomes U+FFFD.
 pub(crate) fn decode(bytes: &[u8]) -> Cow<'_, str> {
     if is_utf16(bytes) {
         let unit = if bytes[0] == 0xff { u16::from_le_bytes } else { u16::from_be_bytes };

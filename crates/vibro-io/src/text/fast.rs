@@ -1,7 +1,7 @@
 //! The fast path: rectangular rows of real numbers and nothing else, read in pieces by several threads.
 //!
 //! Anything unexpected (a comment, a missing value, a ragged row, a word) makes this path give up, and
-//! [`super::rows`] reads the file again, line by line, to say exactly what stands where.
+//! [`super::rows`] reads the file again, line by line, so that an error names line and column.
 
 use super::dialect::Dialect;
 use super::lines::Separator;
@@ -18,13 +18,13 @@ use vibro_record::{Error, Result, Values};
 /// Bytes read at a time: small enough to stay in the second-level cache.
 const BLOCK: usize = 256 * 1024;
 
-/// Pieces smaller than this are not worth a thread.
+/// Smallest piece of a file in bytes: smaller ones are not worth a thread.
 const SMALLEST_PIECE: u64 = 1024 * 1024;
 
-/// Rows that tell the shape.
+/// Number of first rows from which the shape is taken.
 const ENOUGH: usize = 24;
 
-/// How clean rows look, as bytes.
+/// Layout of rows for the fast path: how they are cut, and where all have the same widths.
 #[derive(Debug, Clone, Copy)]
 pub struct RowShape {
     separator: Separator,
@@ -34,9 +34,9 @@ pub struct RowShape {
     pub columns: usize,
     /// Byte offset of the first row.
     first_byte: u64,
-    /// Parser of unsigned numbers and their width, where the first rows print them all like `1.234e+05`.
+    /// Parser and width in bytes of unsigned numbers, where the first rows print them all like `1.234e+05`.
     exponential: Option<(Exponential, usize)>,
-    /// Length of a row of one such number and the end of its number, where the first rows are all alike.
+    /// Length of a row in bytes, and offset of the end of its one number, where the first rows are all alike.
     fixed: Option<(usize, usize)>,
 }
 
@@ -58,7 +58,7 @@ impl RowShape {
     }
 }
 
-/// The parser for numbers of one width, if all rows hold such numbers.
+/// Parser and width of exponential numbers, where all numbers in `rows` have the same width.
 fn exponential(rows: &[&[u8]], separator: Separator) -> Option<(Exponential, usize)> {
     let mark = if let Separator::Char(mark) = separator { mark } else { b' ' };
     let cells = rows.iter().flat_map(|row| row.split(|b| *b == mark || b.is_ascii_whitespace()));
@@ -72,8 +72,8 @@ fn exponential(rows: &[&[u8]], separator: Separator) -> Option<(Exponential, usi
     number::exponential_of(width?).map(|parse| (parse, width.unwrap_or_default()))
 }
 
-/// All columns, up to the byte `end` behind which only blanks stand; `None` where the file is not clean. Of a
-/// column that is not to be `kept` and falls somewhere only the ends are held.
+/// Reads all columns up to the byte `end`, behind which only blanks follow; `None` where rows are not clean.
+/// Of a column that is not `kept` and falls anywhere, only extremes and first values are held.
 pub fn read(source: &Source, shape: &RowShape, end: u64, kept: &[bool]) -> Result<Option<Vec<Held>>> {
     match columns(source, shape, end, kept)? {
         None if shape.fixed.is_some() => columns(source, &RowShape { fixed: None, ..*shape }, end, kept),
@@ -81,10 +81,10 @@ pub fn read(source: &Source, shape: &RowShape, end: u64, kept: &[bool]) -> Resul
     }
 }
 
-/// All columns; `None` where the file is not clean.
+/// As [`read`], with this shape only.
 ///
-/// The rows are counted first, so that every thread writes its values where they belong: looking at the bytes
-/// twice costs less than joining vectors. Memory that is not written to costs nothing.
+/// The rows are counted first, so that every thread writes its values where they belong: reading the bytes
+/// twice costs less than joining vectors. Zeroed memory costs nothing before it is written to.
 fn columns(source: &Source, shape: &RowShape, end: u64, kept: &[bool]) -> Result<Option<Vec<Held>>> {
     let from = shape.first_byte;
     let to = end.max(from);
@@ -95,7 +95,8 @@ fn columns(source: &Source, shape: &RowShape, end: u64, kept: &[bool]) -> Result
     let pieces: Vec<(u64, u64)> = bounds.windows(2).map(|w| (w[0], w[1])).collect();
     let counts: Vec<usize> = pieces.par_iter().map(|p| rows_in(source, shape, *p)).collect::<Result<_>>()?;
     let total = counts.iter().sum::<usize>();
-    // A value takes two bytes with what ends it: blank lines must not claim room for rows of many columns.
+    // A value and its separator take at least two bytes. Blank lines must not claim memory for rows of many
+    // columns.
     if total == 0 || total.saturating_mul(shape.columns) as u64 > (to - from) / 2 + 1 {
         return Ok(None);
     }
@@ -138,7 +139,7 @@ fn whole(
     Ok(clean.filter(|()| part.iter().all(|column| column.len() == 0)).map(|()| Vec::new()))
 }
 
-/// As [`whole`], where the values of a column are written only while it rises or if it is kept.
+/// As [`whole`], but writes the values of a column only while it rises, or if it is `kept`.
 fn surveyed(
     source: &Source,
     shape: &RowShape,
@@ -157,7 +158,7 @@ fn surveyed(
     Ok(clean.filter(|()| all).map(|()| lanes.into_iter().map(|(_, lane)| lane).collect()))
 }
 
-/// What was seen of a column.
+/// Summary of the values of one column in one piece.
 #[derive(Debug, Clone)]
 struct Lane {
     /// Whether all its values are written.
@@ -174,8 +175,8 @@ impl Lane {
         Lane { kept, falls: false, first: f64::NAN, last: f64::NEG_INFINITY, ends: Extremes::NONE }
     }
 
-    /// Takes the next values and writes them where they belong; `None` where there are more than were
-    /// counted.
+    /// Takes the next values and writes them to their place in `values`; `None` where there are more than
+    /// rows counted.
     fn take(&mut self, next: &[f64], values: &mut [f64]) -> Option<()> {
         let (Some(first), Some(last)) = (next.first(), next.last()) else { return Some(()) };
         if self.kept || !self.falls {
@@ -191,7 +192,7 @@ impl Lane {
         Some(())
     }
 
-    /// The columns of two pieces, one behind the other.
+    /// Joins the summaries of two pieces, the second behind the first.
     fn joined(mut before: Vec<Lane>, behind: Vec<Lane>) -> Vec<Lane> {
         for (lane, next) in before.iter_mut().zip(behind).filter(|(_, next)| next.ends.len() > 0) {
             lane.falls = lane.falls || next.falls || next.first <= lane.last;
@@ -202,9 +203,9 @@ impl Lane {
     }
 }
 
-/// The first row that starts at `at` or behind, before `to`.
+/// Byte offset of the first row that starts at or behind `at`; `to` where there is none.
 fn row_start(source: &Source, at: u64, to: u64) -> Result<u64> {
-    // The end of the row before may be the byte before.
+    // The search begins one byte before `at`: the row before may end there.
     let mut start = to;
     let mut passed = 0;
     blocks(source, (at - 1, to), |block| {
@@ -216,7 +217,8 @@ fn row_start(source: &Source, at: u64, to: u64) -> Result<u64> {
     Ok(start)
 }
 
-/// Number of line ends, counted in bytes that cannot overflow, so that the compiler looks at many at once.
+/// Number of line ends. A `u8` counts those of 255 bytes without overflow, so that the compiler can vectorize
+/// the loop.
 fn line_ends(bytes: &[u8]) -> usize {
     let ends = |c: &[u8]| usize::from(c.iter().map(|b| u8::from(*b == b'\n')).sum::<u8>());
     bytes.chunks(255).map(ends).sum()
@@ -236,8 +238,8 @@ fn rows_in(source: &Source, shape: &RowShape, (from, to): (u64, u64)) -> Result<
     Ok(count + usize::from(!whole))
 }
 
-/// Hands these bytes, which begin with a row, to `each` in blocks of whole rows, until it gives `None`, as do
-/// rows that are longer than a block.
+/// Hands a range of bytes, which begins with a row, to `each` in blocks of whole rows. `None` once `each`
+/// gives `None` or a row is longer than a block.
 fn blocks(
     source: &Source,
     (from, to): (u64, u64),
@@ -256,17 +258,17 @@ fn blocks(
     }
 }
 
-/// Whole rows of a part of a file, block by block.
+/// Reads part of a file in blocks of whole rows.
 pub struct Blocks {
     file: Take<Box<dyn ReadSeek>>,
     buffer: Vec<u8>,
-    /// Bytes in the buffer, and those of them that were handed out.
+    /// Number of bytes in the buffer; `out` of them were handed out.
     filled: usize,
     out: usize,
 }
 
 impl Blocks {
-    /// The rows of a shape, up to the byte `end`.
+    /// Opens the rows of `shape`, up to the byte `end`.
     ///
     /// # Errors
     /// If it cannot be opened.
@@ -281,7 +283,7 @@ impl Blocks {
         Ok(Blocks { file: file.take(to - from), buffer, filled: 0, out: 0 })
     }
 
-    /// The next rows, none at the end; `None` where a row is longer than a block.
+    /// The next block of rows, empty at the end; `None` where a row is longer than a block.
     ///
     /// # Errors
     /// If they cannot be read.
@@ -301,8 +303,8 @@ impl Blocks {
     }
 }
 
-/// Reads whole rows to the columns of a block, which grow as they must, and gives their number; `None` where
-/// one is not clean.
+/// Parses whole rows into the columns of `block`, which grow as needed, and gives the number of rows; `None`
+/// where one is not clean.
 pub fn parsed(bytes: &[u8], shape: &RowShape, block: &mut [Vec<f64>]) -> Option<usize> {
     let most = line_ends(bytes) + 1;
     for column in block.iter_mut().filter(|column| column.len() < most) {
@@ -314,7 +316,7 @@ pub fn parsed(bytes: &[u8], shape: &RowShape, block: &mut [Vec<f64>]) -> Option<
     Some(block.first()?.len() - left)
 }
 
-/// Reads whole rows; `None` where one is not clean or there are more than were counted.
+/// Parses whole rows; `None` where one is not clean or there are more rows than counted.
 fn rows(block: &[u8], shape: &RowShape, columns: &mut [IterMut<f64>]) -> Option<()> {
     let mut at = 0;
     while at < block.len() {
@@ -331,7 +333,7 @@ fn rows(block: &[u8], shape: &RowShape, columns: &mut [IterMut<f64>]) -> Option<
     Some(())
 }
 
-/// The value of a row with blanks, a sign or blank, a number at its place, blanks or CR, LF.
+/// Value of a row of fixed layout: blanks, a sign or blank, the number at `from..to`, blanks or CR, LF.
 #[inline]
 fn fixed(row: &[u8], (from, to): (usize, usize), parse: Exponential) -> Option<f64> {
     let magnitude = parse(&row[from..to])?;
@@ -351,13 +353,13 @@ fn fixed(row: &[u8], (from, to): (usize, usize), parse: Exponential) -> Option<f
     }
 }
 
-/// The number at the start of `bytes` and the bytes it takes.
+/// The number at the start of `bytes`, and its length in bytes.
 #[inline]
 fn value(bytes: &[u8], shape: &RowShape) -> Option<(f64, usize)> {
     if let Some((parse, width)) = shape.exponential {
         let first = *bytes.first()?;
         let sign = usize::from(matches!(first, b'-' | b'+'));
-        // What follows must end the number, or it is longer than the others.
+        // A digit behind it shows a longer number than the others.
         let ended = bytes.get(sign + width).is_none_or(|b| !b.is_ascii_digit());
         if let Some(magnitude) = bytes.get(sign..sign + width).filter(|_| ended).and_then(parse) {
             return Some((if first == b'-' { -magnitude } else { magnitude }, sign + width));
@@ -366,7 +368,7 @@ fn value(bytes: &[u8], shape: &RowShape) -> Option<(f64, usize)> {
     number::prefix(bytes, shape.decimal)
 }
 
-/// Reads one row; gives its bytes with its line end.
+/// Parses one row and gives its length in bytes, line end included; `None` where it is not clean.
 #[inline]
 fn row(bytes: &[u8], shape: &RowShape, columns: &mut [IterMut<f64>]) -> Option<usize> {
     let blank = |at: &mut usize| {
@@ -374,13 +376,13 @@ fn row(bytes: &[u8], shape: &RowShape, columns: &mut [IterMut<f64>]) -> Option<u
             *at += 1;
         }
     };
-    // CR ends a line only before LF; elsewhere it is a line end of its own, which the slow path sees to.
+    // CR ends a line only before LF. Elsewhere it is a line end of its own, which the careful path handles.
     let line_end = |at: usize| match bytes.get(at) {
         None | Some(b'\n') => Some(at + 1),
         Some(b'\r') if bytes.get(at + 1) == Some(&b'\n') => Some(at + 2),
         Some(_) => None,
     };
-    // Signs make the number of leading blanks random: take two without a branch.
+    // Signs make the number of leading blanks random: up to two are skipped without a branch.
     let mut at = usize::from(bytes.first() == Some(&b' '));
     at += usize::from(bytes.get(at) == Some(&b' '));
     blank(&mut at);

@@ -1,12 +1,12 @@
-//! Numbers with a unit, as heads print them: digits in groups, and a mark that only the rows explain.
+//! Reads numbers with a unit from header lines: with grouped digits, and marks that only the rows explain.
 
 use crate::number;
 use crate::options::POSSIBLE;
 
-/// `mHz`, apart from megahertz in lower case.
+/// Stands for `mHz`, which in lower case would be the same as megahertz.
 pub const MILLIHERTZ: &str = "millihertz";
 
-/// Units of a frequency or a rate in lower case, with their factors to Hz; none counts as Hz.
+/// Units of a frequency or a rate in lower case, with factors to Hz; no unit counts as Hz.
 pub const HERTZ: [(&str, f64); 9] = [
     (MILLIHERTZ, 1e-3),
     ("mhz", 1e6),
@@ -19,22 +19,23 @@ pub const HERTZ: [(&str, f64); 9] = [
     ("", 1.0),
 ];
 
-/// Units of a time in lower case, with their factors to s; none counts as s.
+/// Units of a time in lower case, with factors to s; no unit counts as s.
 pub const SECONDS: [(&str, f64); 7] =
     [("ns", 1e-9), ("us", 1e-6), ("µs", 1e-6), ("ms", 1e-3), ("s", 1.0), ("sec", 1.0), ("", 1.0)];
 
-/// A number with one of `units` behind it (or the unit from the key), checked.
+/// A number times the factor of its unit, one of `units`, behind it or in the key; `None` if not a possible
+/// value.
 pub fn quantity(value: &str, unit_in_key: &str, units: &[(&str, f64)], mark: Option<u8>) -> Option<f64> {
     scaled(value, unit_in_key, units, mark).and_then(checked)
 }
 
-/// The number that a text begins with, as it is printed.
+/// The characters of the number at the start of a text.
 fn printed(value: &str) -> &str {
     value.split(|c: char| !c.is_ascii_digit() && !"+-.,".contains(c)).next().unwrap_or_default()
 }
 
-/// The mark of the number that a text begins with, where it alone does not show whether that is the decimal
-/// one: `51,200`.
+/// The mark in the number at the start of a text, where the number alone does not show whether it is decimal:
+/// `51,200`.
 pub fn doubtful_mark(value: &str) -> Option<u8> {
     let printed = printed(value.trim()).as_bytes();
     let mut marks = printed.iter().filter(|b| matches!(b, b'.' | b','));
@@ -47,14 +48,15 @@ pub fn other_mark(mark: u8) -> u8 {
     if mark == b',' { b'.' } else { b',' }
 }
 
-/// The decimal mark of a printed number: the last of two, none of several that are alike.
+/// The decimal mark of a printed number: the last of two different marks. Of several equal ones none is
+/// decimal.
 fn decimal_mark(printed: &str) -> u8 {
     let mut marks = printed.bytes().rev().filter(|b| matches!(b, b'.' | b','));
     let last = marks.next().unwrap_or(b'.');
     if marks.next() == Some(last) { other_mark(last) } else { last }
 }
 
-/// A value whose number has blanks between groups of three digits, without them: `1 000 Hz`.
+/// Removes the blanks between groups of three digits: `1 000 Hz`.
 pub fn without_blanks(value: &str) -> String {
     let digits = |word: &str| word.bytes().take_while(u8::is_ascii_digit).count();
     let mut words = value.split([' ', '\u{a0}', '\u{202f}', '\u{2009}']);
@@ -68,8 +70,8 @@ pub fn without_blanks(value: &str) -> String {
     whole
 }
 
-/// As [`quantity`], of any sign. A mark that may be the decimal one or group digits is what `mark` of the
-/// rows says; without that it is nothing.
+/// As [`quantity`], of any sign and unchecked. A mark that may be decimal or group digits is decimal if it is
+/// the `mark` of the rows; where that is unknown gives `None`.
 pub fn scaled(value: &str, unit_in_key: &str, units: &[(&str, f64)], mark: Option<u8>) -> Option<f64> {
     let value = value.trim();
     let printed = printed(value);
@@ -89,12 +91,12 @@ pub fn scaled(value: &str, unit_in_key: &str, units: &[(&str, f64)], mark: Optio
     Some(number * factor)
 }
 
-/// A value that may be measured at all.
+/// The value, if it lies in the range of possible measured values.
 pub fn checked(value: f64) -> Option<f64> {
     POSSIBLE.contains(&value).then_some(value)
 }
 
-/// Samples a second, as they are written, in Hz: `2 kS/s`, `100 samples/s`.
+/// Replaces the spellings of samples per second by `hz`: `2 kS/s`, `100 samples/s`.
 pub fn samples_a_second(text: &str) -> String {
     let words = ["samples per second", "samples/second", "samples/sec", "samples/s", "sa/s", "sps", "s/s"];
     words.iter().fold(text.to_lowercase(), |text, word| text.replace(word, "hz"))

@@ -1,4 +1,4 @@
-//! What header lines state: lines, base band, sampling rate, unit, window, date.
+//! Reads what header lines state: spectral lines, base band, sampling rate, unit, window and others.
 
 use super::head_number::{
     HERTZ, MILLIHERTZ, SECONDS, checked, doubtful_mark, other_mark, quantity, samples_a_second, scaled,
@@ -10,8 +10,8 @@ use vibro_record::Window;
 
 /// Statements of a header that are understood; the rest stays as notes.
 ///
-/// Every number here is finite, positive and so far from the ends of what a double holds that its inverse and
-/// its quotients are too.
+/// Every number here but `start` is positive, and so far from the limits of a double that its inverse and
+/// quotients are finite, too.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Stated {
     /// Number of spectral lines, not counting 0 Hz.
@@ -22,33 +22,33 @@ pub struct Stated {
     pub rate: Option<f64>,
     /// Another sampling rate in Hz that the head states as well.
     pub other_rate: Option<f64>,
-    /// What may be the sampling rate, for nothing tells whether the mark in it is the decimal one.
+    /// Sampling rate that is not used: its mark may be the decimal one or group digits.
     pub perhaps_rate: Option<PerhapsRate>,
-    /// What says that fewer values were kept than were sampled, as written.
+    /// Header line that says that fewer values were kept than were sampled, as written.
     pub decimation: Option<String>,
     /// The decimal mark of the rows, where they show it.
     mark: Option<u8>,
-    /// Number of values of a series.
+    /// Number of values that the header states.
     pub values: Option<usize>,
-    /// Whether it is a step that is stated, as above the values of one series, and no rate.
+    /// Whether a step of the abscissa is stated, as files of one series do.
     pub of_one_series: bool,
-    /// That step, in s or Hz.
+    /// The stated step; in s, or in Hz where the abscissa is a frequency.
     step: Option<f64>,
-    /// Key that states that step without a unit, which is taken for s.
+    /// Key of a step that has no unit and is taken to be in s.
     pub assumed: Option<&'static str>,
-    /// Whether the abscissa is said to be a frequency.
+    /// Whether the header states that the abscissa is a frequency.
     pub lines_apart: bool,
     /// First instant in s.
     pub start: Option<f64>,
-    /// Whether values are said to be complex.
+    /// Whether the header states that values are complex.
     pub complex: bool,
-    /// Distance of spectral lines in Hz.
+    /// Spacing of spectral lines in Hz.
     pub line_width: Option<f64>,
     /// Unit as written.
     pub unit: Option<String>,
-    /// Factors of the values, other than 1.
+    /// Scale factors of the values, where they are not 1.
     pub scales: Vec<StatedScale>,
-    /// Window.
+    /// Window of the spectrum.
     pub window: Option<Window>,
     /// Channel name or title.
     pub name: Option<String>,
@@ -56,18 +56,18 @@ pub struct Stated {
     pub notes: Vec<(String, String)>,
 }
 
-/// A rate with a mark before its last three digits, `1.000 Hz`.
+/// A sampling rate with a mark before its last three digits: `1.000 Hz` may be 1 Hz or 1000 Hz.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PerhapsRate {
-    /// As it is written.
+    /// As written.
     pub said: String,
-    /// In Hz, where the mark is the decimal one.
+    /// Rate in Hz if the mark is the decimal one.
     pub decimal: f64,
-    /// In Hz, where it groups digits.
+    /// Rate in Hz if the mark groups digits.
     pub grouped: f64,
 }
 
-/// Keys of a sampling rate, and of the step of time.
+/// Keys of a sampling rate (`RATE`) and of a time step (`STEP`), separated by `|`.
 const RATE: &str = "sampling rate|sample rate|sampling frequency|sample frequency|samplerate|samp freq|sampling freq|data rate|fs|rate|abtastrate|\
                     abtastfrequenz|fréquence d'échantillonnage|samples per second|scan rate|update rate|messrate|\
                     messfrequenz|samplingrate|samples/sec|samples/s|sampling speed|output data rate|odr|acquisition rate|logging rate|\
@@ -76,13 +76,14 @@ const RATE: &str = "sampling rate|sample rate|sampling frequency|sample frequenc
 const STEP: &str = "dt|delta t|sampling interval|sample interval|sampling period|time step|delta time|increment|clock|\
                     interval|time interval|tinc|sample period|scan interval|logging interval|abtastzeit|messintervall|x increment|xinc|x axis delta|hresolution|horizontal interval|delta|dx|sampling cycle|\
                     x delta|xdelta|abtastintervall|サンプリング周期";
-/// Keys of what the abscissa is, or of its unit.
+/// Keys of the quantity or the unit of the abscissa.
 const AXIS: &str = "x-axis|x axis|x-axis unit|x axis unit|xunit|xunits|x unit|hunit|horizontal units";
 
-/// Relative difference of two rates of a head that rounding explains: of a step in two digits.
+/// Largest relative difference of two stated rates that rounding explains: a step of two digits, 1.0, is
+/// rounded by up to 5 %.
 const ROUNDED_RATE: f64 = 0.05;
 
-/// More lines than any analyser has.
+/// Most spectral lines that a header may state: far more than any analyser has.
 const MOST_LINES: f64 = 1e9;
 
 impl Stated {
@@ -129,36 +130,36 @@ impl Stated {
         stated
     }
 
-    /// Remembers a `rate` that differs from the one that is used, by more than rounding leaves.
+    /// Remembers a `rate` that differs from the used one by more than rounding explains.
     fn keeps_other(&mut self, rate: Option<f64>) {
         let differs = |rate: &f64| self.rate.is_some_and(|used| (rate / used - 1.0).abs() > ROUNDED_RATE);
         self.other_rate = rate.filter(differs).or(self.other_rate);
     }
 
-    /// Whether `n` values are all lines of the base band: then they are a spectrum, whatever else is stated,
-    /// since analysers print the sampling rate too.
+    /// Whether `n` values are all lines of the base band and 0 Hz. They are then a spectrum even beside a
+    /// sampling rate, since analysers print that, too.
     pub(crate) fn all_lines(&self, n: usize) -> bool {
         self.base_band.is_some() && self.lines.is_some_and(|lines| lines as usize + 1 == n)
     }
 
-    /// Whether a rate is stated, known or not.
+    /// Whether a sampling rate is stated, also one with a doubtful mark.
     pub fn states_rate(&self) -> bool {
         self.rate.is_some() || self.perhaps_rate.is_some()
     }
 
-    /// Distance of `n` lines in Hz, as the header states it.
+    /// Spacing of `n` spectral lines in Hz from the header.
     pub fn spacing(&self, n: usize) -> Option<f64> {
         let band = self.base_band.map(|band| band / self.lines_of(n));
         if self.all_lines(n) { band } else { self.line_width.or(band) }
     }
 
-    /// Number of lines, by the header or else by the number of values.
+    /// Number of spectral lines without 0 Hz, from the header, else one less than the `n` values.
     pub(crate) fn lines_of(&self, n: usize) -> f64 {
         self.lines.unwrap_or_else(|| n.saturating_sub(1).max(1) as f64)
     }
 }
 
-/// `key: value` or `key = value`; an empty key where the line is neither. A time of day is no key.
+/// Splits `key: value` or `key = value`. The key is empty for other lines; a time of day is no key.
 pub fn split(line: &str) -> (&str, &str) {
     let at = line.find([':', '=']).filter(|at| {
         let key = line[..*at].trim();
@@ -172,8 +173,8 @@ pub fn split(line: &str) -> (&str, &str) {
     at.map_or(("", line.trim()), |at| (line[..at].trim(), line[at + 1..].trim()))
 }
 
-/// `Sampling Freq(Hz) 100Hz`, `Sample rate 1200 Hz`: a key that ends with its unit in brackets, or is that of
-/// a rate, and a value that begins with a digit; else an empty key.
+/// Splits `Sampling Freq(Hz) 100Hz` and `Sample rate 1200 Hz`: a value that begins with a digit, behind a key
+/// that ends with a bracket or is that of a rate. Else the key is empty.
 fn behind_key(line: &str) -> (&str, &str) {
     let digit = |c: char| c.is_ascii_digit();
     let unit = line
@@ -188,8 +189,8 @@ fn behind_key(line: &str) -> (&str, &str) {
     unit.or_else(rate).map_or(("", line), |(key, value)| (key, value.trim()))
 }
 
-/// Whether a line says that only some of the values that were sampled are kept: `decimated by 2`, `resampled
-/// to 1 kHz`, `every 8th sample`.
+/// Whether a line says that only some of the sampled values are kept: `decimated by 2`, `resampled to 1 kHz`,
+/// `every 8th sample`.
 fn is_decimated(line: &str) -> bool {
     let lower = line.to_lowercase();
     let thinned = ["decimat", "dezimat", "dezimiert", "décimat", "downsampl", "resampl"];
@@ -206,14 +207,14 @@ fn is_decimated(line: &str) -> bool {
     })
 }
 
-/// Takes what stands under a key that is understood, where it is a possible value.
+/// Stores the value of a known `key` in `stated`, if the value is possible.
 fn keyed(key: &str, value: &str, stated: &mut Stated) {
     let (key, unit_in_key) = match key.find(['[', '(']) {
         Some(at) => (key[..at].trim(), key[at + 1..].trim_end_matches([']', ')'])),
         None => (key, ""),
     };
     let key: String = key.chars().map(|c| if matches!(c, '_' | '-' | '.') { ' ' } else { c }).collect();
-    // `sample_rate_hz`
+    // `sample_rate_hz`: a unit as the last word of the key.
     let behind = key.rsplit_once(' ').filter(|(key, unit)| {
         let of = |keys: &str, units: &[(&str, f64)]| {
             keys.split('|').any(|known| known == *key) && units.iter().any(|(known, _)| known == unit)
@@ -228,13 +229,14 @@ fn keyed(key: &str, value: &str, stated: &mut Stated) {
         let value = value.replace("mHz", MILLIHERTZ);
         quantity(&samples_a_second(&value), &samples_a_second(unit_in_key), &HERTZ, mark)
     };
-    // Nobody groups the digits of kilohertz; a head in English may stand above decimal commas.
+    // Digits of kHz are not grouped, so their mark must be the one of the rows. In Hz, a comma above decimal
+    // commas is in doubt: heads in English group digits with it.
     let said = format!("{value} {unit_in_key}").to_lowercase();
     let kilohertz = ["khz", "mhz", "ks/s"].iter().any(|unit| said.contains(unit));
     let told = |own: u8| if kilohertz { mark == Some(own) } else { own == b'.' || mark != Some(own) };
     let hertz = || hertz_with(mark).filter(|_| doubtful_mark(value).is_none_or(told));
     let seconds_with = |mark| quantity(value, unit_in_key, &SECONDS, mark).and_then(|dt| checked(1.0 / dt));
-    // The rate by either mark, where the rows do not tell.
+    // The rate with either meaning of the mark, where the rows do not show which.
     let perhaps = |rate_with: &dyn Fn(Option<u8>) -> Option<f64>| {
         let own = doubtful_mark(value)?;
         let (decimal, grouped) = (rate_with(Some(own))?, rate_with(Some(other_mark(own)))?);
@@ -242,11 +244,12 @@ fn keyed(key: &str, value: &str, stated: &mut Stated) {
     };
     let plain = || quantity(value, "", &[("", 1.0)], mark);
     let bare = unit_in_key.is_empty() && value.ends_with(|c: char| c.is_ascii_digit());
-    // `bandwidth`, `span` and `resolution` are no keys: they also stand over time traces, and for other
-    // things.
+    // `bandwidth`, `span` and `resolution` are no keys: headers of time traces use them, too, and for other
+    // quantities.
     match key.trim() {
-        // Without a unit these may be anything, but for an increment beside a start.
-        // SAC and its kin: a step in s, which is none above 1.
+        // Without a unit the keys of the next three arms are ignored, but for a step below 1 and an increment
+        // beside a start.
+        // SAC and related formats state DELTA, a step in s that is less than 1.
         "delta" if bare && plain().is_some_and(|step| step < 1.0) => {
             let step = plain();
             stated.rate = stated.rate.or(step.and_then(|step| checked(1.0 / step)));
@@ -296,7 +299,7 @@ fn keyed(key: &str, value: &str, stated: &mut Stated) {
         "unit" | "units" | "y unit" | "yunit" | "y axis unit" | "einheit" | "unidad" | "unidade"
         | "unité" | "unità" | "amplitude unit" | "engineering unit" => {
             let unit = Some(value.trim_matches(['[', ']']).to_owned());
-            // One for each of several channels belongs to none.
+            // A list of units, one for each channel, is not the unit of all.
             stated.unit = unit.filter(|v| !v.is_empty() && !v.contains([';', '\t']) && !v.contains(" and "));
         }
         "y axis" if value.ends_with([']', ')']) => {
@@ -314,7 +317,7 @@ fn keyed(key: &str, value: &str, stated: &mut Stated) {
     }
 }
 
-/// Lines without a key: `20 Hz 400 lines`, `64 samples, 2000 sps`.
+/// Reads lines without a key: `20 Hz 400 lines`, `64 samples, 2000 sps`.
 fn free_text(line: &str, stated: &mut Stated) {
     let words: Vec<String> = line.split_whitespace().map(str::to_lowercase).collect();
     let before = |name: &str| {
@@ -370,7 +373,7 @@ mod tests {
         assert_eq!((s.lines, s.base_band), (Some(400.0), Some(20.0)));
     }
 
-    /// It may be 51.2 Hz or 51 200 Hz: where the rows do not tell, both are said and none is used.
+    /// It may be 51.2 Hz or 51 200 Hz: where the rows do not show which, both are kept and none is used.
     #[test]
     fn a_rate_in_groups_of_digits_is_a_question() {
         for text in ["Sampling rate: 51,200", "Sample rate [Hz]: 51,200", "fs = 51,200 Hz", "fs = 51.200 Hz"]

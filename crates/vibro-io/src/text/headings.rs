@@ -1,4 +1,4 @@
-//! The lines above a table that name its columns, and those that do not.
+//! Finds the lines above a table that name its columns.
 
 use super::header::Stated;
 use super::lines::{Fields, Line, Separator, fields};
@@ -11,8 +11,8 @@ use std::borrow::Cow;
 use std::ops::Range;
 use vibro_record::units::{Quantity, Unit};
 
-/// Which lines of a block, counted upwards, name the columns, and the names: a row of units below its names,
-/// perhaps above comments; or names alone.
+/// Finds the lines of `block` (counted upwards) that name the columns, and the names: a row of units below
+/// its names, perhaps above remarks; or names alone.
 pub fn names_in(
     block: &[Fields],
     clock: Option<&Range<usize>>,
@@ -23,14 +23,14 @@ pub fn names_in(
         let (units, upper) = (&block[*at], &block[*at + 1]);
         let outside = |i: &usize| !clock.is_some_and(|cells| cells.contains(i));
         let cells = (0..units.len()).filter(outside).map(|i| units[i].1.as_ref());
-        // `No.,OUT1` over `Unit,mm`: a label stands where a counter has no unit.
+        // `No.,OUT1` over `Unit,mm`: below a counter, which has no unit, a label may begin the row of units.
         let labelled = usize::from(is_label(&units[0].1) && Name::parse(&upper[0].1).counts());
         let cells = cells.skip(labelled);
         let quantity = |cell: &str| {
             let used = number::prefix(cell.as_bytes(), b'.').map_or(0, |(_, used)| used);
             used > 0 && Unit::parse(&cell[used..]).is_some_and(|unit| unit.quantity() == Quantity::Time)
         };
-        // Below a time in s, or a frequency in Hz, stand units, known or not.
+        // A row that begins with the unit of the time or frequency above it holds units, known or not.
         let of_axis = || {
             let kind = Unit::parse(&units[0].1).and_then(|unit| kind_of(&unit));
             let numbers = units
@@ -52,36 +52,36 @@ pub fn names_in(
         return Some((at..at + 2, named.collect()));
     }
     let lower = block.first().filter(|lower| named(lower) && !title)?;
-    // `Values;64;` counts what follows; `Angle,1,2` numbers its channels.
+    // `Values;64;` states a number of values; `Angle,1,2` numbers channels from 1.
     let numbers: Vec<f64> = lower.iter().filter_map(|(_, cell)| number::parse(cell.as_bytes())).collect();
     let counts = numbers.iter().zip(1u8..).any(|(number, n)| *number != f64::from(n));
     let first = Name::parse(&lower[0].1);
     if counts && first.axis(true).is_none() && !first.counts() {
         return None;
     }
-    // `Second,Volt` under a preamble: units, and no names.
+    // `Second,Volt` below a preamble are units without names.
     let units: Option<Vec<Name>> = lower.iter().map(|(_, n)| unit_word(n)).collect();
-    // `V,V` names nothing.
+    // `V,V` are units without names.
     let first = lower[0].1.as_ref();
     let alike =
         lower.len() > 1 && Unit::parse(first).is_some() && lower.iter().all(|(_, cell)| cell == first);
     let unit = || Name { name: String::new(), unit: Some(first.to_owned()) };
     let units = units.or_else(|| alike.then(|| lower.iter().map(|_| unit()).collect()));
-    // `t/s;F/N;a/(m/s²)`, after DIN 1313: quantities over their units.
+    // `t/s;F/N;a/(m/s²)` after DIN 1313: each quantity is divided by its unit.
     let over = Name::over_unit(&lower[0].1).is_some_and(|first| first.axis(true).is_some());
     let name = |cell: &str| Name::over_unit(cell).filter(|_| over).unwrap_or_else(|| Name::parse(cell));
     Some((0..1, units.unwrap_or_else(|| lower.iter().map(|(_, cell)| name(cell)).collect())))
 }
 
-/// Whether a cell of a row of units says that this is one.
+/// Whether a cell is the label of a row of units, such as `Unit`.
 fn is_label(cell: &str) -> bool {
     UNIT.contains(&key(cell).as_str())
 }
 
 const TYPES: [&str; 8] = ["f4", "f8", "float", "double", "single", "real32", "real64", "number"];
 
-/// Whether a line holds types of numbers only, `f8`, `float`, or something other than units behind one label:
-/// `Interp: zoh`.
+/// Whether a line holds only types of numbers, `f8` or `float`, or repeats one label with something that is
+/// no unit: `Interp: zoh`.
 pub fn is_types(line: &Line, separator: Separator) -> bool {
     let label =
         |cell: &str| Some(cell.split_once(": ")?.0.to_owned()).filter(|l| l == "Type" || l == "Interp");
@@ -100,8 +100,8 @@ pub fn is_types(line: &Line, separator: Separator) -> bool {
         && fields(line.text, separator).is_ok_and(|fields| fields.len() > 1 && fields.iter().all(known))
 }
 
-/// What a line states that gives every column the same rate, perhaps behind one key for all: `1200 Hz`,
-/// `Sample rate 1200 Hz`, `Messrate` and `1200 1/s`; `None` of other lines.
+/// The statement in a line that gives every column the same rate, perhaps behind one key for all: `1200 Hz`,
+/// `Sample rate 1200 Hz`, `Messrate` and `1200 1/s`; `None` for other lines.
 pub fn rate_of_columns(line: &Line, separator: Separator) -> Option<String> {
     let cells = fields(line.text, separator).ok()?;
     let cells: Vec<&str> =
@@ -117,15 +117,15 @@ pub fn rate_of_columns(line: &Line, separator: Separator) -> Option<String> {
     Stated::of(std::iter::once(stated.as_str()), None).states_rate().then_some(stated)
 }
 
-/// Whether a line stands above all columns, such as `Waveform Data`, or is one of the preamble.
+/// Whether a line is a title above all columns, such as `Waveform Data`, or belongs to the preamble.
 pub fn is_title(line: &Fields, width: usize, preamble: &Preamble) -> bool {
     let alone = !line[0].1.is_empty() && line.iter().filter(|(_, f)| !f.is_empty()).count() == 1;
     let keyed = line.len() > width && Preamble::is_of_columns(&line[0].1);
     keyed || alone && (width > 1 || (preamble.names_columns() && unit_word(&line[0].1).is_none()))
 }
 
-/// The fields of a line above the row `values`, without `skipped` ones at its start and a blank one at its
-/// end that the row has no value for.
+/// The fields of a line above the row `values`, without the first `skipped` and without a blank last one
+/// below which the row has no value.
 pub fn headings<'a>(
     line: &Line<'a>,
     separator: Separator,
@@ -147,7 +147,7 @@ pub fn headings<'a>(
     Some(fields)
 }
 
-/// Whether fields name columns: some letters that are no exponent, and not `key: value`.
+/// Whether fields may name columns: at least one has letters and is no number, and they are no `key: value`.
 fn named(fields: &Fields) -> bool {
     let statement =
         fields.first().is_some_and(|(_, f)| f.contains(": ") || f.ends_with(':') || f.contains('='));

@@ -1,19 +1,19 @@
-//! Lines and fields after RFC 4180, with any separator.
+//! Cuts text into lines and fields after RFC 4180, with any separator.
 //!
 //! The crate `csv` is not used here: it reads `"2"3` as 23, lets a stray quote swallow the rest of a file,
-//! and does not say in which column of a line a field stands.
+//! and does not tell the column of a line in which a field begins.
 
 use super::clock;
 use super::unit_words::is_unit_row;
 use crate::number;
 use std::borrow::Cow;
 
-/// What stands between two values of a row.
+/// Mark between two values of a row.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Separator {
     /// Any run of spaces and tabs.
     Blank,
-    /// One character: `,`, `;` or tab. Fields may stand in quotes.
+    /// One character: `,`, `;` or tab. Fields may be quoted.
     Char(u8),
 }
 
@@ -23,12 +23,12 @@ pub type Fields<'a> = Vec<(usize, Cow<'a, str>)>;
 /// One line, or two that a quoted field joins.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Line<'a> {
-    /// Counted from 1.
+    /// Number of the line in the file, from 1.
     pub number: u64,
-    /// Byte at which it begins.
+    /// Byte offset at which it begins.
     pub at: usize,
     pub text: &'a str,
-    /// What it says if it is a remark.
+    /// Text of a remark behind its mark; `None` for other lines.
     pub remark: Option<&'a str>,
 }
 
@@ -43,7 +43,7 @@ impl Line<'_> {
     }
 }
 
-/// The lines of a text that ends them with LF or CR LF.
+/// Iterates over lines that end with LF or CR LF.
 #[derive(Debug, Clone)]
 pub struct Lines<'a> {
     text: &'a str,
@@ -53,7 +53,7 @@ pub struct Lines<'a> {
 }
 
 impl<'a> Lines<'a> {
-    /// From byte `at` on, which is the start of line `number`; a line that begins with one of `remarks` is a
+    /// Lines from byte `at` on, the start of line `number`. A line that begins with one of `remarks` is a
     /// remark.
     pub fn new(text: &'a str, at: usize, number: u64, remarks: &'static [&'static str]) -> Lines<'a> {
         Lines { text, at, number, remarks }
@@ -69,7 +69,7 @@ impl<'a> Iterator for Lines<'a> {
         let end = |from: usize| rest[from..].find('\n').map_or(rest.len(), |end| from + end);
         let mut text = &rest[..end(0)];
         let remark = remark(text, self.remarks);
-        // A quoted field may hold a line end: it stands open on this line and is closed on the next.
+        // A quoted field may hold one line end: its quote opens on this line and closes on the next.
         let open = |text: &str| text.matches('"').count() % 2 == 1;
         let both = &rest[..end((text.len() + 1).min(rest.len()))];
         if remark.is_none() && open(text) && !open(both) {
@@ -82,10 +82,10 @@ impl<'a> Iterator for Lines<'a> {
     }
 }
 
-/// What a remark says behind its mark; `None` where the line is none.
+/// Text of a remark behind its mark; `None` where the line is no remark.
 fn remark<'a>(line: &'a str, marks: &[&str]) -> Option<&'a str> {
     let line = line.trim();
-    // `*****` is how Fortran prints a number that does not fit: a value, and no remark.
+    // Fortran prints `*****` for a number that does not fit: a missing value, no remark.
     let stars = line.len() > 1 && line.bytes().all(|b| b == b'*');
     let mark = marks.iter().find(|mark| line.starts_with(**mark) && !stars)?;
     Some(line.trim_start_matches(mark).trim())
@@ -103,13 +103,13 @@ fn quoted(bytes: &[u8]) -> Option<usize> {
     }
 }
 
-/// What serial monitors put behind the computer's clock.
+/// Mark that serial monitors print behind the computer's clock.
 const ARROW: &str = " -> ";
 
-/// Cuts a line into fields; blanks around a field do not count.
+/// Cuts a line into fields without the blanks around them.
 ///
 /// # Errors
-/// The byte at which something stands behind a closing quote.
+/// The byte offset of text that follows a closing quote.
 pub fn fields(line: &str, separator: Separator) -> Result<Fields<'_>, usize> {
     let Separator::Char(mark) = separator else {
         let words = line.split([' ', '\t', '\r']).filter(|w| !w.is_empty() && *w != ARROW.trim());
@@ -146,8 +146,8 @@ pub fn fields(line: &str, separator: Separator) -> Result<Fields<'_>, usize> {
     }
 }
 
-/// Whether a line that is no row is meant as one: as many cells, all of them missing values; or the first
-/// begins with a digit, one is a number, another is none, and they are no units.
+/// Whether a line is a row with faults. It has as many cells as columns. All cells are missing values; or the
+/// first begins with a digit, one is a number and another is none, and they are no units.
 pub fn is_torn(line: &str, separator: Separator, columns: usize) -> bool {
     let cells = fields(line, separator).unwrap_or_default();
     let cells: Vec<&str> = cells.iter().map(|(_, cell)| cell.as_ref()).collect();

@@ -1,4 +1,5 @@
-//! What a column's header says: name, unit, abscissa, real or imaginary part.
+//! Reads the header of a column: its name and unit, and whether it is an abscissa, a counter, a phase or a
+//! part of complex values.
 
 use super::header;
 use super::lines::Separator;
@@ -14,20 +15,20 @@ use vibro_record::{AxisKind, Error, Finding, Result};
 /// Name and unit of a column.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Name {
-    /// Without the unit.
+    /// Name without the unit.
     pub name: String,
-    /// As written.
+    /// Unit as the header spells it; `None` where it states none.
     pub unit: Option<String>,
 }
 
-/// One half of a complex column.
+/// Part of complex values that a column holds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ComplexPart {
     Real,
     Imaginary,
 }
 
-/// A name of a column, else its place `at`, counted from 1.
+/// The name of a column; without one `column` and its place `at`, counted from 1.
 pub fn label(name: &str, at: usize) -> String {
     if name.is_empty() { format!("column {at}") } else { name.to_owned() }
 }
@@ -40,7 +41,7 @@ impl Name {
     /// behind a blank or an underscore it must also be one that cannot be part of a name.
     pub fn parse(text: &str) -> Name {
         let text = text.trim();
-        // `Y[0]` is the name of one of several.
+        // In `Y[0]` the bracket holds a number of the channel, no unit.
         let numbered = |(name, unit): &(&str, &str)| {
             unit.bytes().all(|b| b.is_ascii_digit())
                 && name.ends_with(|c: char| c.is_alphanumeric())
@@ -54,7 +55,7 @@ impl Name {
         let known = |name: &str, unit: &str| {
             let (name, unit) = (name.trim_end(), symbol(unit.trim()));
             let unit = long(name, unit).unwrap_or(unit);
-            // `X (100g)` is a sensor of that range.
+            // In `X (100g)` the bracket holds the range of the sensor, no unit.
             let multiple = unit.starts_with(|c: char| c.is_ascii_digit()) && !unit.starts_with("1/");
             let known = || Unit::parse_or_opaque(amplitude(unit).0);
             (!name.is_empty()
@@ -90,21 +91,21 @@ impl Name {
             .unwrap_or_else(|| Name { name: text.to_owned(), unit: None })
     }
 
-    /// The same column with the unit that a second header row gives it.
+    /// The column named `text`, with the unit from a second header row.
     pub(crate) fn with_unit_row(text: &str, unit: &str) -> Name {
         match bare_unit(unit) {
             "" => Name::parse(text),
             unit => {
                 let unit = long(text, unit).unwrap_or(symbol(unit)).to_owned();
                 let own = Name::parse(text);
-                // A unit that stands in both rows is one.
+                // A unit that both rows state is taken out of the name.
                 let name = if own.unit.as_deref() == Some(unit.as_str()) { &own.name } else { text.trim() };
                 Name { name: name.to_owned(), unit: Some(unit) }
             }
         }
     }
 
-    /// Says that the name holds another unit than the row of units below it: `Acc [m/s²]` over `g`.
+    /// Finding where the name states another unit than the row of units below it: `Acc [m/s²]` over `g`.
     pub(crate) fn unit_differs(&self) -> Option<Finding> {
         let used = self.unit.as_deref()?;
         let own = Name::parse(&self.name).unit?;
@@ -122,7 +123,7 @@ impl Name {
         known.then(|| Name { name: name.trim().to_owned(), unit: Some(unit.to_owned()) })
     }
 
-    /// Factor that takes this column as an abscissa to s or Hz, and a finding where something is assumed.
+    /// Factor from the unit of this abscissa to s or Hz, and a finding where the unit is assumed or angular.
     ///
     /// # Errors
     /// If the unit is not understood.
@@ -148,7 +149,7 @@ impl Name {
         Ok((unit.hertz().unwrap_or(unit.factor()), angular))
     }
 
-    /// Whether the values are an abscissa: by name, or (only asked of a first column) by unit alone.
+    /// Kind of abscissa that the column holds, by its name; the `first` column may be one by its unit alone.
     pub fn axis(&self, first: bool) -> Option<AxisKind> {
         let unit = self.unit.as_deref().map(Unit::parse_or_opaque);
         let by_unit = unit.as_ref().and_then(kind_of);
@@ -181,7 +182,8 @@ impl Name {
         word.filter(fits).or(by_unit.filter(|_| first))
     }
 
-    /// The name without the run that it is of, and that run: `Time Run #1`, `Run 1: Time`.
+    /// Splits off the run of a measurement: `Time Run #1` is `Time` of `Run #1`, `Run 1: Time` is `Time` of
+    /// `Run 1`.
     pub fn run(&self) -> Option<(&str, &str)> {
         let number = |text: &str| !text.is_empty() && text.bytes().all(|b| b.is_ascii_digit());
         let behind = || {
@@ -196,8 +198,8 @@ impl Name {
         behind().or_else(before)
     }
 
-    /// What stands in brackets behind the name as a unit does, and is none that is known: up to three
-    /// letters.
+    /// An unknown unit in round brackets behind the name: one to three letters that are no word such as `rms`
+    /// or `max` and no direction.
     pub fn unknown_unit(&self) -> Option<&str> {
         let (name, unit) = bracketed(&self.name, '(', ')')?;
         let short = (1..=3).contains(&unit.chars().count()) && unit.chars().all(char::is_alphabetic);
@@ -206,7 +208,7 @@ impl Name {
         (self.unit.is_none() && short && !word && name.ends_with(' ')).then_some(unit)
     }
 
-    /// Whether the name is one of a column that only counts.
+    /// Whether the name or the unit is that of a counter, which numbers rows or samples.
     pub fn counts(&self) -> bool {
         let key = self.name.to_lowercase();
         let key = key.trim_end_matches('.');
@@ -214,21 +216,22 @@ impl Name {
         self.unit.as_ref().map_or(named, |unit| COUNTERS.contains(&unit.to_lowercase().as_str()))
     }
 
-    /// Whether the name may be one of a column that only counts, if its values do: `loggingSample(N)`, too.
+    /// Whether the name may be that of a counter, such as `loggingSample(N)`. Its values must then count,
+    /// too.
     pub fn may_count(&self) -> bool {
         let plain = self.unit.as_deref().is_none_or(|unit| unit == NATURAL);
         self.counts() || plain && COUNT_WORDS.contains(&self.last_word().as_str())
     }
 
-    /// The unit in s, where it is one of time.
+    /// Factor of the unit to s, where it is one of time.
     pub fn seconds(&self) -> Option<f64> {
         let unit = Unit::parse(self.unit.as_deref()?)?;
         (unit.quantity() == Quantity::Time).then_some(unit.factor())
     }
 
-    /// What the name says that the values are, where its unit is none of that: a count in newtons, a
-    /// temperature in degrees of an angle. Where a counter has the unit N, as `naturals` says, N is newton
-    /// only behind a name that says force. What is not `whole` is counted by nobody.
+    /// The quantity in the name where it contradicts the unit: a count in newtons, or a temperature in
+    /// degrees of an angle. `naturals`: a counter of the table has the unit N, for natural numbers; N is then
+    /// newton only where the name says force. A column is a count only if all its values are `whole`.
     pub fn against_unit(&self, naturals: bool, whole: impl Fn() -> bool) -> Option<&'static str> {
         let unit = self.unit.as_deref()?;
         let quantity = Unit::parse(unit)?.quantity();
@@ -238,7 +241,7 @@ impl Name {
         if count { Some("count") } else { (warm && quantity == Quantity::Angle).then_some("temperature") }
     }
 
-    /// The factor to radians of a phase, which stands behind its magnitude.
+    /// Factor to rad of a phase column, which follows its magnitude; `None` for other columns.
     pub fn phase(&self) -> Option<f64> {
         let key = self.name.to_lowercase();
         let named =
@@ -257,12 +260,13 @@ impl Name {
         name[begin..].trim_start_matches(|c: char| !c.is_alphanumeric()).to_lowercase()
     }
 
-    /// Whether the name is one of an abscissa and may be one of values, such as `x`.
+    /// Whether the name fits an abscissa as well as values, such as `x`.
     pub(crate) fn is_vague(&self) -> bool {
         ABSCISSAE.contains(&self.name.to_lowercase().as_str())
     }
 
-    /// Real or imaginary part, and the name of the whole: `H_re`, `H (imag)`, `re(H)`, `Imaginary`, …
+    /// Which part of complex values the column holds, and the name without that word: `H_re`, `H (imag)`,
+    /// `re(H)`, …
     pub fn part(&self) -> Option<(ComplexPart, String)> {
         let joints = [' ', '_', '.', ':'];
         let of = |word: &str| match word.to_lowercase().as_str() {
@@ -281,7 +285,8 @@ impl Name {
     }
 }
 
-/// One name a column, where the last header line can be cut into as many; a second line may hold the units.
+/// Names of the columns, where the last header line can be cut into as many; it may hold the units of the
+/// line above.
 pub fn above(header: &[String], columns: usize, separator: Separator) -> Option<Vec<Name>> {
     let mut spoken = header.iter().rev().map(|line| cut(line, columns, separator));
     let last = spoken.next()??;
@@ -291,18 +296,19 @@ pub fn above(header: &[String], columns: usize, separator: Separator) -> Option<
         return Some(upper.iter().zip(&last).map(|(name, unit)| Name::with_unit_row(name, unit)).collect());
     }
     let names: Vec<Name> = last.iter().map(|field| Name::parse(field)).collect();
-    // A lone title is no name of a column, unless it states the unit.
+    // A line above a single column is a title and no name, unless it ends with a unit in brackets.
     let sure = columns > 1 || (names[0].unit.is_some() && last[0].ends_with([']', ')']));
     sure.then_some(names)
 }
 
-/// The fields of a line, as many as there are columns: cut as the rows are, else at tabs or wide gaps, else
-/// at single blanks.
+/// Cuts a header line into as many names as there are columns: at the separator of the rows, else at tabs or
+/// two blanks, else at single blanks. `None` where it cannot be cut so.
 fn cut(line: &str, columns: usize, separator: Separator) -> Option<Vec<String>> {
     if !header::split(line).0.is_empty() || !line.contains(char::is_alphabetic) {
         return None;
     }
-    // A number, a date or a clock names nothing; what ends with a unit may begin with a digit.
+    // A field is no name if it holds a decimal number or a time. It may begin with a digit only if a bracket
+    // ends it.
     let decimal = |word: &str| word.contains('.') && number::parse(word.as_bytes()).is_some();
     let odd = |f: &String| {
         let begins = f.starts_with(|c: char| c.is_ascii_digit()) && !f.ends_with([']', ')']);
@@ -320,8 +326,8 @@ fn cut(line: &str, columns: usize, separator: Separator) -> Option<Vec<String>> 
     {
         return Some(fields);
     }
-    // A bracket belongs to the word before it. Between single blanks the first word must be an abscissa, or
-    // one have a unit in brackets: others are free text.
+    // A bracket belongs to the word before it. Words between single blanks are free text, unless the first
+    // one names an abscissa or one has a unit in brackets.
     let words = line.replace(" [", "[").replace(" (", "(");
     let words: Vec<String> = words.split_whitespace().map(str::to_owned).collect();
     let units = words.iter().any(|w| w.ends_with([']', ')']));
@@ -329,7 +335,7 @@ fn cut(line: &str, columns: usize, separator: Separator) -> Option<Vec<String>> 
     fit(split("\t")).or_else(|| fit(split("  "))).or_else(|| fit(words).filter(|_| sure))
 }
 
-/// Names of an abscissa that do not say of what, or also stand above dates: it rises, or it is none.
+/// Names that may be those of an abscissa, of values or of dates: such a column must rise to be the abscissa.
 const ABSCISSAE: [&str; 12] = [
     "x",
     "x-axis",
@@ -345,7 +351,7 @@ const ABSCISSAE: [&str; 12] = [
     "tiempo",
 ];
 
-/// Names of a time that are its unit.
+/// Names of a time column that state no more than its unit, and that unit.
 const WHOLE: [(&str, &str); 6] = [
     ("in s", "s"),
     ("seconds_elapsed", "s"),
@@ -355,33 +361,33 @@ const WHOLE: [(&str, &str); 6] = [
     ("micros()", "µs"),
 ];
 
-/// Names of a column that only counts, none among them.
+/// Names of a counter, separated by `|`; the first one is the empty name.
 const COUNTS: &str =
     "|#|index|i|n|no|nr|number|record|row|scan|sample|samples|sample no|point|frame|store no";
 
-/// Words that end the name of a column that only counts, behind others.
+/// Last words of names of counters, such as `loopSample`.
 const COUNT_WORDS: [&str; 12] = [
     "sample", "samples", "index", "count", "counter", "number", "record", "row", "frame", "packet", "seq",
     "sequence",
 ];
 
-/// The unit of a column that counts, in heads of telephones: the set ℕ, and no newton.
+/// Unit of a counter in files of telephone apps: the natural numbers ℕ, not newton.
 pub(super) const NATURAL: &str = "N";
 
-/// Words in the name of a phase.
+/// Words that begin or end the name of a phase.
 const PHASES: [&str; 5] = ["phase", "phasenwinkel", "fase", "angle", "фаза"];
 
 /// Words in the name of a force: its N is newton.
 const FORCES: [&str; 3] = ["force", "load", "kraft"];
 
-/// Words that end the name of a temperature, whose bare degrees are of an unknown scale and no angle.
+/// Last words of a temperature's name. Degrees alone are then a temperature of unknown scale, no angle.
 const TEMPERATURES: [&str; 4] = ["temperature", "temp", "temperatur", "température"];
 
-/// Words that begin the name of an acceleration, whose `G` is the one of gravity and no gauss.
+/// Words that begin the name of an acceleration: its unit `G` is standard gravity, not gauss.
 const ACCELERATIONS: [&str; 3] = ["acc", "beschl", "shock"];
 
-/// The unit behind the name of a time, where it has other letters elsewhere or means something else there:
-/// `d`, `H`, `Min`, `MS`; and `G` of an acceleration.
+/// Unit whose spelling is understood only with the name: `d`, `H`, `Min` or `MS` of a time, `G` of an
+/// acceleration. `None` for all others.
 fn long(name: &str, unit: &str) -> Option<&'static str> {
     if unit.trim() == "G" {
         return ACCELERATIONS.iter().any(|word| name.to_lowercase().starts_with(word)).then_some("g");
@@ -399,7 +405,7 @@ fn long(name: &str, unit: &str) -> Option<&'static str> {
     (named.axis(true) == Some(AxisKind::Time) && !named.is_vague()).then_some(found)
 }
 
-/// Name and content of the brackets that end a text.
+/// Splits a text that ends with a bracket into the text before it and the content.
 fn bracketed(text: &str, open: char, close: char) -> Option<(&str, &str)> {
     let inner = text.strip_suffix(close)?;
     let mut depth = 1;
@@ -416,13 +422,14 @@ fn bracketed(text: &str, open: char, close: char) -> Option<(&str, &str)> {
     None
 }
 
-/// Whether `word` is a name or begins `text` and ends there: `time_abs`, not `timeout`.
+/// Whether `text` begins with `word` and no letter follows: `time_abs` begins with `time`, `timeout` does
+/// not.
 fn begins(text: &str, word: &str) -> bool {
     text.strip_prefix(word).is_some_and(|rest| !rest.starts_with(char::is_alphabetic))
 }
 
-/// A quotient, hertz, a level, or a unit of the quantity that the name says: `x_m` may be a name, `force_N`
-/// is not.
+/// Whether a unit without brackets cannot be part of the name: a quotient, hertz, a level, or a unit of the
+/// quantity in the name. `force_N` ends with a unit; `x_m` may be a name.
 fn cannot_be_name(name: &str, unit: &str) -> bool {
     let quantity = Unit::parse(unit).map(|u| u.quantity());
     let key = name.to_lowercase();

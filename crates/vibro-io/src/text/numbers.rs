@@ -1,4 +1,4 @@
-//! Columns of numbers, with or without header lines: what analysers print.
+//! Detects columns of numbers, with or without header lines, as analysers print them.
 //!
 //! ```text
 //! SPS390 SPECTRUM            header lines: free text, `key: value`, or remarks behind # % ! * ' " //
@@ -6,7 +6,7 @@
 //!   4.001992e-02             one value a line; or columns between blanks, tabs, commas or semicolons
 //!   2.001233e-02
 //! ```
-//! Complex values stand as `(re+imj)` or as two columns under a header with `real` and `imag`.
+//! Complex values are written `(re+imj)`, or as two columns under a header with `real` and `imag`.
 
 use super::decoded::{Text, in_line, shorten};
 use super::dialect::Dialect;
@@ -20,11 +20,12 @@ use num_complex::Complex64;
 use vibro_record::units::Unit;
 use vibro_record::{Error, Result};
 
-/// Marks of remarks above the rows, those between rows first: there a quoted cell begins a row.
+/// Marks of remarks above the rows. Only the first five (`BETWEEN`) mark one between rows, where a quote
+/// begins a cell.
 const REMARKS: [&str; 7] = ["#", "%", "!", "*", "//", "'", "\""];
 const BETWEEN: &[&str] = REMARKS.split_at(5).0;
 
-/// Rows that tell the dialect where no comma makes it doubtful.
+/// Number of rows that show the dialect. Where one has a comma, all rows in the head are looked at.
 const ENOUGH: usize = 24;
 
 /// Finds the dialect from the first rows.
@@ -73,10 +74,11 @@ pub fn detect(text: &Text, options: &Options) -> Result<Dialect> {
     let imaginary = |c: &str| {
         number::parse_with(c.as_bytes(), decimal).is_none() && complex(c.as_bytes(), decimal).is_some()
     };
-    // Between commas stand two numbers.
+    // With a comma in it, the line holds two numbers and not one complex number.
     let whole = !first.text.contains(',') && imaginary(first.text.trim());
     let complex = whole || cells.iter().any(|(_, c)| imaginary(c));
-    // Rows above the first that do not parse are rows: reading will complain, with the place.
+    // Rows above the first good one that do not parse belong to the table: reading reports them, with line
+    // and column.
     let torn = |l: &&Line| l.remark.is_none() && is_torn(l.text, separator, cells.len());
     let named = above.len() - above.iter().rev().take_while(torn).count();
     if named < above.len() && names::above(&header[..named], cells.len(), separator).is_some() {
@@ -86,7 +88,7 @@ pub fn detect(text: &Text, options: &Options) -> Result<Dialect> {
     let clock = clock::columns(&cells);
     let joined = clock.as_ref().map_or(0, |cells| cells.len() - 1);
     let columns = if whole && separator == Separator::Blank { 1 } else { cells.len() - joined };
-    // The number of a row has often no name.
+    // A first column that numbers the rows often has no name.
     let number = |line: &Line| number::parse(fields(line.text, separator).ok()?.first()?.1.as_bytes());
     let counted = || rows.windows(2).all(|w| number(&w[0]).map(|n| n + 1.0) == number(&w[1]));
     let named = |columns| names::above(&header, columns, separator);
@@ -109,14 +111,15 @@ pub fn detect(text: &Text, options: &Options) -> Result<Dialect> {
     })
 }
 
-/// The cells of a line between tabs, semicolons or commas, else between blanks.
+/// Cuts a line at tabs, semicolons or commas, else at blanks.
 fn cells<'a>(line: &Line<'a>) -> Option<Fields<'a>> {
     let cut = |separator| fields(line.text, separator).ok();
     let marks = [b'\t', b';', b','].map(Separator::Char).into_iter();
     marks.filter_map(cut).find(|cells| cells.len() > 1).or_else(|| cut(Separator::Blank))
 }
 
-/// Names the cell that is no number in the first of the lines at the end that hold numbers in the same cells.
+/// Error that names the first cell that is no number, in the first of the last lines that have numbers in the
+/// same cells.
 fn stray(lines: &[Line]) -> Option<Error> {
     let begins = |cell: &str| number::prefix(cell.as_bytes(), b'.').is_some();
     let numbers = |line: &Line| -> Vec<bool> {
@@ -139,7 +142,7 @@ fn stray(lines: &[Line]) -> Option<Error> {
         Error::input(place, format!("{cell:?}, and no row of numbers"), "numbers in all cells of a row")
     };
     Some(match unit_of(cell) {
-        // Without it, a time in ms would be one in s.
+        // Without the unit, a time in ms would be read in s.
         Some(unit) => error(cell).hint(format!(
             "take {unit} out of all cells of this column, and write it behind the column's name above the rows: \
              name [{unit}]"
@@ -148,7 +151,7 @@ fn stray(lines: &[Line]) -> Option<Error> {
     })
 }
 
-/// The unit behind the number of a cell.
+/// The unit behind the number in a cell, if it is a known one.
 fn unit_of(cell: &str) -> Option<&str> {
     let used =
         [b'.', b','].iter().filter_map(|mark| Some(number::prefix(cell.as_bytes(), *mark)?.1)).max()?;
@@ -156,8 +159,8 @@ fn unit_of(cell: &str) -> Option<&str> {
     Unit::parse(unit).filter(|_| unit.starts_with(|c: char| c.is_alphabetic() || c == '%')).map(|_| unit)
 }
 
-/// `300 0.005` above rows of three columns and more: number of values and step in s, as Fortran programs
-/// write them.
+/// Header line made of `300 0.005` above rows of three or more columns: number of values and step in s, as
+/// Fortran programs write them.
 fn count_and_step(rows: &[Line]) -> Option<String> {
     let columns = |i: usize| rows.get(i).map_or(0, |line| line.text.split_whitespace().count());
     let (count, step) = rows.first()?.text.trim().split_once(char::is_whitespace)?;
@@ -190,7 +193,7 @@ fn is_row(line: &[u8]) -> bool {
     numbers > 0
 }
 
-/// Separator and decimal mark.
+/// Finds separator and decimal mark; an error where a comma may be either.
 fn marks(rows: &[Line], options: &Options) -> Result<(Separator, u8)> {
     const COMMA: Separator = Separator::Char(b',');
     let any = |test: &dyn Fn(&str) -> bool| rows.iter().any(|r| test(r.text.trim()));
@@ -207,13 +210,13 @@ fn marks(rows: &[Line], options: &Options) -> Result<(Separator, u8)> {
             .setting("decimal")
     };
     let comma = match options.decimal_comma {
-        // A comma before `057` stands in no row of whole numbers.
+        // All rows are whole numbers, and the comma in one cannot separate two of them: it groups digits.
         Some(false) if explicit.is_none() && any(&no_integers) && !any(&|line| !is_whole(line)) => {
             return Ok((Separator::Blank, b'.'));
         }
         Some(comma) => comma,
         None if explicit.is_none() && grouped(rows) => return Err(doubtful()),
-        // Points are decimal marks, so commas separate.
+        // With decimal points, commas separate.
         None if any(&|line| line.contains('.')) => false,
         None if explicit.is_some() => true,
         // `1, 2` or a field with two commas: commas separate.
@@ -225,8 +228,8 @@ fn marks(rows: &[Line], options: &Options) -> Result<(Separator, u8)> {
         {
             false
         }
-        // Several fields between blanks, each with at most one comma; or one that no integer column would
-        // print.
+        // Commas are decimal marks where fields are separated by blanks, or a comma cannot separate two
+        // integers.
         None if any(&|line| line.split_ascii_whitespace().count() > 1) || any(&no_integers) => true,
         None => return Err(doubtful()),
     };
@@ -238,7 +241,7 @@ fn is_whole(line: &str) -> bool {
     number::may_be_grouped(line.as_bytes()) || line.bytes().all(|b| b.is_ascii_digit() || b == b'-')
 }
 
-/// Whether a comma in a line cannot stand between two integers.
+/// Whether the comma in a line cannot separate two integers: `-0,5`, `1,057`, `1,5e3`.
 fn no_integers(line: &str) -> bool {
     let Some((left, right)) = line.split_once(',') else { return false };
     let leading_zero = right.starts_with('0') && right[1..].starts_with(|c: char| c.is_ascii_digit());
@@ -249,7 +252,7 @@ fn no_integers(line: &str) -> bool {
 /// `1,234.50`.
 fn grouped(rows: &[Line]) -> bool {
     let digits = |text: &str| !text.is_empty() && text.bytes().all(|b| b.is_ascii_digit());
-    // Number of groups before the decimal mark. Nobody groups `0.123`.
+    // Number of groups of three digits before the decimal mark. Nobody groups `0.123`.
     let groups = |line: &str, group: char, decimal: char| {
         let (whole, decimals) = line.strip_prefix(['-', '+']).unwrap_or(line).split_once(decimal)?;
         let (first, rest) = whole.split_once(group).unwrap_or((whole, ""));
@@ -264,8 +267,8 @@ fn grouped(rows: &[Line]) -> bool {
     })
 }
 
-/// Reads `(re+imj)`, `re + im i` and the like, and what circuit simulators print; a bare number has no
-/// imaginary part and is accepted.
+/// Reads a complex number, `(re+imj)`, `re + im i` and the like, or a pair as circuit simulators print it. A
+/// bare number has the imaginary part 0.
 pub fn complex(text: &[u8], decimal: u8) -> Option<Complex64> {
     let text = text.trim_ascii();
     if let Some(comma) = text.iter().position(|b| *b == b',').filter(|_| decimal == b'.') {
@@ -279,7 +282,8 @@ pub fn complex(text: &[u8], decimal: u8) -> Option<Complex64> {
         return number::parse_with(text, decimal).map(Into::into);
     };
     let imaginary = imaginary.strip_suffix(b"*").unwrap_or(imaginary).trim_ascii();
-    // The last sign that is none of an exponent; an exponent without its letter, `1.5+210`, is none here.
+    // The parts are split at the last sign that is not part of an exponent; `1.5+210` is two parts, no
+    // exponent without its letter.
     let sign = |at: &usize| matches!(imaginary[*at], b'+' | b'-') && !b"eEdDqQ".contains(&imaginary[*at - 1]);
     let (real, imaginary) = match (1..imaginary.len()).rfind(sign) {
         None => (0.0, number::parse_with(imaginary, decimal)?),
@@ -292,8 +296,8 @@ pub fn complex(text: &[u8], decimal: u8) -> Option<Complex64> {
     Some(Complex64::new(real, imaginary))
 }
 
-/// Real and imaginary part, each with its exponent, since `1,234` is one number; or level and angle:
-/// `(-3.1e+00dB,4.5e+01°)`.
+/// Real and imaginary part, both with an exponent, since `1,234` may be one number; or level in dB and angle
+/// in degrees: `(-3.1e+00dB,4.5e+01°)`.
 fn pair(first: &[u8], second: &[u8]) -> Option<Complex64> {
     let level = first.strip_prefix(b"(").and_then(|first| first.strip_suffix(b"dB"));
     if let Some(level) = level.map(number::parse) {

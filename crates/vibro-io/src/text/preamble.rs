@@ -1,5 +1,4 @@
-//! What stands above and beside the rows of a table and is no row of names: keys with values, of the file or
-//! of its columns.
+//! Reads the preamble above and beside the rows of a table: keys with values, of the file or of its columns.
 //!
 //! ```text
 //! Sample rate; 1000; Hz                  key and value in cells
@@ -18,11 +17,10 @@ use crate::number;
 use std::borrow::Cow;
 use vibro_record::AxisKind;
 
-/// Rows that are looked at, of which a preamble may stand beside the first.
+/// Most rows that are searched for a preamble beside the first of them.
 pub const BESIDE: usize = 40;
 
-/// Keys in the first cell of a line, each with its values in the cells behind: one for all columns, or one
-/// for each.
+/// The lines of a preamble as cells: a key, then one value for all columns or one for each.
 #[derive(Debug, Default)]
 pub struct Preamble(Vec<Vec<String>>);
 
@@ -55,13 +53,13 @@ pub const UNIT: &[&str] = &[
 ];
 const AXIS_UNIT: &[&str] = &["horizontal units", "horz units", "hunit", "xunits", "x units"];
 
-/// A cell as a key.
+/// A cell as a key: lower case, with blanks for `_` and no mark behind it.
 pub fn key(cell: &str) -> String {
     cell.trim_end_matches([':', '=']).trim().replace('_', " ").to_lowercase()
 }
 
 impl Preamble {
-    /// Of lines above the rows.
+    /// The preamble in the lines above the rows.
     pub fn of(lines: &[&Line], separator: Separator) -> Preamble {
         let keyed =
             |line: &&&Line| line.text.trim_start_matches([' ', '"', '*']).starts_with(char::is_alphabetic);
@@ -69,43 +67,43 @@ impl Preamble {
         Preamble(cells.map(|cells| cells.into_iter().map(|(_, cell)| cell.into_owned()).collect()).collect())
     }
 
-    /// Whether a cell is a key whose values are those of columns.
+    /// Whether a cell is a key with one value for each column.
     pub fn is_of_columns(cell: &str) -> bool {
         [SOURCE, UNIT, AXIS_UNIT].iter().any(|keys| keys.contains(&key(cell).as_str()))
     }
 
-    /// Whether it holds names of columns.
+    /// Whether the preamble holds names of columns.
     pub fn names_columns(&self) -> bool {
         self.values(SOURCE).is_some()
     }
 
-    /// Unit of the abscissa, where it is one of time or frequency; seconds are printed as `S`, too.
+    /// Unit of the abscissa, where it is one of time or frequency. Some instruments print `S` for seconds.
     pub fn axis_unit(&self) -> Option<String> {
         let unit = &self.values(AXIS_UNIT)?[0];
         let named = Name::with_unit_row("", if unit == "S" { "s" } else { unit });
         named.unit.clone().filter(|_| named.axis(true).is_some())
     }
 
-    /// The values of the first of some keys.
+    /// The values of the first line whose key is one of `keys`.
     fn values(&self, keys: &[&str]) -> Option<&[String]> {
         let found = self.0.iter().find(|cells| keys.contains(&key(&cells[0]).as_str()))?;
         found.get(1..).filter(|values| values.iter().any(|value| !value.is_empty()))
     }
 
-    /// Gives columns the names and units that they lack, where there is one for each, or for each but the
-    /// abscissa; says whether there are. Under a scale, `whole` numbers are counts of a converter: the
-    /// unit is not theirs.
+    /// Gives columns the names and units that they lack, where the preamble has one for each, or for each but
+    /// the abscissa; returns whether it has. Below a vertical scale, `whole` numbers are counts of a
+    /// converter, without that unit.
     pub fn name<'a>(&'a self, names: &mut [Name], whole: bool) -> bool {
         let n = names.len();
         let axis = names.first().and_then(|name| name.axis(true));
-        // Seconds are printed as `S`, too.
+        // Some instruments print `S` for seconds.
         let of_axis = |unit: &String| {
             let unit = if unit == "S" && axis == Some(AxisKind::Time) { "s" } else { unit };
             let named = Name::with_unit_row(&names[0].name, unit);
             named.unit.clone().filter(|_| named.axis(true) == axis)
         };
         let own = self.axis_unit().and_then(|unit| of_axis(&unit));
-        // A line may end with blank cells, and so may its values.
+        // A line may end with blank cells, which may be values or not: both counts are tried.
         let fit = |values: &'a [String], all: &dyn Fn(&[String]) -> bool| {
             let said = values.iter().rposition(|value| !value.is_empty()).map_or(0, |last| last + 1);
             let fits = |n_values: &usize| {
@@ -136,8 +134,8 @@ impl Preamble {
     }
 }
 
-/// A preamble in the first columns of the first rows, as oscilloscopes of Tektronix write it: key, value and
-/// unit, then time and value, with nothing before them further down.
+/// Dialect of a table with a preamble in the first columns of its first rows, as Tektronix oscilloscopes
+/// write it: key, value and unit, then time and value. Further down the first columns are empty.
 pub fn beside_rows(text: &Text) -> Option<Dialect> {
     let separator = Separator::Char(b',');
     let lines = Lines::new(&text.head, 0, 1, &[]).filter(|line| !line.is_blank()).take(BESIDE);
@@ -182,8 +180,8 @@ pub fn beside_rows(text: &Text) -> Option<Dialect> {
     })
 }
 
-/// Statements in cells beyond the `width` of the rows: a word over a number, `Start` over `-2e-3`, or `t0 =
-/// -5e-7`. They are taken out.
+/// Takes statements out of the cells beyond the `width` of the rows: a word over a number, `Start` over
+/// `-2e-3`, or `t0 = -5e-7`.
 pub fn beside(upper: Option<&mut Fields>, lower: &mut Fields, width: usize) -> Vec<String> {
     let over = |upper: &Fields| {
         let mut pairs = upper.iter().zip(&*lower).skip(width);
@@ -208,14 +206,14 @@ fn is_pair(key: &str, value: &str) -> bool {
     key.contains(char::is_alphabetic) && number::parse(value.as_bytes()).is_some()
 }
 
-/// A preamble line as `key: value`: spreadsheets put key, value and unit into cells.
+/// A preamble line as `key: value`: spreadsheets have key, value and unit in cells.
 pub fn key_and_value(line: &Line, separator: Separator) -> String {
     let whole = || line.remark.unwrap_or(line.text.trim()).to_owned();
     let Some(cells) = fields(line.text, separator).ok().filter(|_| line.remark.is_none()) else {
         return whole();
     };
     let mut cells: Vec<String> = cells.into_iter().map(|(_, cell)| cell.into_owned()).collect();
-    // Rows of one column show no separator: a key with a unit and a number do.
+    // Rows of one column show no separator; a key with its unit in brackets and a number behind it do.
     if let Some((key, value)) = line.text.split_once([',', ';']).filter(|_| cells.len() == 1)
         && key.ends_with([')', ']'])
         && number::parse(value.as_bytes()).is_some()
@@ -225,7 +223,7 @@ pub fn key_and_value(line: &Line, separator: Separator) -> String {
     if cells[0].trim_end_matches(':').contains([':', '=']) { whole() } else { statement(&cells) }
 }
 
-/// Key and values of a preamble; values that are all the same are one.
+/// Key and values of a preamble line as text; equal values are written once.
 fn statement(cells: &[String]) -> String {
     let mut cells = cells.iter().map(|cell| cell.trim()).filter(|cell| !cell.is_empty());
     let key = cells.next().unwrap_or_default();
@@ -234,7 +232,7 @@ fn statement(cells: &[String]) -> String {
         values.truncate(1);
     }
     let Some(first) = values.first() else { return key.to_owned() };
-    // A number has its unit behind it; other values are those of several columns.
+    // A number is followed by its unit; other values are those of several columns.
     let joint = if number::prefix(first.as_bytes(), b'.').is_some() { " " } else { "; " };
     format!("{}: {}", key.trim_end_matches(':'), values.join(joint))
 }

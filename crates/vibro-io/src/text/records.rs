@@ -1,4 +1,4 @@
-//! Columns to records: abscissa, units, complex pairs.
+//! Makes records from columns: finds the abscissa, applies units, joins complex parts.
 
 use super::axis::{PrintedAbscissa, choose};
 use super::column::{Column, repeats};
@@ -22,7 +22,7 @@ use vibro_record::units::{Unit, is_level};
 use vibro_record::units::notation::counted;
 use vibro_record::{Axis, AxisKind, Error, Finding, Grid, Meta, Record, Result, Scaling, Values, Window};
 
-/// Records of all columns but the abscissa; findings about the file as a whole are added.
+/// One record for each column of values. Findings on the file as a whole are added to `findings`.
 ///
 /// # Errors
 /// If the columns contradict each other or what was stated.
@@ -57,9 +57,9 @@ pub fn build(
         table.remove(0);
     }
     let printed = made.abscissa(&table).map(|at| table.remove(at));
-    // A column that only counts says nothing, unless there is no other.
+    // Counters are left out, unless the table holds nothing else.
     let first = if is_table { made.without_counters(&mut table, findings) } else { None };
-    // Where every channel has the time beside it, once is enough.
+    // Where every channel has its own time column, copies of the abscissa are left out.
     let again =
         |c: &Column, axis: &Column| c.name.axis(true) == axis.name.axis(true) && c.values == axis.values;
     let plain = dialect.names.is_none();
@@ -128,7 +128,7 @@ pub fn build(
         built.push(column);
     }
     if is_table {
-        // What holds for all columns of a table is said of the table.
+        // Findings that hold for all columns of a table are reported once, for the file.
         findings.append(&mut of_axis);
     }
     Ok(built)
@@ -149,7 +149,8 @@ fn of_one_channel(table: &[Column]) -> Result<()> {
         .hint("keep the rows of one number in a file, those of the others each in a file of their own"))
 }
 
-/// Refuses rows without times of which a counter shows that some are missing: no rate is true of them.
+/// Refuses rows without times where a counter shows that samples are missing: no sampling rate holds for
+/// them.
 fn without_gaps(table: &[Column]) -> Result<()> {
     let gap = table.iter().find_map(|column| Some((column.label(), column.leaves_out()?)));
     let Some((name, [last, next])) = gap else { return Ok(()) };
@@ -159,18 +160,18 @@ fn without_gaps(table: &[Column]) -> Result<()> {
         .hint(format!("cut the file between {last} and {next}, and read each part by itself")))
 }
 
-/// The record of a column, and how its values are read again.
+/// The record of a column, and how to read its values again.
 pub struct Built {
     pub record: Record,
-    /// The ends of values that were not held.
+    /// Extremes and first values of a column whose values were not kept in memory.
     pub ends: Option<Extremes>,
-    /// Place in the row, counted from 0.
+    /// Place of the column in a row, counted from 0.
     pub at: usize,
-    /// Takes values as they are written to SI units.
+    /// Factor from the values as written to SI units.
     pub factor: f64,
 }
 
-/// What all records share.
+/// What the records of one file have in common.
 struct RecordContext<'a> {
     text: &'a Text<'a>,
     tail: &'a [u8],
@@ -178,12 +179,13 @@ struct RecordContext<'a> {
     is_table: bool,
     options: &'a Options,
     stated: Stated,
-    /// Whether a column that counts has the unit N, of natural numbers.
+    /// Whether a counter has the unit N, for natural numbers: N of another column may then not be newton.
     naturals: bool,
 }
 
 impl RecordContext<'_> {
-    /// Whether the first of plain columns only numbers the rows: the axis stands beside it or in the head.
+    /// Whether the first column of a file without names only numbers its rows: the axis is the next column or
+    /// in the header.
     fn numbered(&self, table: &[Column]) -> bool {
         let beside = || table.len() > 2 && table[1].rises();
         let headed = self.stated.rate.is_some() || self.stated.line_width.is_some();
@@ -226,8 +228,8 @@ impl RecordContext<'_> {
         first
     }
 
-    /// Which column is the abscissa. A column of times need not be it, for it may hold intervals: by name it
-    /// is, or if it rises.
+    /// Place of the abscissa in `table`. A clear name is enough. Any other column must rise, since one with a
+    /// unit of time may hold intervals.
     fn abscissa(&self, table: &[Column]) -> Option<usize> {
         let by_name = |column: &Column| {
             !column.name.is_vague()
@@ -239,7 +241,7 @@ impl RecordContext<'_> {
             let is = |at: &usize| {
                 by_name(&table[*at]) || table[*at].rises() || self.dialect.clock_at() == Some(named)
             };
-            // Columns without a value are gone.
+            // Columns without any value were removed, so that places differ from those in the row.
             return table.iter().position(|column| column.at - 1 == named).filter(is);
         }
         let pair = self.options.complex && table.len() == 2 && !self.dialect.complex;
@@ -252,7 +254,7 @@ impl RecordContext<'_> {
         (table.len() > 1 && is).then_some(0)
     }
 
-    /// Axis from its column, and what is to be said of it.
+    /// The axis from its `column`, in s or Hz where its kind is known, with its findings.
     fn printed(&self, column: Column, others: &[Column]) -> Result<PrintedAbscissa> {
         let at = format!("column {}", column.at);
         let (name, label) = match column.name.name.as_str() {
@@ -290,14 +292,15 @@ impl RecordContext<'_> {
             _ if clock || epoch.is_some() => Some(Finding::note("axis-clock")),
             _ => assumed,
         };
-        // Instruments print times of single precision, too; that has no steps finer than its last digit.
+        // Some instruments print times of single precision with more digits than it has. Steps that are all
+        // finer than its last digit show double precision.
         let largest = values.iter().fold(0.0, |max: f64, x| max.max(x.abs()));
         let single = largest * f64::from(f32::EPSILON) / 2.0;
         let finer = values.windows(2).all(|w| (w[1] - w[0]).abs() < single);
         let own = tail::resolution(self.text, self.tail, self.dialect, column.at - 1);
         let own = own.max(if finer { largest * f64::EPSILON } else { single });
         self.one_clock(&kind, &column, (factor, own), others)?;
-        // Of a long record there is room for one column of times, not for two.
+        // Converted in place: memory may hold one column of times of a long record, not two.
         let mut values = match column.values {
             Held::Values(Values::Real(values)) => values,
             _ => values.into_owned(),
@@ -326,10 +329,11 @@ impl RecordContext<'_> {
         })
     }
 
-    /// Unit of a column without a name, and its factor to s, by which it agrees with the stated rate.
+    /// Unit of an unnamed time column (s, ms or µs) and its factor to s with which the mean step agrees with
+    /// the stated rate.
     fn unit_by_rate(&self, values: &[f64]) -> Option<(&'static str, f64)> {
         let step = (values.last()? - values[0]) / values.len().saturating_sub(1).max(1) as f64;
-        // A count of the values, which has no unit.
+        // Steps of 1 from 0 or 1 number the values: no unit.
         if step == 1.0 && matches!(values[0], 0.0 | 1.0) {
             return None;
         }
@@ -339,8 +343,8 @@ impl RecordContext<'_> {
         [("s", 1.0), ("ms", 1e-3), ("µs", 1e-6)].into_iter().find(agrees)
     }
 
-    /// Refuses a second column of the axis that runs over another `span`: which columns are whose cannot be
-    /// told.
+    /// Refuses a second column of the same kind as the abscissa with another span: which values belong to
+    /// which is unknown.
     fn one_clock(
         &self,
         kind: &AxisKind,
@@ -380,7 +384,7 @@ impl RecordContext<'_> {
         cell.map(colons).as_deref() == Some(":")
     }
 
-    /// Whether the head says that a column holds frequencies.
+    /// Whether the header states that the abscissa is a frequency and gives no step of one series.
     fn over_hertz(&self) -> bool {
         self.stated.lines_apart && !self.stated.of_one_series
     }
@@ -429,7 +433,7 @@ impl RecordContext<'_> {
         found
     }
 
-    /// Time or frequency, by what a person or the header states of `n` values.
+    /// Domain of `n` values, time or frequency, from the options or the header; `None` where neither tells.
     fn domain(&self, n: usize) -> Option<AxisKind> {
         let (options, stated) = (self.options, &self.stated);
         if self.over_hertz() {
@@ -443,8 +447,8 @@ impl RecordContext<'_> {
         spectrum.then_some(AxisKind::Frequency)
     }
 
-    /// Joins real and imaginary parts that belong together, and the magnitude of a response function with the
-    /// phase behind it; over time there are none.
+    /// Joins real and imaginary parts of one quantity, and over frequency a response function's magnitude
+    /// with the phase column behind it. Columns over time are not joined.
     fn joined(&self, table: Vec<Column>, axis: &Axis, found: &mut Vec<Finding>) -> Result<Vec<Column>> {
         let parts = !self.dialect.complex && axis.kind != AxisKind::Time;
         let unnamed = self.dialect.names.is_none() && axis.kind == AxisKind::Frequency;
@@ -471,7 +475,7 @@ impl RecordContext<'_> {
                 out.push(column);
                 continue;
             };
-            // A unit that stands in one header holds for both.
+            // A unit in the header of one part holds for both.
             if real.name.unit.is_some() && column.name.unit.is_some() && real.name.unit != column.name.unit {
                 let found = format!("{:?} and {:?} have different units", real.label(), column.label());
                 return Err(Error::usage(found, "one unit for real and imaginary part"));
@@ -560,7 +564,7 @@ impl RecordContext<'_> {
         let own = self.remark_about("window", name).and_then(|window| Window::from_name(&window));
         Spectral {
             scaling: self.remark_about("scaling", name).and_then(|s| Scaling::from_name(&s)).or(by_unit),
-            // A remark about another column says nothing of this one.
+            // A file with remarks on single columns has no window for all.
             window: own
                 .or(self.stated.window.filter(|_| !self.remarks("window").any(|v| v.contains(" of ")))),
             enbw: self.remark_about("enbw", name).and_then(|e| number::parse(e.as_bytes())),
@@ -573,7 +577,8 @@ impl RecordContext<'_> {
         self.stated.notes.iter().filter(move |(k, _)| k.eq_ignore_ascii_case(key)).map(|(_, v)| v.as_str())
     }
 
-    /// A remark about one column, `key: value of name`, or about all, `key: value`.
+    /// Lower-case value of the remark on this column (`key: value of name`), else of one on all columns
+    /// without `of`.
     fn remark_about(&self, key: &str, name: &str) -> Option<String> {
         let of = format!(" of {name}");
         let own = self.remarks(key).find_map(|v| v.strip_suffix(of.as_str()));

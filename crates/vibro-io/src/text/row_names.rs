@@ -1,5 +1,5 @@
-//! Rows that are named in quotes, below a line of names that is one cell shorter, as `write.table` of R
-//! writes them.
+//! Removes row names in quotes, below a line of names that is one cell shorter, as `write.table` of R writes
+//! them.
 //!
 //! ```text
 //! "time" "force.N"
@@ -14,10 +14,10 @@ use crate::number;
 use crate::source::Source;
 use vibro_record::Result;
 
-/// Rows that show it.
+/// Most rows below the line of names that are checked.
 const ENOUGH: usize = 3;
 
-/// The text with tabs between its cells and without the names of rows; `None` of any other text.
+/// The text with tabs between its cells and without the names of rows; `None` for any other text.
 ///
 /// # Errors
 /// If it cannot be read.
@@ -42,7 +42,8 @@ pub fn without(text: &Text) -> Result<Option<Source>> {
     text.source.with_bytes(kept).map(Some)
 }
 
-/// Whether the first line names one column less than the rows below it have cells, whose first is quoted.
+/// Whether the first line has one name less than the rows below have cells, and these begin with a quoted
+/// cell.
 fn named(text: &Text, separator: Separator) -> bool {
     let mut lines = Lines::new(&text.head, 0, 1, &[]).take(ENOUGH + 1);
     let Some(names) = lines.next().and_then(|line| fields(line.text, separator).ok()) else { return false };

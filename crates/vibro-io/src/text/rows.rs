@@ -1,4 +1,4 @@
-//! The careful path: one row after the other, each complaint with its line and column.
+//! The careful path: reads one row after the other, so that an error names line and column.
 
 use super::clock::Stopwatch;
 use super::decoded::{in_line, shorten};
@@ -16,32 +16,33 @@ use std::ops::Range;
 use vibro_record::units::notation::counted;
 use vibro_record::{Error, Result, Values};
 
-/// Columns of numbers and what was met on the way.
+/// Columns of numbers, and the missing values, blank lines and remarks among them.
 #[derive(Debug, Default, PartialEq)]
 pub struct Rows {
-    /// One a column, all of one length; a missing value is NaN.
+    /// Values of each column, NaN where missing. All have one length, but for those in `sparse`.
     pub columns: Vec<Held>,
-    /// First row and distance of the rows that have a value, for each column that has one in every second,
-    /// third, … only.
+    /// For each column with a value only in every second, third, … row: the first row with a value, and the
+    /// distance in rows from one value to the next.
     pub sparse: Vec<Option<(usize, usize)>>,
-    /// Which columns have no value in any row: nothing is missing there. None where all have.
+    /// For each column whether it has no value in any row: nothing is missing there. Empty from the fast
+    /// path.
     pub without_values: Vec<bool>,
     /// Number of missing values.
     pub missing: usize,
-    /// Number of gaps of blank lines that separate blocks of rows.
+    /// Number of gaps (blank lines) between blocks of rows of one length.
     pub separators: usize,
-    /// Number of rows in which the abscissa and all values are missing: they are left out.
+    /// Number of rows that were left out, since the abscissa and all values are missing in them.
     pub empty: usize,
-    /// Remarks between and behind the rows.
+    /// Remarks between and below the rows.
     pub remarks: Vec<String>,
 }
 
 /// Reads all rows from the first one on.
 ///
 /// # Errors
-/// On the first field that is no number, the first row with another number of fields and, but for tables, the
-/// first blank line between rows of several columns; on missing values, all at once, unless they are allowed;
-/// on a missing value in a column that its name makes the abscissa always.
+/// On the first field that is no number, the first row with another number of fields, or a missing value in a
+/// column that is the abscissa by its name; except in tables, on a blank line between rows of several
+/// columns. On missing values, all in one error, unless `allow_missing`.
 pub fn read(text: &str, dialect: &Dialect, allow_missing: bool) -> Result<Rows> {
     let rows = read_but(text, dialect, allow_missing, &[])?;
     if rows.columns.is_empty() {
@@ -50,14 +51,15 @@ pub fn read(text: &str, dialect: &Dialect, allow_missing: bool) -> Result<Rows> 
     Ok(rows)
 }
 
-/// As [`read`], where some columns are known to be `unused`; with no columns where some others are.
+/// As [`read`], with no missing values in `unused` columns. Where others have no value at all, gives no
+/// columns, only which these are.
 fn read_but(text: &str, dialect: &Dialect, allow_missing: bool, unused: &[bool]) -> Result<Rows> {
     let (n, abscissa) = (dialect.columns, dialect.named_abscissa());
     let reader = FieldParser { text, dialect };
     let mut rows = Rows::default();
     let mut columns: Vec<Vec<Complex64>> = vec![Vec::new(); n];
     let (mut missing, mut blank_since, mut blanks) = (Missing::default(), None, Vec::new());
-    // The same with blank lines, of which the last one tells whether they are missing values.
+    // Missing values with one for each blank line: only the end shows whether blank lines are missing values.
     let mut with_blanks = Missing::default();
     let (mut clock, clock_at) = (Stopwatch::default(), dialect.clock_at());
     for line in dialect.rows(text) {
@@ -153,7 +155,7 @@ fn read_but(text: &str, dialect: &Dialect, allow_missing: bool, unused: &[bool])
     Ok(rows)
 }
 
-/// Refuses missing values, unless they are allowed; where columns only end early it says what to do.
+/// Refuses missing values, unless they are allowed. Where columns only end early, the error says what to do.
 fn checked(missing: Missing, columns: &[Vec<Complex64>], allowed: bool) -> Result<usize> {
     let gaps = |values: &[Complex64]| values.iter().filter(|v| v.re.is_nan()).count();
     let behind = |values: &[Complex64]| values.iter().rev().take_while(|v| v.re.is_nan()).count();
@@ -162,18 +164,18 @@ fn checked(missing: Missing, columns: &[Vec<Complex64>], allowed: bool) -> Resul
     checked.map_err(|why| if end_early { why.hint(END_EARLY).setting("allow_missing") } else { why })
 }
 
-/// What to try where columns are of different length.
+/// Hint where columns have different lengths.
 const END_EARLY: &str = "write the columns that end early to a file of their own, with their axis; or keep what is missing as such";
 
-/// What to try where rows of another table stand behind a line of words.
+/// Hint where rows of another table follow a line of words.
 pub const TABLES: &str =
     "write each table of the file to a file of its own, the lines above its rows with it";
 
-/// What stands behind the last row.
+/// Words on a line of their own that end the rows.
 const ENDS: [&str; 3] = ["end", "endcurve", "eof"];
 
-/// First row and distance of the rows with a value, where these are even and no others have one: a channel of
-/// a lower rate.
+/// First row with a value and distance in rows to the next, where values come at even distance and no other
+/// row has one: a channel of a lower rate.
 fn sparse(values: &[Complex64]) -> Option<(usize, usize)> {
     let has = |i: &usize| !values[*i].re.is_nan();
     let mut with = (0..values.len()).filter(has);
@@ -183,10 +185,10 @@ fn sparse(values: &[Complex64]) -> Option<(usize, usize)> {
     (every > 1 && regular && values.len() > 3 * every).then_some((first, every))
 }
 
-/// Blank lines between rows: the number of rows before them, and their own numbers.
+/// A gap of blank lines: the number of rows before it, and the numbers of its lines.
 type Blank = (usize, Range<u64>);
 
-/// Whether blank lines separate blocks of rows of one length: then they are no rows without a value.
+/// Whether gaps of equal length separate blocks of equal length: then blank lines are no missing values.
 fn separate(blanks: &[Blank]) -> bool {
     let alike = |w: &[Blank]| {
         w[1].0 - w[0].0 == blanks[0].0 && (w[0].1.end - w[0].1.start) == (w[1].1.end - w[1].1.start)
@@ -194,10 +196,10 @@ fn separate(blanks: &[Blank]) -> bool {
     blanks.len() >= FEWEST_BLANKS && blanks.windows(2).all(alike)
 }
 
-/// Fewest blank lines that are seen to come evenly.
+/// Fewest gaps that count as even: fewer may be even by chance.
 const FEWEST_BLANKS: usize = 3;
 
-/// Values with a missing one for each blank line.
+/// Inserts a missing value (NaN) for each blank line.
 fn with_missing(values: &[Complex64], blanks: Vec<Blank>) -> Vec<Complex64> {
     let (mut all, mut taken) = (Vec::with_capacity(values.len()), 0);
     for (before, lines) in blanks {
@@ -215,7 +217,7 @@ fn fault(line: &Line, at: usize, found: &str, expected: &str) -> Error {
     Error::input(in_line(line.number).column(line.column(at)), found, expected)
 }
 
-/// What is read, for values and complaints.
+/// Parses the fields of a text, and words the errors.
 struct FieldParser<'a> {
     text: &'a str,
     dialect: &'a Dialect,
@@ -233,7 +235,7 @@ impl FieldParser<'_> {
         half || number::is_missing(field.as_bytes())
     }
 
-    /// Whether the first field is a word, as above the rows of a table.
+    /// Whether the first field with text is a word, as in the line of names above another table.
     fn begins_with_word(&self, fields: &Fields) -> bool {
         let first = fields.iter().map(|(_, field)| field).find(|field| !field.is_empty());
         first.is_some_and(|first| {
@@ -241,7 +243,7 @@ impl FieldParser<'_> {
         })
     }
 
-    /// Whether rows stand behind a line.
+    /// Whether any row below this line holds a number.
     fn rows_behind(&self, line: &Line) -> bool {
         let behind = (line.at + line.text.len()).min(self.text.len());
         let has = |line: &Line| {
@@ -254,7 +256,7 @@ impl FieldParser<'_> {
 
     fn ragged(&self, line: &Line, fields: &Fields) -> Error {
         let n = self.dialect.columns;
-        // A field that is no number says more than the number of fields.
+        // Where a field is no number, naming it helps more than the number of fields.
         let odd = fields.iter().find(|(_, f)| self.value(f).is_none() && !self.is_missing(f));
         if let Some((at, field)) = odd.filter(|_| self.dialect.names.is_none()) {
             return self.not_a_number(line, *at, field);
@@ -293,7 +295,7 @@ impl FieldParser<'_> {
         if let Some(inner) = inner.filter(|inner| self.value(inner).is_some()) {
             return error.hint(format!("if brackets mean less than zero, write -{inner}; in all rows alike"));
         }
-        // No value can be missing there.
+        // The first cell of a row is not called missing: NaN is no remedy there.
         if self.dialect.names.is_some() && line.text[..at].trim_matches([' ', '"']).is_empty() {
             return error.hint(self.hint(line, "remove the line, or put # before it"));
         }
@@ -301,7 +303,8 @@ impl FieldParser<'_> {
         error.hint(self.hint(line, hint)).setting("allow_missing")
     }
 
-    /// What to try, or else that the file ends within a row that does not end with a line end.
+    /// The hint for an error in `line`: another table begins there, the file is cut off there, or else
+    /// `hint`.
     fn hint(&self, line: &Line, hint: &'static str) -> &'static str {
         if self.dialect.cut(line).is_ok_and(|fields| self.begins_with_word(&fields)) && self.rows_behind(line)
         {

@@ -1,23 +1,23 @@
-//! Columns of a long text, read again block by block: what was looked at once need not be held.
+//! Reads columns of a long text again, block by block, so that values need no memory between two readings.
 
 use super::fast::{Blocks, RowShape, parsed};
 use crate::source::Source;
 use std::path::PathBuf;
 use vibro_record::{Error, Meta, Place, Result, Stream, units};
 
-/// Columns of a text that are read again, block by block, with the factor of each to SI.
+/// Columns of a text that are read again block by block and scaled to SI units.
 pub(crate) struct Columns {
     path: PathBuf,
     shape: RowShape,
     blocks: Blocks,
-    /// The columns that are handed out.
+    /// Column number from 0 and factor to SI of each channel that is handed out.
     handed: Vec<(usize, f64)>,
-    /// All columns of a block.
+    /// Values of all columns in a block.
     values: Vec<Vec<f64>>,
 }
 
 impl Columns {
-    /// Columns of a clean text up to the byte `end`.
+    /// Opens columns of a clean text, up to the byte `end`.
     ///
     /// # Errors
     /// If it cannot be opened.

@@ -1,4 +1,4 @@
-//! Tables with names above their columns: CSV and TSV.
+//! Detects tables with names above their columns: CSV and TSV.
 //!
 //! ```text
 //! # a remark                         remarks behind # or %, kept as notes
@@ -25,18 +25,18 @@ use std::borrow::Cow;
 use vibro_record::units::Unit;
 use vibro_record::{AxisKind, Error, Finding, Result};
 
-/// From the one that stands in numbers least to the one that does most.
+/// Separators in the order of trial: a comma last, since numbers hold it most often.
 const SEPARATORS: [u8; 3] = *b"\t;,";
 
 const REMARKS: &[&str] = &["#", "%"];
 
-/// Lines between rows and their names, at most, with the names.
+/// Most lines above the rows that are searched for names.
 const DEEPEST: usize = 4;
 
 /// Finds the first row of numbers with names right above it; `None` where there is none.
 ///
-/// Where the file calls itself CSV a single column will do, and a header that does not fit its rows is still
-/// a header, so that reading can name the row at fault.
+/// In a file with the ending of a table (csv, tsv) one column is enough, and a header that does not fit its
+/// rows is still a header, so that reading can name the row at fault.
 pub fn detect(text: &Text, options: &Options) -> Option<Dialect> {
     if let Some(found) = beside_rows(text) {
         return Some(found);
@@ -48,7 +48,7 @@ pub fn detect(text: &Text, options: &Options) -> Option<Dialect> {
     for line in Lines::new(&text.head, 0, 1, REMARKS).filter(|l| !l.is_blank()) {
         if line.remark.is_none() && line.number > begin {
             let counts = SEPARATORS.map(|mark| row(line.text, mark, options));
-            // The second of two rows that are alike begins nothing that the first did not.
+            // A separator that cuts this line into as many cells as the line before was tried there.
             let new = (0..SEPARATORS.len()).filter(|i| counts[*i] != before[*i]);
             let rows: Vec<(Separator, Option<usize>)> =
                 new.map(|i| (Separator::Char(SEPARATORS[i]), counts[i])).collect();
@@ -57,7 +57,8 @@ pub fn detect(text: &Text, options: &Options) -> Option<Dialect> {
                 |n: usize| rows.iter().filter(move |(_, count)| count.is_some_and(|c| (c > 1) == (n > 1)));
             for (separator, count) in of(2) {
                 let count = count.unwrap_or(0);
-                // Rows above this one that do not parse are rows: reading will complain, with the place.
+                // Rows above this one that do not parse belong to the table: reading reports them, with line
+                // and column.
                 let torn = above.iter().rev().take_while(|l| is_torn(l.text, *separator, count)).count();
                 let (upper, torn) = above.split_at(above.len() - torn);
                 let torn = torn.first().and_then(|first| fit(upper, *first, *separator, count, &text.head));
@@ -69,7 +70,7 @@ pub fn detect(text: &Text, options: &Options) -> Option<Dialect> {
                     found => misfit = misfit.or(found.map(|(found, _)| found)),
                 }
             }
-            // One column last: `1,5` under `a,b` is no decimal comma.
+            // One column is tried last: `1,5` under `a,b` is two cells, no number with a decimal comma.
             let alone = |(separator, _): &(Separator, _)| fit(&above, line, *separator, 1, &text.head);
             let mut below = Lines::new(&text.head, line.at, line.number, REMARKS)
                 .filter(|l| !l.is_blank() && l.remark.is_none());
@@ -90,14 +91,14 @@ pub fn detect(text: &Text, options: &Options) -> Option<Dialect> {
     misfit.filter(|_| text.called_csv()).map(|found| decided(found, text, options))
 }
 
-/// Number of fields, where all are numbers or missing or a clock and at least one is a number.
+/// Number of fields of a row: all are numbers, missing or a clock, and at least one is a number. Else `None`.
 fn row(text: &str, mark: u8, options: &Options) -> Option<usize> {
     let fields = fields(text, Separator::Char(mark)).ok()?;
     let clock = clock::columns(&fields).unwrap_or(0..0);
     let point = options.decimal_comma != Some(true);
-    // Between commas a decimal comma stands in quotes.
+    // Where commas separate, a number with a decimal comma must be in quotes.
     let comma = options.decimal_comma != Some(false) && (mark != b',' || text.contains('"'));
-    // A preamble may say `Overload, 0`; one number with both marks is asked about.
+    // A preamble may hold `Overload, 0`. A single number with both marks is ambiguous, and the user is asked.
     let word = |text: &str| {
         text.starts_with(|c: char| c.is_ascii_alphabetic()) && !text.to_lowercase().starts_with("nan")
     };
@@ -120,8 +121,8 @@ fn row(text: &str, mark: u8, options: &Options) -> Option<usize> {
     (numbers > 0).then_some(fields.len())
 }
 
-/// The dialect with the decimal mark: as stated, else the last comma or point of the first number that has
-/// one, where commas do not separate.
+/// Sets the decimal mark in the dialect: as stated, else the last comma or point of the first number that has
+/// one.
 fn decided(found: Dialect, text: &Text, options: &Options) -> Dialect {
     let rows = found.rows(&text.head).filter(|line| line.remark.is_none());
     let cells = rows.flat_map(|line| found.cut(&line).unwrap_or_default().into_iter().enumerate());
@@ -134,11 +135,11 @@ fn decided(found: Dialect, text: &Text, options: &Options) -> Dialect {
     Dialect { decimal: if comma == Some(true) { b',' } else { b'.' }, stated, ..found }
 }
 
-/// Refuses whole numbers with a mark before their last three digits, `1,000` beside `998`, where nothing
-/// shows that the mark is not the decimal one; says which columns hold only such numbers.
+/// Refuses a column with `1,000` beside `998`: the mark may group digits. A finding names columns that hold
+/// only numbers like `1,000`. A number like `1,5` in any column shows the decimal mark and ends the doubt.
 ///
 /// # Errors
-/// Names the first of them.
+/// Names the first doubtful cell.
 pub fn grouped(text: &Text, dialect: &Dialect) -> Result<Option<Finding>> {
     let mut columns = vec![(None, false); dialect.columns];
     for line in dialect.rows(&text.head).filter(|line| line.remark.is_none() && !dialect.stated) {
@@ -171,8 +172,8 @@ pub fn grouped(text: &Text, dialect: &Dialect) -> Result<Option<Finding>> {
     }))
 }
 
-/// The dialect with the names that stand in the lines above `first`, in rows of their own or behind keys, and
-/// whether there are as many as columns.
+/// The dialect of rows that begin at `first`, with names from the lines above, in rows of their own or behind
+/// keys; and whether there are as many names as columns.
 fn fit(
     above: &[Line],
     first: Line,
@@ -183,9 +184,9 @@ fn fit(
     let rows =
         Lines::new(head, first.at, first.number, REMARKS).filter(|l| !l.is_blank() && l.remark.is_none());
     let rows: Vec<Fields> = rows.take(BESIDE).map_while(|l| fields(l.text, separator).ok()).collect();
-    // Keys of a preamble may have a column of their own, which is empty below.
+    // Keys of a preamble may have a column of their own, which is empty in the rows.
     let skipped = usize::from(rows.len() > 1 && rows.iter().all(|row| row.len() > 1 && row[0].1.is_empty()));
-    // A line that has nothing above the values is none of their names.
+    // A line without any cell above the values holds none of their names.
     let empty = |line: &Line| {
         let cells = fields(line.text, separator).unwrap_or_default();
         skipped > 0 && cells.iter().skip(skipped).all(|(_, cell)| cell.is_empty())
@@ -201,7 +202,7 @@ fn fit(
     let stated = beside(uppers.first_mut(), lower, width);
     let clock = clock::columns(values).map(|cells| {
         let ms = block.iter().any(|line| line.get(cells.end).is_some_and(|(_, cell)| cell == "ms"));
-        // A clock that prints parts of a second has them already.
+        // A clock that prints parts of a second has its milliseconds already.
         let whole = !clock::printed_seconds(&clock::joined(&values[cells.clone()])).contains('.');
         cells.start..cells.end + usize::from(ms && whole)
     });
@@ -222,7 +223,8 @@ fn fit(
     if used.is_empty() && columns > 1 && rises() {
         names[0].unit = preamble.axis_unit();
     }
-    // `min,CH1`: some head the column of times with its unit; `s` is one where all are.
+    // `min,CH1`: some files name the time column by its unit. `s` is time only where all other names are
+    // units, too.
     let units = names.iter().skip(1).all(|name| Unit::parse(&name.name).is_some());
     if let Some(first) = names.first_mut().filter(|first| first.unit.is_none() && columns > 1) {
         let timed = Name::with_unit_row("", &first.name);
@@ -235,7 +237,7 @@ fn fit(
     }
     let whole = |(_, cell): &(usize, Cow<str>)| cell.bytes().all(|b| b.is_ascii_digit() || b == b'-');
     let keyed = preamble.name(&mut names, rows.iter().flatten().all(whole));
-    // A row above is one of the values.
+    // Whether the line above is itself a row of values.
     let is_row = |mark| row(spoken[0].text, mark, &Options::default()).is_some();
     if used.is_empty() && (!keyed || matches!(separator, Separator::Char(mark) if is_row(mark))) {
         return None;
@@ -243,7 +245,8 @@ fn fit(
     let last = spoken.get(used.end.max(1) - 1)?.number;
     let used: Vec<u64> = spoken.get(used)?.iter().map(|line| line.number).collect();
     let head = || above.iter().filter(|l| !used.contains(&l.number));
-    // A rate behind its key goes before a row of rates, which may be those of a filter.
+    // A rate behind its key takes precedence over a row with one rate a column, which may be those of a
+    // filter.
     let keyed: Vec<String> = head().map(|l| key_and_value(l, separator)).collect();
     let is_stated = Stated::of(keyed.iter().map(String::as_str), None).states_rate();
     let header = head().zip(&keyed).map(|(l, keyed)| {
@@ -268,17 +271,17 @@ fn fit(
     Some((dialect, fits(columns)))
 }
 
-/// Number of the line that says where rows begin: `data:`. 0 where there is none.
+/// Number of the line `data:` that announces the rows; 0 where there is none.
 pub(super) fn beginning(head: &str) -> u64 {
     let number = |line: &str| line.starts_with(|c: char| c.is_ascii_digit() || "+-. \t".contains(c));
     let begin = |at: &usize| head[..*at].rfind('\n').map_or(0, |end| end + 1);
-    // Few heads hold a colon: the others are told at once.
+    // Fast: only lines with a colon are looked at, and few heads hold one.
     let says = |at: &usize| {
         let rest = head[at + 1..].lines().next().unwrap_or_default();
         head[begin(at)..*at].eq_ignore_ascii_case("data")
             && rest.trim_matches([',', ';', '\t', ' ']).is_empty()
     };
-    // Rows stand behind it, and none before it; one may be the value of a key.
+    // Rows must follow the line and not come before it; a single number before it may be the value of a key.
     let begins = |at: &usize| {
         let before = head[..begin(at)].lines().rev().take(2).filter(|line| number(line)).count();
         before < 2 && head[*at..].lines().nth(1).is_some_and(number)

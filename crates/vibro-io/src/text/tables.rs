@@ -1,4 +1,4 @@
-//! Several tables in one text: the longest is read where the others are short beside it.
+//! Chooses between two tables in one text: the longer is read, where the other is short beside it.
 
 use super::decoded::Text;
 use super::encoding;
@@ -6,24 +6,24 @@ use crate::number;
 use crate::source::Source;
 use vibro_record::{Finding, Result};
 
-/// How many times as many rows the longer of two tables has: a summary of some rows is short beside what it
-/// sums up.
+/// Least ratio of the numbers of rows of the longer and the shorter table: a summary of rows is at least this
+/// much shorter.
 pub(crate) const LONGER: usize = 10;
 
-/// Lines that begin with a number.
+/// Number of lines that begin with a number.
 fn count(text: &str) -> usize {
     let begins =
         |line: &&str| number::prefix(line.trim_start_matches([' ', '\t', '"']).as_bytes(), b'.').is_some();
     text.lines().filter(begins).count()
 }
 
-/// Rows of numbers of a text in any encoding.
+/// Number of lines that begin with a number, in a text of any encoding.
 pub(crate) fn rows(bytes: &[u8]) -> usize {
     count(&encoding::decode(bytes))
 }
 
-/// The text with the longer of two tables, of which the second begins at `line`; `None` where they compare.
-/// Lines keep their numbers.
+/// The text with only the longer of two tables, of which the second begins at `line`, and a finding on the
+/// other; `None` where neither is [`LONGER`] times as long. Lines keep their numbers.
 ///
 /// # Errors
 /// If the file cannot be read.

@@ -1,4 +1,4 @@
-//! The end of a text of numbers: whether it is cut off, and how precisely its abscissa is printed.
+//! Checks the end of a text of numbers for a cut-off row, and finds the resolution of the printed abscissa.
 
 use super::clock;
 use super::decoded::Text;
@@ -10,16 +10,16 @@ use std::borrow::Cow;
 use std::io::{Read, Seek, SeekFrom};
 use vibro_record::{Error, Finding, Result};
 
-/// Bytes at the end that are looked at.
+/// Number of bytes at the end that are looked at.
 const LOOK: u64 = 4096;
-/// Rows above the last one that must agree before it can be called short.
+/// Fewest rows above the last one that must have the same digits before the last one can be called short.
 const ROWS: usize = 3;
 
-/// What to try where the last row of a file cannot be read.
+/// Hint where the last row of a file cannot be read.
 pub(crate) const CUT_OFF: &str =
     "the file ends within this row, so the export was cut off: export it again, or remove the row";
 
-/// The last rows of a source, whole: half a row has fewer digits, too.
+/// The last rows of a source, without a part of a row: that has fewer digits, too.
 pub fn of(source: &Source) -> Result<Cow<'_, [u8]>> {
     let from = source.len().saturating_sub(LOOK);
     let rows = |bytes: &[u8]| bytes.iter().position(|b| *b == b'\n').filter(|_| from > 0).unwrap_or(0);
@@ -33,8 +33,8 @@ pub fn of(source: &Source) -> Result<Cow<'_, [u8]>> {
     Ok(tail.split_off(rows(&tail)).into())
 }
 
-/// A doubt where `text` lacks its line end and its last number has fewer digits than the same column has in
-/// all rows above that are looked at.
+/// Doubt that the last number is cut off: `text` has no line end, and the number has fewer digits than all
+/// those of its column in the rows above.
 pub(crate) fn cut_off(text: &[u8], separator: Separator, decimal: u8) -> Option<Finding> {
     if text.last().is_none_or(|b| matches!(b, b'\n' | b'\r' | 0x1a)) {
         return None;
@@ -47,7 +47,7 @@ pub(crate) fn cut_off(text: &[u8], separator: Separator, decimal: u8) -> Option<
         .map(|row| row.rsplit(|b| *b == mark || b.is_ascii_whitespace()).next().unwrap_or(row));
     let last = rows.next()?;
     let found = digits(last, decimal)?;
-    // Up to the names: they are no numbers.
+    // Rows end at the line of names, which are no numbers.
     let above: Vec<(usize, usize)> = rows.map_while(|cell| digits(cell, decimal)).collect();
     let usual = *above.first()?;
     let agree = above.len() >= ROWS && above.iter().all(|d| *d == usual);
@@ -56,7 +56,7 @@ pub(crate) fn cut_off(text: &[u8], separator: Separator, decimal: u8) -> Option<
         .then(|| Finding::doubt("last-number-cut-off").name("found", String::from_utf8_lossy(last).as_ref()))
 }
 
-/// Digits behind the decimal mark and digits of the exponent; `None` for what is no number.
+/// Number of digits behind the decimal mark and in the exponent; `None` for text that is no number.
 fn digits(cell: &[u8], decimal: u8) -> Option<(usize, usize)> {
     number::parse_with(cell, decimal)?;
     let end = cell.iter().position(u8::is_ascii_alphabetic).unwrap_or(cell.len());
@@ -65,8 +65,8 @@ fn digits(cell: &[u8], decimal: u8) -> Option<(usize, usize)> {
     Some((behind, exponent.iter().filter(|b| b.is_ascii_digit()).count()))
 }
 
-/// Half a unit in the last digit that a column is printed with: by its rows in the head and at the end of the
-/// text, since the largest of a rising column have the most digits.
+/// Half a unit in the last digit of a printed column, in its unit, from the rows in the head and at the end
+/// of the text: the largest values of a rising column have the most digits.
 pub fn resolution(text: &Text, tail: &[u8], dialect: &Dialect, column: usize) -> f64 {
     let mut digits = Digits::default();
     let mut take = |line: Line| {
@@ -88,7 +88,7 @@ pub fn resolution(text: &Text, tail: &[u8], dialect: &Dialect, column: usize) ->
     digits.resolution()
 }
 
-/// How precisely a column is printed: with a fixed number of decimals, or of significant digits.
+/// Digits that a column is printed with: a fixed number of decimals, or of significant digits.
 #[derive(Debug, Default)]
 pub(crate) struct Digits {
     significant: i32,
@@ -110,9 +110,9 @@ impl Digits {
         self.largest = self.largest.max(value.abs());
     }
 
-    /// Numbers printed with `%.3f` share their last decimal, those of `%.6g` their number of digits: the
-    /// coarser of both bounds is right for either, and for the shortest form that reads back.
-    /// Half a unit in the last digit.
+    /// Half a unit in the last digit, in the unit of the column. Numbers printed with `%.3f` share their last
+    /// decimal, those with `%.6g` their number of digits. The coarser of both bounds holds for either, and
+    /// for the shortest form that reads back.
     pub fn resolution(&self) -> f64 {
         let leading = if self.largest > 0.0 { self.largest.log10().floor() as i32 + 1 } else { 0 };
         let unit = |exponent: i32| 10f64.powi(exponent);

@@ -1,4 +1,4 @@
-//! Times in two columns, whole seconds and the parts of a second behind them, as C and ROS print them.
+//! Joins times in two columns, whole seconds and parts of a second, as C and ROS print them.
 //!
 //! ```text
 //! tv_sec,tv_usec,acc
@@ -13,7 +13,7 @@ use super::names::Name;
 use crate::source::Source;
 use vibro_record::Result;
 
-/// Last words of the names of two columns, and the digits of the parts of a second.
+/// Last words of the names of both columns, and the number of digits of the parts of a second.
 const PAIRS: [(&str, &str, usize); 5] = [
     ("sec", "usec", 6),
     ("sec", "nsec", 9),
@@ -22,7 +22,8 @@ const PAIRS: [(&str, &str, usize); 5] = [
     ("secs", "usecs", 6),
 ];
 
-/// The text with the two columns as one, `time (s)`; `None` where it has none, or other cells in them.
+/// The text with both columns as one, `time (s)`; `None` where it has none, or cells that are no whole
+/// numbers.
 ///
 /// # Errors
 /// If it cannot be read.
@@ -58,7 +59,7 @@ pub fn joined(text: &Text, dialect: &Dialect) -> Result<Option<Source>> {
             }
             false => return Ok(None),
         };
-        // A decimal comma does not stand between commas.
+        // Decimal commas and commas as separators do not occur together.
         let behind = cells.get(at + 2).map_or("", |(from, _)| &line.text[*from..]);
         let ends = if behind.is_empty() { String::new() } else { char::from(mark).to_string() };
         kept = kept + &line.text[..cells[at].0] + &joined + &ends + behind + "\n";

@@ -1,19 +1,19 @@
-//! Units as headers of columns spell them.
+//! Reads units as column headers spell them.
 
 use super::names::Name;
 use crate::number;
 use vibro_record::Scaling;
 use vibro_record::units::{Quantity, Unit, spelled};
 
-/// What stands in place of a unit over numbered samples.
+/// Words in place of a unit above a counter.
 pub(super) const COUNTERS: [&str; 6] = ["sequence", "samples", "points", "no.", "rn", "#"];
 
-/// Hours have no symbol among the units of values.
+/// Name of the unit hour, which has no symbol among the units of values.
 pub(super) const HOUR: &str = "hour";
 
 pub(super) const DAY: &str = "day";
 
-/// The symbol of a unit that is written as a word; any other text as it is.
+/// The symbol of a unit that is written as a word; any other text unchanged.
 pub(super) fn symbol(text: &str) -> &str {
     let lower = text.to_lowercase();
     match lower.strip_suffix('s').filter(|t| t.len() > 2).unwrap_or(&lower) {
@@ -29,8 +29,8 @@ pub(super) fn symbol(text: &str) -> &str {
     }
 }
 
-/// A unit without what says that amplitudes are RMS or peak, and the scaling that this is: `Vrms`, `mm/s
-/// RMS`, `g pk`.
+/// Splits a unit into the bare unit and the scaling that its ending states, RMS or peak: `Vrms`, `mm/s RMS`,
+/// `g pk`.
 pub(crate) fn amplitude(unit: &str) -> (&str, Option<Scaling>) {
     const SAID: [(&str, Scaling); 4] =
         [("rms", Scaling::Rms), ("peak", Scaling::Peak), ("pk", Scaling::Peak), ("eff", Scaling::Rms)];
@@ -43,20 +43,20 @@ pub(crate) fn amplitude(unit: &str) -> (&str, Option<Scaling>) {
     SAID.into_iter().find_map(without).unwrap_or((unit, None))
 }
 
-/// Radians over a time: hertz only by 1/(2π).
+/// Whether the unit is an angle over a time: 1/(2π) takes rad/s to Hz.
 pub(super) fn is_angular(unit: &str) -> bool {
     Unit::parse(unit).is_some_and(|u| u.quantity() == Quantity::AngularVelocity)
 }
 
-/// A unit that stands where a name does: `Second`, `Volts`.
+/// A unit written in place of a name: `Second`, `Volts`; `None` for other words.
 pub(crate) fn unit_word(field: &str) -> Option<Name> {
     let unit = symbol(field.trim());
     let word = unit != field.trim() || spelled(unit).is_some();
     word.then(|| Name { name: String::new(), unit: Some(unit.to_owned()) })
 }
 
-/// Whether a row of fields holds units only: all blank, known or in brackets; or, where the first is known,
-/// at least half of them known and the others short, such as `EU`, and no numbers, as of `Samples,1000`.
+/// Whether a row of fields holds units only. All are blank, known or in brackets. Or the first is known, and
+/// at least half are, and all others are short and no numbers: `EU` is one, `Samples,1000` are none.
 pub(crate) fn is_unit_row<'a>(fields: impl Iterator<Item = &'a str>) -> bool {
     let (mut total, mut known, mut sure, mut short, mut first) = (0, 0, 0, 0, None);
     for field in fields.filter(|f| !f.trim().is_empty()) {
@@ -75,7 +75,7 @@ pub(crate) fn is_unit_row<'a>(fields: impl Iterator<Item = &'a str>) -> bool {
     known > 0 && (sure == total || (first == Some(true) && short == total && 2 * known >= total))
 }
 
-/// `dB`, `dBA`, `dB(A)`, `dBV`: `dbl` is none.
+/// Whether the unit is a level: `dB`, `dBA`, `dB(A)`, `dBV`, but not `dbl`.
 pub(super) fn is_decibel(unit: &str) -> bool {
     unit.strip_prefix("dB").is_some_and(|of| of.chars().all(|c| c.is_ascii_uppercase() || "()".contains(c)))
 }
@@ -85,7 +85,7 @@ pub(super) fn bare_unit(field: &str) -> &str {
     let field = field.strip_prefix("Unit:").unwrap_or(field).trim_start();
     let inner = |open, close| field.strip_prefix(open).and_then(|f| f.strip_suffix(close));
     match inner('[', ']').or(inner('(', ')')) {
-        // `(m/s²)/(N)` begins and ends with brackets too.
+        // `(m/s²)/(N)` also begins and ends with a bracket, but is no unit in brackets.
         Some(unit) if !unit.contains(['[', ']', '(', ')']) => unit.trim(),
         _ => field,
     }

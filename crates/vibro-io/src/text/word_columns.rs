@@ -1,5 +1,5 @@
-//! Columns of text beside columns of numbers: the name of a frame, a state, `7 / 12`, a date in a spelling
-//! that is no clock; the unit of the values before it.
+//! Leaves out columns of text beside columns of numbers: names of frames, states such as `7 / 12`, dates in a
+//! spelling that is no clock, the unit of the values before it.
 
 use super::clock;
 use super::decoded::{Text, in_line, shorten};
@@ -17,28 +17,28 @@ use std::ops::Range;
 use vibro_record::units::Unit;
 use vibro_record::{Error, Finding, Result};
 
-/// Rows that tell which columns hold text.
+/// Number of last rows in the head that show which columns hold text.
 const ENOUGH: usize = 24;
 
-/// Rows for each text that comes back, at least, in a column that holds a state such as `7 / 12`. Words that
-/// come back may name the channel or the sensor of a row; dates and numbers of frames never do.
+/// A column of states such as `7 / 12` returns to an earlier text at most once in this many rows. One that
+/// returns more often may name the channel or sensor of a row; dates and frame numbers never return.
 const STATE: usize = 10;
 
-/// What is left of a text without its columns of text.
+/// A text without its columns of text, and what these hold.
 pub struct LeftOut {
     pub source: Source,
-    /// Name the columns, and what they hold.
+    /// Findings that name the columns left out and what they hold.
     pub found: Vec<Finding>,
-    /// Whether their text changes: rows of several channels may stand below each other, or it may be the
-    /// time, unless the times of what is left rise.
+    /// Whether a text left out changes from row to row. It may then name channels or be the time, unless the
+    /// times that are left rise.
     pub changes: bool,
 }
 
 /// The line of names above the rows.
 struct Head {
-    /// One a column: blank where a column of text has none.
+    /// One name for each column; empty for a column of text without a name.
     names: Vec<String>,
-    /// Its bytes in what is kept.
+    /// Byte range of this line in the kept text.
     at: Range<usize>,
 }
 
@@ -47,22 +47,23 @@ struct Head {
 struct Held {
     first: String,
     last: String,
-    /// The first change of a word, as a complaint.
+    /// Error that names the first change of text.
     mixed: Option<Error>,
-    /// Hashes of all words.
+    /// Hashes of all texts of the column.
     words: HashSet<u64>,
-    /// Words that differ from the one above, and those of them that stood further up.
+    /// Number of cells that differ from the cell above; `returns` counts those of them whose text came
+    /// earlier.
     changes: usize,
     returns: usize,
-    /// Whether one that begins with a letter stood further up: it may name the channel of its rows.
+    /// Whether a text that begins with a letter returns: it may name the channel of its rows.
     names: bool,
 }
 
-/// The text without the columns that hold text and in no row a number; `None` where these are not
-/// what keeps it from being read.
+/// The text without its columns of text, which have no number in any row. `None` where there are none: the
+/// text is unreadable for another reason.
 ///
 /// # Errors
-/// If the words of a column change often: rows of several channels or sensors may stand below each other.
+/// If the texts of a column return often: rows of several channels or sensors may be below each other.
 pub fn left_out(text: &Text) -> Result<Option<LeftOut>> {
     let head: Vec<Line> = lines(&text.head).filter(|line| line.remark.is_none()).collect();
     let Some((separator, first, columns)) = columns(&head) else {
@@ -76,7 +77,8 @@ pub fn left_out(text: &Text) -> Result<Option<LeftOut>> {
     if let Some(held) = scan.held.iter_mut().find(named)
         && let Some(why) = held.mixed.take()
     {
-        // Words in turns name sensors; what changes now and then may be a state of one.
+        // Words that change in most rows name sensors; those that change now and then may be states of one
+        // sensor.
         let turns = 2 * held.changes > rows;
         return Err(why.hint(if turns {
             "keep the rows of one word in a file, those of the others each in a file of their own"
@@ -98,18 +100,18 @@ struct Scan {
 }
 
 impl Scan {
-    /// `None` where one of the columns of text holds a number, too.
+    /// Scans the whole text; `None` where a column of text also holds a number.
     fn of(whole: &str, separator: Separator, first: u64, columns: &[bool]) -> Option<Scan> {
         let (mut kept, mut ended, mut rows) = (String::with_capacity(whole.len()), 1, 0);
         let (mut head, mut held) = (None, Vec::new());
         held.resize_with(columns.len(), Held::default);
         for line in lines(whole) {
-            // A bracket belongs to the name before it.
+            // A bracket belongs to the name before it: a blank must not cut them.
             let above = line.number < first && separator == Separator::Blank;
             let name = above.then(|| line.text.replace(" [", "[").replace(" (", "("));
             let line = Line { text: name.as_deref().unwrap_or(line.text), ..line };
             let cells = fields(line.text, separator).unwrap_or_default();
-            // Line numbers stay those of the file.
+            // Blank lines keep the line numbers those of the file.
             kept.extend((ended..line.number).map(|_| '\n'));
             ended = line.number;
             let (begin, is_row) = (kept.len(), line.number >= first);
@@ -134,8 +136,8 @@ impl Scan {
         Some(Scan { kept, held, head, rows })
     }
 
-    /// Gives the names the units that stand in cells of their own behind the values, and says what the
-    /// columns of text hold.
+    /// Adds units that have cells of their own behind the values to the names of these, and makes the
+    /// findings on what the columns of text hold.
     fn named_with_units(&mut self, separator: Separator, columns: &[bool]) -> Vec<Finding> {
         let units: Vec<Option<&str>> = (0..columns.len()).map(|i| self.unit_behind(i, columns)).collect();
         let name = |i: usize| self.head.as_ref().map_or("", |head| &head.names[i]);
@@ -159,7 +161,7 @@ impl Scan {
         said
     }
 
-    /// The unit of the values of a column without one, where the cells behind them hold it and nothing else.
+    /// The unit of column `i` from the cells behind it, where it has none and they all hold the same unit.
     fn unit_behind(&self, i: usize, columns: &[bool]) -> Option<&str> {
         let names = &self.head.as_ref()?.names;
         let values = !columns[i] && !names[i].is_empty() && Name::parse(&names[i]).unit.is_none();
@@ -175,7 +177,7 @@ fn lines(text: &str) -> impl Iterator<Item = Line<'_>> {
     Lines::new(text, 0, 1, &["#", "%"]).filter(|line| !line.is_blank())
 }
 
-/// The cells of a line of names, one a column; columns of text may have none.
+/// The names in a line, one for each column; columns of text may have none.
 fn one_a_column(cells: &Fields, columns: &[bool]) -> Option<Vec<String>> {
     let mut names = cells.iter().map(|(_, name)| name.clone().into_owned());
     if cells.len() == columns.len() {
@@ -187,7 +189,7 @@ fn one_a_column(cells: &Fields, columns: &[bool]) -> Option<Vec<String>> {
 }
 
 impl Head {
-    /// The names of columns of values, with the units behind them.
+    /// The line of names of the columns of values, each with its unit from `units` in brackets.
     fn with(&self, units: &[Option<&str>], separator: Separator, columns: &[bool]) -> String {
         let mark = if let Separator::Char(mark) = separator { char::from(mark) } else { ' ' };
         let values = self.names.iter().zip(units.iter().copied()).zip(columns).filter(|(_, text)| !**text);
@@ -221,7 +223,7 @@ impl Held {
         cell.clone_into(&mut self.last);
     }
 
-    /// What is said of it; `None` of marks without a letter or digit.
+    /// First and last text, for the finding; `None` where they hold no letter or digit.
     fn said(&self) -> Option<String> {
         let first = Some(shorten(&self.first)).filter(|first| first.contains(char::is_alphanumeric))?;
         let to = if self.changes > 0 { format!(" … {}", shorten(&self.last)) } else { String::new() };
@@ -229,8 +231,8 @@ impl Held {
     }
 }
 
-/// Adds a line with blanks in place of its cells of text and the marks behind them: all others stay in their
-/// columns.
+/// Adds a line to `kept` with blanks in place of its cells of text and their separators: all other characters
+/// keep their columns.
 pub fn without(kept: &mut String, line: &Line, cells: &Fields, separator: Separator, text: &[bool]) {
     let begin = kept.len();
     kept.push_str(&line.text[..cells[0].0]);
@@ -251,8 +253,9 @@ pub fn without(kept: &mut String, line: &Line, cells: &Fields, separator: Separa
     }
 }
 
-/// Separator, line of the first row, and which columns hold text in most of the rows at the end of the first
-/// lines, but for blank cells; these rows have as many cells and values in all others.
+/// Separator, line number of the first row, and which columns hold text, as more than half of their cells
+/// with content in the last rows do. All these rows have as many cells, and values or blanks in all other
+/// columns.
 fn columns(lines: &[Line]) -> Option<(Separator, u64, Vec<bool>)> {
     let of = |line: &Line, separator| -> Vec<Cell> {
         fields(line.text, separator).unwrap_or_default().iter().map(|(_, cell)| Cell::of(cell)).collect()
@@ -269,7 +272,7 @@ fn columns(lines: &[Line]) -> Option<(Separator, u64, Vec<bool>)> {
         2 * count(Cell::Text) > sample.len() - count(Cell::Blank)
     };
     let text: Vec<bool> = (0..n).map(text).collect();
-    // Above rows stand names, which are text in all columns.
+    // The line of names ends the search upwards: it is text in all columns.
     let is_row = |row: &&Vec<Cell>| {
         row.iter().zip(&text).all(|(cell, text)| *text || matches!(cell, Cell::Value | Cell::Blank))
     };
@@ -286,7 +289,7 @@ enum Cell {
     /// A number or a time.
     Value,
     Blank,
-    /// `1.5 V`, `(1-2j)`
+    /// Begins with a number: `1.5 V`, `(1-2j)`.
     Neither,
 }
 
@@ -301,7 +304,7 @@ impl Cell {
         }
         let inner = cell.trim_start_matches(['(', '[', '"']).as_bytes();
         let begins = number::prefix(inner, b'.').is_some() && !cell.starts_with("0x");
-        // `7 / 12`, `2020-01-24 12-00-00_500`
+        // Digits before a mark are text: `7 / 12`, `2020-01-24 12-00-00_500`.
         let behind = cell.trim_start_matches(|c: char| c.is_ascii_digit());
         let marked = behind.len() < cell.len() && behind.trim_start().starts_with(['/', '-', '_', ':']);
         let whole = complex(bytes, b'.').or_else(|| complex(bytes, b',')).is_some();

@@ -1,5 +1,5 @@
-//! One series over many columns: rows that continue each other, as PEER's AT2 and other Fortran programs
-//! write them.
+//! Reads one series written over several columns, row after row, as PEER's AT2 and other Fortran programs
+//! write it.
 
 use super::decoded::Text;
 use super::dialect::Dialect;
@@ -9,12 +9,12 @@ use crate::held::Held;
 use crate::number;
 use vibro_record::{Error, Result};
 
-/// Rows that tell whether columns continue each other.
+/// Most rows that are compared to see whether they continue each other.
 const LOOK: usize = 100_000;
-/// Fewest rows that do.
+/// Fewest rows for that comparison.
 const FEWEST: usize = 12;
 
-/// All values, row after row, where the text holds nothing else.
+/// All values, row after row; `None` where the text holds anything else.
 ///
 /// # Errors
 /// If it cannot be read.
@@ -34,8 +34,8 @@ pub fn flat(text: &Text, dialect: &Dialect) -> Result<Option<Vec<f64>>> {
     Ok(Some(values))
 }
 
-/// Whether all rows but the last are full, the last is shorter and ends as the others do, and the first
-/// column is no abscissa.
+/// Whether all rows but the last are full, and the last is shorter but has its line end; and the first column
+/// falls somewhere, so that it is no abscissa.
 pub fn ends_short(text: &Text, dialect: &Dialect) -> bool {
     let Ok(bytes) = text.source.all() else { return false };
     let whole = encoding::decode(&bytes);
@@ -60,24 +60,24 @@ pub fn ends_short(text: &Text, dialect: &Dialect) -> bool {
         && full.iter().all(|row| row.0 == dialect.columns)
 }
 
-/// Whether columns look like one series, row after row: from one value to the next, also to the first of the
-/// next row, it goes less far than down a column.
+/// Whether columns look like one series, row after row: the steps from one value to the next, also into the
+/// next row, are smaller on average than the steps down a column.
 pub fn continues(columns: &[Held]) -> bool {
     let columns: Vec<&[f64]> = columns.iter().map(Held::reals).collect();
     if columns.len() < 3 || columns[0].len() < FEWEST {
-        // A file of one line is one series.
+        // The values of a single line are one series.
         return columns.len() > FEWEST && columns[0].len() == 1;
     }
     let rows = columns[0].len().min(LOOK);
     let last = columns.len() - 1;
     let step = |a: f64, b: f64| (b - a).abs();
-    // The first rows may hold numbers about the series.
+    // The first quarter of the rows is left out: it may hold numbers about the series.
     let from = 1 + rows / 4;
     let within = columns.windows(2).flat_map(|w| (from..rows).map(|i| step(w[0][i], w[1][i])));
     let over = (from..rows).map(|i| step(columns[last][i - 1], columns[0][i]));
     let down = columns.iter().flat_map(|c| (from..rows).map(|i| step(c[i - 1], c[i])));
     let (within, over, down) = (mean(within), mean(over), mean(down));
-    // Channels of one level that change slowly go less far down than across.
+    // Channels that change slowly about one level have smaller steps down than across.
     within > 0.0 && over < 2.0 * within && within < 0.7 * down && over < 0.7 * down
 }
 
@@ -92,7 +92,7 @@ fn mean(steps: impl Iterator<Item = f64>) -> f64 {
     sum / n as f64
 }
 
-/// Asks what a person must say.
+/// Error that asks whether the columns are channels or one series.
 pub fn question(columns: usize) -> Error {
     let found =
         format!("{columns} columns that may continue each other, and nothing says that they are channels");
@@ -108,7 +108,7 @@ mod tests {
     use vibro_math::Noise;
     use vibro_record::Values;
 
-    /// Rows of so many columns.
+    /// `n` columns of 200 rows, filled row after row.
     fn columns(n: usize, value: impl Fn(usize) -> f64) -> Vec<Held> {
         (0..n).map(|c| Values::Real((0..200).map(|i| value(n * i + c)).collect()).into()).collect()
     }
