@@ -18,6 +18,7 @@ mod header;
 mod headings;
 mod lines;
 pub(crate) mod names;
+mod near_number;
 mod numbers;
 mod preamble;
 mod records;

@@ -11,13 +11,13 @@
 use super::decoded::{Text, in_line, shorten};
 use super::dialect::Dialect;
 use super::lines::{Fields, Line, Lines, Separator, fields, is_torn};
+use super::near_number::{plain_form, unit_of};
 use super::table::beginning;
 use super::{clock, names};
 use crate::format::Format;
 use crate::number;
 use crate::options::Options;
 use num_complex::Complex64;
-use vibro_record::units::Unit;
 use vibro_record::{Error, Result};
 
 /// Marks of remarks above the rows. Only the first five (`BETWEEN`) mark one between rows, where a quote
@@ -136,27 +136,35 @@ fn stray(lines: &[Line]) -> Option<Error> {
         number::either(bytes).is_some() || number::is_missing(bytes) || clock::is_clock(cell)
     };
     let row = cells(lines[first])?;
-    let (byte, cell) = row.iter().find(|(_, cell)| !fine(cell))?;
+    let at = row.iter().position(|(_, cell)| !fine(cell))?;
+    let (byte, cell) = &row[at];
     let place = in_line(lines[first].number).column(lines[first].column(*byte));
     let error = |cell: &str| {
         Error::input(place, format!("{cell:?}, and no row of numbers"), "numbers in all cells of a row")
     };
-    Some(match unit_of(cell) {
+    let turned = at == 0 && row.len() > lines.len() - first && !begins(cell);
+    if turned {
+        return Some(error(&shorten(cell)).hint(
+            "if each row is a channel, turn the table so that each is a column: in a sheet, copy and paste transposed",
+        ));
+    }
+    let Some(unit) = unit_of(cell) else {
+        let as_text = || "take out the column, or what is no number in its cells, and read again".to_owned();
+        return Some(error(&shorten(cell)).hint(plain_form(cell).unwrap_or_else(as_text)));
+    };
+    let is_other = |line: &&Line| {
+        let row = cells(line).unwrap_or_default();
+        row.get(at).and_then(|(_, cell)| unit_of(cell)).is_some_and(|other| other != unit)
+    };
+    Some(error(cell).hint(if lines[first..].iter().any(is_other) {
+        format!("export all cells of this column in one unit: here {unit} and others stand")
+    } else {
         // Without the unit, a time in ms would be read in s.
-        Some(unit) => error(cell).hint(format!(
+        format!(
             "take {unit} out of all cells of this column, and write it behind the column's name above the rows: \
              name [{unit}]"
-        )),
-        None => error(&shorten(cell)).hint("take out the column, or what is no number in its cells, and read again"),
-    })
-}
-
-/// The unit behind the number in a cell, if it is a known one.
-fn unit_of(cell: &str) -> Option<&str> {
-    let used =
-        [b'.', b','].iter().filter_map(|mark| Some(number::prefix(cell.as_bytes(), *mark)?.1)).max()?;
-    let unit = cell.get(used..)?.trim_start();
-    Unit::parse(unit).filter(|_| unit.starts_with(|c: char| c.is_alphabetic() || c == '%')).map(|_| unit)
+        )
+    }))
 }
 
 /// Header line made of `300 0.005` above rows of three or more columns: number of values and step in s, as

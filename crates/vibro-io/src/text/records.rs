@@ -18,8 +18,8 @@ use num_complex::Complex64;
 use std::borrow::Cow;
 use vibro_record::code;
 use vibro_record::lanes::Extremes;
-use vibro_record::units::{Unit, is_level};
 use vibro_record::units::notation::counted;
+use vibro_record::units::{Unit, is_level};
 use vibro_record::{Axis, AxisKind, Error, Finding, Grid, Meta, Record, Result, Scaling, Values, Window};
 
 /// One record for each column of values. Findings on the file as a whole are added to `findings`.

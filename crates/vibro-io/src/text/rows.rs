@@ -4,6 +4,7 @@ use super::clock::Stopwatch;
 use super::decoded::{in_line, shorten};
 use super::dialect::Dialect;
 use super::lines::{Fields, Line, Lines, Separator};
+use super::near_number::plain_form;
 use super::numbers::complex;
 use super::tail::CUT_OFF;
 use crate::format::Format;
@@ -294,6 +295,9 @@ impl FieldParser<'_> {
         let inner = field.strip_prefix('(').and_then(|inner| inner.strip_suffix(')'));
         if let Some(inner) = inner.filter(|inner| self.value(inner).is_some()) {
             return error.hint(format!("if brackets mean less than zero, write -{inner}; in all rows alike"));
+        }
+        if let Some(form) = plain_form(field) {
+            return error.hint(form);
         }
         // The first cell of a row is not called missing: NaN is no remedy there.
         if self.dialect.names.is_some() && line.text[..at].trim_matches([' ', '"']).is_empty() {
