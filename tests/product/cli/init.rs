@@ -207,6 +207,27 @@ fn a_folder_without_recordings_is_named_and_a_rate_can_be_stated() {
     assert!(written.contains("rate = 1000") && written.contains("unit = \"m/s²\""), "{written}");
 }
 
+/// 1 s, a pause of 0.3 s, 1.5 s.
+#[test]
+fn of_a_record_with_lost_samples_the_longest_even_stretch_is_proposed() {
+    let dir = tempfile::tempdir().unwrap();
+    let instants = (0..1000).chain(1300..2800).map(|i| f64::from(i) * 1e-3);
+    let mut table = "time [s],acceleration [m/s²]\n".to_owned();
+    for t in instants {
+        writeln!(table, "{t:.3},{:.5}", (TAU * 20.0 * t).sin()).unwrap();
+    }
+    fs::write(dir.path().join("pause.csv"), table).unwrap();
+    json(&["init", text(dir.path())]);
+    let campaign = fs::read_to_string(dir.path().join("campaign.toml")).unwrap();
+    assert!(campaign.contains("file = \"pause.csv\"\nstretch = 2\n"), "{campaign}");
+    let answer = json(&["run", text(dir.path())]);
+    let spectrum = &answer["results"]["spectra"][0];
+    let values: Vec<f64> = spectrum["value"].as_array().unwrap().iter().filter_map(Value::as_f64).collect();
+    let largest = (0..values.len()).max_by(|a, b| values[*a].total_cmp(&values[*b])).unwrap();
+    // Lines of 1.5 s are 0.67 Hz apart.
+    assert!((spectrum["frequency"][largest].as_f64().unwrap() - 20.0).abs() < 0.67, "{largest}");
+}
+
 #[test]
 fn the_help_begins_with_five_commands_and_each_has_an_example() {
     let short = String::from_utf8(vibro::<&str>(&[]).stderr).unwrap();

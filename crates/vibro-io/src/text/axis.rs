@@ -261,7 +261,8 @@ fn headed(n: usize, header: &Stated, findings: &mut Vec<Finding>) -> Axis {
             if spacing.is_some() {
                 findings.push(Finding::caution("rate-and-spectrum-in-header").number("rate", rate));
             }
-            let assumed = header.assumed.map(|key| Finding::caution("head-step-assumed").name("key", key));
+            let assumed =
+                header.assumed.as_deref().map(|key| Finding::caution("head-step-assumed").name("key", key));
             findings.extend(assumed.map(|found| found.number("step", 1.0 / rate)));
             if header.assumed.is_none() {
                 findings.push(Finding::note(code::RATE_FROM_HEAD).number("rate", rate));

@@ -35,7 +35,7 @@ pub struct Stated {
     /// The stated step; in s, or in Hz where the abscissa is a frequency.
     step: Option<f64>,
     /// Key of a step that has no unit and is taken to be in s.
-    pub assumed: Option<&'static str>,
+    pub assumed: Option<String>,
     /// Whether the header states that the abscissa is a frequency.
     pub lines_apart: bool,
     /// First instant in s.
@@ -253,7 +253,7 @@ fn keyed(key: &str, value: &str, stated: &mut Stated) {
         "delta" if bare && plain().is_some_and(|step| step < 1.0) => {
             let step = plain();
             stated.rate = stated.rate.or(step.and_then(|step| checked(1.0 / step)));
-            stated.assumed = Some("DELTA");
+            stated.assumed = Some("DELTA".to_owned());
             (stated.step, stated.of_one_series) = (step, true);
         }
         "rate" | "data rate" | "clock" | "delta" | "dx" | "x delta" | "xdelta" | "interval"
@@ -278,6 +278,9 @@ fn keyed(key: &str, value: &str, stated: &mut Stated) {
             stated.perhaps_rate = stated.perhaps_rate.take().or_else(|| perhaps(&seconds_with));
             stated.of_one_series |= rate.is_some();
             stated.step = rate.map(|rate| 1.0 / rate).or(stated.step);
+            // A step of many seconds is more likely one in ms or µs.
+            let unlikely = bare && rate.is_some_and(|rate| rate < 1.0);
+            stated.assumed = stated.assumed.take().or(unlikely.then(|| key.to_owned()));
             stated.rate = stated.rate.or(rate);
             stated.keeps_other(rate);
         }

@@ -88,6 +88,10 @@ fn remark<'a>(line: &'a str, marks: &[&str]) -> Option<&'a str> {
     // Fortran prints `*****` for a number that does not fit: a missing value, no remark.
     let stars = line.len() > 1 && line.bytes().all(|b| b == b'*');
     let mark = marks.iter().find(|mark| line.starts_with(**mark) && !stars)?;
+    // `#` alone in the first cell names a column of row numbers.
+    if line.strip_prefix('#').is_some_and(|cells| cells.starts_with([',', ';'])) {
+        return None;
+    }
     Some(line.trim_start_matches(mark).trim())
 }
 

@@ -1497,3 +1497,93 @@ fn an_uneven_first_column_without_a_name_has_no_unit() {
     let (_, headers, _) = Reader::new().headers(&source).unwrap();
     assert_eq!((headers[0].x_unit, headers[0].dx), ("", None));
 }
+
+#[test]
+fn values_of_one_sign_and_an_analysers_number_are_lines_of_the_base_band() {
+    let lines = |value: &dyn Fn(usize) -> f64, n| {
+        let rows: Vec<String> = (0..n).map(|i| value(i).to_string()).collect();
+        let reader = Reader::new().base_band(Some(400.0)).rate_of_base_band();
+        read_with(&reader.unit(Unit::parse("V")), format!("{}\n", rows.join("\n"))).unwrap()
+    };
+    let amplitudes = lines(&|i| (i as f64).sin().abs(), 801);
+    assert_eq!(amplitudes.records[0].axis(), &Axis::frequency(0.0, 0.5, 801));
+    let found = amplitudes.all_findings();
+    assert!(has_finding(&found, "values-are-lines", &["n=801", "band=400"]), "{found:?}");
+    let levels = lines(&|i| -60.0 + (i as f64).sin(), 800);
+    assert_eq!(levels.records[0].axis().kind, AxisKind::Frequency);
+    // Another number of values, or values of both signs, are a trace.
+    for trace in [lines(&|i| (i as f64).sin().abs(), 1024), lines(&|i| (i as f64).sin(), 801)] {
+        assert_eq!(trace.records[0].axis().step(), Some(1.0 / 1024.0));
+        assert!(!has_finding(&trace.all_findings(), "values-are-lines", &[]));
+    }
+}
+
+/// Times in whole ms, every 50th row lost: an even step of 50/49 ms prints the same.
+#[test]
+fn times_of_one_digit_may_hide_lost_rows() {
+    let rows = |head: &str| {
+        let kept = (0..3000).filter(|i| i % 50 != 7);
+        let rows: Vec<String> = kept.map(|i| format!("{:.3},{i}.5", f64::from(i) * 1e-3)).collect();
+        of(format!("{head}t [s],a [g]\n{}\n", rows.join("\n")))
+    };
+    let found = rows("").findings;
+    assert!(has_finding(&found, "axis-rounded-or-lost", &["long=60", "n=2939"]), "{found:?}");
+    // A head that states the rate of the even step decides.
+    let known = rows("Sampling rate: 980 Hz\n").findings;
+    assert!(!has_finding(&known, "axis-rounded-or-lost", &[]), "{known:?}");
+}
+
+#[test]
+fn marks_of_missing_values_and_zeros_that_fill_up_are_said() {
+    let table = |value: &dyn Fn(usize) -> f64| {
+        let rows: Vec<String> = (0..200).map(|i| format!("{},{}", i as f64 * 1e-3, value(i))).collect();
+        of(format!("t [s],a [g]\n{}\n", rows.join("\n"))).findings
+    };
+    let signal = |i: usize| 2.0 * (0.37 * i as f64 + 0.1).sin();
+    let marked = table(&|i| if i % 50 == 9 { -9999.0 } else { signal(i) });
+    assert!(has_finding(&marked, "missing-marked", &["mark=-9999", "n=4"]), "{marked:?}");
+    let filled = table(&|i| if i < 150 { signal(i) } else { 0.0 });
+    assert!(has_finding(&filled, "filled-with-zeros", &["n=50", "end=0.15"]), "{filled:?}");
+    // Values near the mark are measured, and a signal that rests at 0 is no filling.
+    let near = table(&|i| if i % 50 == 9 { 999.0 } else { 300.0 * signal(i) });
+    let rests = table(&|i| if (20..150).contains(&i) { signal(i) } else { 0.0 });
+    for found in [near, rests, table(&signal)] {
+        assert!(
+            !found.iter().any(|f| ["missing-marked", "filled-with-zeros"].contains(&&*f.code)),
+            "{found:?}"
+        );
+    }
+}
+
+#[test]
+fn heads_against_names_and_steps_of_many_seconds_are_said() {
+    let differs = of("Unit: mm/s\nt [s],v (m/s)\n0,1\n1,2\n");
+    let found = differs.all_findings();
+    assert!(has_finding(&found, "unit-head-differs", &["head=mm/s", "used=m/s"]), "{found:?}");
+    // The same unit, and one of another quantity, is no contradiction.
+    for head in ["Unit: m/s", "Unit: N"] {
+        let found = of(format!("{head}\nt [s],v (m/s)\n0,1\n1,2\n")).all_findings();
+        assert!(!has_finding(&found, "unit-head-differs", &[]), "{found:?}");
+    }
+    let period = of("Sample period: 500\na;b\n1;2\n3;4\n");
+    let found = period.all_findings();
+    assert!(has_finding(&found, "head-step-assumed", &["key=sample period", "step=500"]), "{found:?}");
+}
+
+#[test]
+fn a_number_sign_names_the_column_of_row_numbers() {
+    let table = of("Sample rate: 1000 Hz\n#,Acc (m/s²)\n0,1.5\n1,2.5\n2,-1.5\n");
+    assert_eq!(table.records.len(), 1);
+    assert_eq!((table.records[0].meta().name.as_str(), table.records[0].axis().step()), ("Acc", Some(1e-3)));
+    let lost = read_with(
+        &Reader::new(),
+        format!(
+            "#,Acc\n{}",
+            (0..20).filter(|i| *i != 7).fold(String::new(), |mut all, i| {
+                let _ = writeln!(all, "{i},{}.5", i % 3);
+                all
+            })
+        ),
+    );
+    assert!(lost.unwrap_err().to_string().contains("samples are missing, 1 there"));
+}
