@@ -10,7 +10,9 @@ use crate::source::Source;
 use crate::text;
 use crate::wav::Wave;
 use std::path::Path;
-use vibro_record::{Error, Place, Record, Result, Spectrum, Stream as _, Trace, Traces, find_channel, lanes};
+use vibro_record::{
+    Error, Place, Record, Result, Spectrum, Stream as _, Trace, Traces, code, find_channel, lanes,
+};
 
 /// Size in bytes from which a text is streamed. A shorter one is held in memory, which saves reading it
 /// twice: a value has at least two bytes with its separator, so its values take less than 256 MiB.
@@ -184,6 +186,9 @@ impl Recording {
         let (chosen, nothing) = (self.chosen(channel)?.0, self.no_trace());
         let Record::Trace(trace) = &mut self.records[chosen] else { return Err(nothing) };
         let values = std::mem::take(&mut trace.values);
+        if calibration.is_some() {
+            self.findings.retain(|found| found.code != code::SCALE_IN_HEAD);
+        }
         calibrated(Trace { values, ..trace.clone() }, calibration)
     }
 

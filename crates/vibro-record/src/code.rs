@@ -15,6 +15,8 @@ pub const SCALING_UNSAID: &str = "scaling-unsaid";
 pub const UNIT_UNSAID: &str = "unit-unsaid";
 /// The axis of a record is not stated.
 pub const ABSCISSA_UNSAID: &str = "abscissa-unsaid";
+/// The head states a scale that is not applied; a stated calibration answers it.
+pub const SCALE_IN_HEAD: &str = "scale-in-head";
 /// Values are levels in decibels.
 pub const LEVELS_IN_DECIBELS: &str = "levels-in-decibels";
 /// The response to a blow has not decayed where its record ends.

@@ -1,7 +1,7 @@
 //! Time traces, read block by block.
 
 use crate::units::notation;
-use crate::{Error, Finding, Meta, Place, Result, Trace, nearest, units};
+use crate::{Error, Finding, Meta, Place, Result, Trace, code, nearest, units};
 use std::path::{Path, PathBuf};
 
 /// Samples of each channel in a block of traces that are in memory: larger blocks take more memory, smaller
@@ -222,6 +222,7 @@ impl Traces {
             return Err(Error::usage(found, "the unit, too").setting("unit"));
         }
         *known *= factor;
+        self.findings.retain(|found| found.code != code::SCALE_IN_HEAD);
         meta.step("calibrate", &[("factor", &factor)]);
         Ok(())
     }

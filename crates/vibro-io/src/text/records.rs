@@ -396,7 +396,7 @@ impl RecordContext<'_> {
         let scales = self.stated.scales.iter().filter(|scale| signal || !scale.of_signal);
         let scales: Vec<&str> = scales.map(|scale| scale.said.as_str()).collect();
         if !scales.is_empty() {
-            found.push(Finding::caution("scale-in-head").name("scale", scales.join(", ")));
+            found.push(Finding::caution(code::SCALE_IN_HEAD).name("scale", scales.join(", ")));
         }
         let even: Vec<String> =
             table.iter().filter(|column| column.rises_evenly()).map(Column::label).collect();

@@ -1312,6 +1312,11 @@ fn two_rates_of_a_head_and_scales_of_channels_are_said() {
         assert!(has_finding(&found(head), "scale-in-head", &[]), "{head}: {:?}", found(head));
     }
     assert!(!has_finding(&found("Attenuation: 1x"), "scale-in-head", &[]));
+    // A stated calibration answers it.
+    let mut answered = of("Gain: 10\ntime [s],u [V]\n0,1\n0.1,2\n");
+    assert!(has_finding(&answered.findings, "scale-in-head", &[]), "{:?}", answered.findings);
+    answered.take_trace(None, Some(0.1)).unwrap();
+    assert!(!has_finding(&answered.findings, "scale-in-head", &[]), "{:?}", answered.findings);
 }
 
 #[test]
