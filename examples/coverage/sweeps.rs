@@ -23,7 +23,7 @@ const LINE_SPACING: f64 = 0.0625;
 /// Mass in kg.
 const MASS: f64 = 0.2;
 
-/// Peak-amplitude line spectrum with a Hann window, up to f_s/2.56.
+/// Peak-amplitude line spectrum with a Hann window, up to 1/2.56 of the sampling rate.
 fn peak_spectrum(transform: &Transform, values: &[f64]) -> Vec<f64> {
     let n = values.len();
     let hann = |i: usize| 1.0 - (TAU * i as f64 / n as f64).cos();

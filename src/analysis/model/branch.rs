@@ -174,7 +174,7 @@ struct BranchPoint {
 
 fn told(over: Parameter, branch: &Branch) -> Value {
     let with = |orbit: &PeriodicOrbit| BranchPoint {
-        orbit: pattern::told(orbit, None),
+        orbit: pattern::to_json(orbit, None),
         value: over.of(&orbit.rig, &orbit.sine),
     };
     let mark = |m: &crate::model::continuation::Mark| json!({ "kind": m.kind, "after": m.after, "orbit": with(&m.orbit) });
@@ -208,6 +208,7 @@ fn summary(over: Parameter, branches: &[Branch]) -> Table {
     .note("Real: admissible and stable.")
 }
 
+/// Folds, flips and other changes along the branches.
 fn marks(over: Parameter, branches: &[Branch]) -> Table {
     table(
         "Changes along the branches",
@@ -222,6 +223,7 @@ fn marks(over: Parameter, branches: &[Branch]) -> Table {
     )
 }
 
+/// Every point of every branch.
 fn points(over: Parameter, branches: &[Branch]) -> Table {
     table(
         "Points of the branches",

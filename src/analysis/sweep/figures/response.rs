@@ -90,14 +90,14 @@ pub(super) fn series(
     axis: Option<(f64, f64)>,
 ) -> [Series; 2] {
     let (mut x, mut y, mut std) = (Vec::new(), Vec::new(), Vec::new());
-    let (mut at, mut limits) = (Vec::new(), Vec::new());
+    let (mut limit_frequencies, mut limits) = (Vec::new(), Vec::new());
     let (factor, _) = shown(response.unit);
     // Centre of a triangle that stands on the lower edge, 2 % up the axis.
     let edge = axis.map_or(0.0, |(low, high)| low * (high / low).powf(0.02));
     for (i, point) in response.points.iter().enumerate() {
         let limit = point.upper_limit;
         if let Some(limit) = limit {
-            at.push(point.excitation);
+            limit_frequencies.push(point.excitation);
             limits.push((factor * limit).max(edge));
         }
         x.push(point.excitation);
@@ -113,7 +113,7 @@ pub(super) fn series(
     }
     let (marker, ink) = look(response, rank);
     let measured = Series { marker, ..Series::points(response.name.clone(), x, y).y_error(std) };
-    let limits = Series::points("", at, limits).marker(Marker::Limit);
+    let limits = Series::points("", limit_frequencies, limits).marker(Marker::Limit);
     [measured, limits].map(|series| series.ink(ink))
 }
 
@@ -145,8 +145,8 @@ fn names(responses: &[Response]) -> Vec<(String, f64, f64)> {
     let mut found: Vec<(String, Vec<&str>, f64, f64)> = Vec::new();
     for response in responses {
         let Some(direction) = response.direction.map(Direction::name) else { continue };
-        let named = |r: &&Resonance| matches!(r.kind, ResonanceKind::Grazing | ResonanceKind::Clapping);
-        for r in response.resonances.iter().filter(named) {
+        let is_labelled = |r: &&Resonance| matches!(r.kind, ResonanceKind::Grazing | ResonanceKind::Clapping);
+        for r in response.resonances.iter().filter(is_labelled) {
             let text = format!("{} {:.2} Hz", r.kind.name(), r.frequency);
             let Some(known) = found.iter_mut().find(|f| f.0 == text) else {
                 found.push((text, vec![direction], r.frequency, r.amplitude));
