@@ -7,6 +7,7 @@ use super::trace;
 use std::f64::consts::TAU;
 use vibroimpact::measure::decay::{DecayOptions, decay};
 
+/// The kinds of records drawn here.
 pub const KINDS: &[Kind] = &[
     Kind { name: "decay of one mode", ranges: RANGES, every: 1, draw: |mix| draw(mix, 1) },
     Kind { name: "decay of two modes", ranges: RANGES, every: 1, draw: |mix| draw(mix, 2) },

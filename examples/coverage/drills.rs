@@ -7,6 +7,7 @@ use super::record::{Answer, Kind, Record};
 use std::f64::consts::{PI, TAU};
 use vibroimpact::measure::drill::{AngleOrigin, Beam, DrillOptions, Edge, Slices, drill};
 
+/// The kinds of records drawn here.
 pub const KINDS: &[Kind] = &[Kind {
     name: "hammer drill",
     ranges: "20 to 60 turns a second, 12 to 50 turns at 20 to 60 kHz, one impact a turn of 1 to 9 m/s with 0.2 to 5 % of scatter, R 0.2 to 0.95 with up to 5 %, \

@@ -9,6 +9,7 @@ use std::f64::consts::{PI, TAU};
 use vibroimpact::measure::impacts::ImpactsOptions;
 use vibroimpact::measure::restitution::{Drop, Measured, Restitution, Train, restitution};
 
+/// The kinds of records drawn here.
 pub const KINDS: &[Kind] = &[
     Kind { name: "drops, times", ranges: TIMES, every: 1, draw: |mix| draw(mix, train_of_times, true) },
     Kind {

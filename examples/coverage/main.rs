@@ -29,6 +29,7 @@ use tally::{Tally, by_quantity};
 use vibroimpact::record::{Axis, Meta, Trace};
 use vibroimpact::units::Unit;
 
+/// Draws the records that the command line asks for, and prints or writes their coverage.
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let count = arguments.first().map_or(Ok(1000), |n| n.parse())?;

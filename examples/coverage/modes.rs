@@ -13,6 +13,7 @@ use vibroimpact::signal::fft::Transform;
 use vibroimpact::signal::transfer::Estimator;
 use vibroimpact::units::Quantity;
 
+/// The kinds of records drawn here.
 pub const KINDS: &[Kind] = &[
     Kind {
         name: "one mode of a function",

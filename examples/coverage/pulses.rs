@@ -7,6 +7,7 @@ use super::trace;
 use std::f64::consts::TAU;
 use vibroimpact::measure::pulse::{Instrument, LowPass, PulseOptions, pulse};
 
+/// The kinds of records drawn here.
 pub const KINDS: &[Kind] = &[
     Kind {
         name: "pulse, spring and damper",

@@ -9,6 +9,7 @@ use vibroimpact::measure::response::{Response, ResponseOptions, response};
 use vibroimpact::record::{Axis, Direction, Scaling, Spectrum, Sweep, SweepPoint, Values, Window};
 use vibroimpact::signal::fft::Transform;
 
+/// The kinds of records drawn here.
 pub const KINDS: &[Kind] = &[Kind {
     name: "sweep",
     ranges: "12 to 30 steps over 1 to 6 half-power bandwidths, ζ 0.005 to 0.1, 512 or 1024 samples a spectrum, Hann window, resonance at 12 to 60 lines; \
@@ -49,6 +50,7 @@ struct Setup {
     samples: usize,
     /// Undamped natural frequency in Hz.
     natural_frequency: f64,
+    /// Damping ratio.
     zeta: f64,
     /// Amplitude of the force in N.
     force: f64,

@@ -7,6 +7,7 @@ use super::trace;
 use std::f64::consts::{PI, TAU};
 use vibroimpact::measure::tones;
 
+/// The kinds of records drawn here.
 pub const KINDS: &[Kind] = &[Kind {
     name: "tones",
     ranges: "1 to 5 sines of 3 lines to 0.45 of the sampling rate, 1.5 lines apart at least, amplitudes 0.03 to 1, 1000 to 8000 samples; \

@@ -39,6 +39,7 @@ pub struct Job<'a> {
 }
 
 impl<'a> Job<'a> {
+    /// A run without answers yet.
     pub(super) fn new(
         campaign: &'a Campaign,
         kept: &'a AnswerCache,

@@ -40,9 +40,11 @@ pub(super) fn all<'a>(
     let share = share(series.iter().map(FileSeries::values).max().unwrap_or(0));
     let mut found: Vec<Option<FoundTables>> = series.par_iter().with_min_len(share).map(as_a_whole).collect();
     let mut groups: BTreeMap<String, Vec<(usize, &String)>> = BTreeMap::new();
+    // Groups of files of probably one kind, each file with the index of its series.
     for (i, one) in series.iter().enumerate().filter(|(i, _)| found[*i].is_none()) {
         groups.entry(one.kin()).or_default().extend(one.files.iter().map(|file| (i, file)));
     }
+    // The tables of each series in a group.
     let by_series = |files: &Vec<(usize, &String)>| {
         let values = series[files[0].0].values();
         let (tries, tables) = analysed((files.len(), self::share(values)), FoundTables::agrees, |k| {
@@ -87,26 +89,27 @@ fn analysed<T: Clone + Send + Sync>(
     agree: impl Fn(&T, &T) -> bool,
     trial: impl Fn(usize) -> T + Sync,
 ) -> (usize, Vec<Option<T>>) {
-    let (mut known, mut next) = (BTreeMap::new(), spread(n, FEW));
+    let (mut results, mut next) = (BTreeMap::new(), spread(n, FEW));
     loop {
-        next.retain(|k| !known.contains_key(k));
-        known.extend(next.par_iter().with_min_len(share).map(|k| (*k, trial(*k))).collect::<Vec<_>>());
-        let pairs = known.iter().zip(known.iter().skip(1));
+        next.retain(|k| !results.contains_key(k));
+        results.extend(next.par_iter().with_min_len(share).map(|k| (*k, trial(*k))).collect::<Vec<_>>());
+        let pairs = results.iter().zip(results.iter().skip(1));
         let changes = pairs.filter(|((_, one), (_, other))| !agree(one, other));
         let changes: Vec<(usize, usize)> = changes.map(|((a, _), (b, _))| (*a, *b)).collect();
-        let in_runs = changes.len() * LEAST_MEAN_RUN <= known.len();
+        let in_runs = changes.len() * LEAST_MEAN_RUN <= results.len();
         let ends = changes.iter().filter(|(a, b)| in_runs && b - a > 1);
-        next = if !changes.is_empty() && known.len() < n.min(BUDGET) {
+        next = if !changes.is_empty() && results.len() < n.min(BUDGET) {
             spread(n, BUDGET)
         } else {
             ends.map(|(a, b)| usize::midpoint(*a, *b)).collect()
         };
         if next.is_empty() {
-            let nearest = |k: usize| {
-                let (below, above) = (known.range(..=k).next_back()?.1, known.range(k..).next()?.1);
-                ((in_runs || known.contains_key(&k)) && agree(below, above)).then(|| below.clone())
+            // The result of a file: its own, or that of its analysed neighbours if these agree.
+            let result = |k: usize| {
+                let (below, above) = (results.range(..=k).next_back()?.1, results.range(k..).next()?.1);
+                ((in_runs || results.contains_key(&k)) && agree(below, above)).then(|| below.clone())
             };
-            return (known.len(), (0..n).map(nearest).collect());
+            return (results.len(), (0..n).map(result).collect());
         }
     }
 }

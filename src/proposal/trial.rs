@@ -88,7 +88,8 @@ pub(super) struct Trial<'a> {
 }
 
 impl Trial<'_> {
-    /// The answers of tables, or the reason why there is none.
+    /// Runs the tables as a campaign, with placeholders for keys that are not stated. Gives their answers,
+    /// or the reason why there is none.
     fn answers(&self, tables: &[Table]) -> Result<Answer, Refusal> {
         let path = self.folder.root().join(Proposal::FILE);
         let text: String = tables.iter().map(|table| table.stated(self.reading).tried().toml(&[])).collect();

@@ -211,6 +211,7 @@ fn gzip(bytes: &[u8]) -> Vec<u8> {
 /// The model in WebAssembly, made by `crates/vibro-whatif/build.sh`.
 const MODEL: &[u8] = include_bytes!("assets/page/whatif.wasm.gz");
 
+/// Styles of the page, and of its plots.
 const STYLE: &str = include_str!("assets/page.css");
 const PLOTS: &str = include_str!("assets/page/uplot.css");
 

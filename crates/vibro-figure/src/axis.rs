@@ -89,6 +89,7 @@ pub(super) struct Extent {
 }
 
 impl Extent {
+    /// The empty range.
     pub(super) const NONE: Extent = Extent { lo: f64::INFINITY, hi: f64::NEG_INFINITY };
 
     /// Range of these values on a scale.
@@ -112,6 +113,7 @@ impl Extent {
         Extent { lo: self.lo.min(other.lo), hi: self.hi.max(other.hi) }
     }
 
+    /// Whether it contains no value.
     pub(super) fn is_empty(self) -> bool {
         self.lo > self.hi
     }

@@ -20,6 +20,7 @@ pub(crate) struct Pen {
 }
 
 impl Pen {
+    /// A pen without dashes.
     pub const fn solid(colour: Rgb, width: f64) -> Pen {
         Pen { colour, width, dashes: &[] }
     }

@@ -187,6 +187,7 @@ pub(super) fn draw(canvas: &mut Canvas, place: &Place<'_>, named_x: bool, outsid
 /// A name that reads upwards, with its baseline at `x`, beside the middle of `frame`. It extends at most from
 /// 4 points above the frame to `below` points under its lower edge.
 pub(super) fn along(canvas: &mut Canvas, name: &str, x: f64, frame: Rect, below: f64) {
+    /// How far the name may extend above the frame, in points.
     const ABOVE: f64 = 4.0;
     let (name, size) = fitted(name, LARGE, frame.h + ABOVE + below);
     let half = font::width(&name, size) / 2.0;

@@ -52,6 +52,7 @@ impl Heatmap {
         Heatmap::of(x, y, values, Key::Classes(names.iter().map(|&n| n.to_owned()).collect()))
     }
 
+    /// A map with this key, after a check of its shape and positions.
     fn of(x: &[f64], y: &[f64], values: &ArrayRef2<f64>, key: Key) -> Result<Heatmap> {
         fits("a map", values, y, x)?;
         ascending(x, "column positions of a map")?;

@@ -99,6 +99,7 @@ impl Axis {
 }
 
 impl Plot {
+    /// The plot as data; `None` without anything to show.
     fn data(&self, matrices: &mut Matrices) -> Option<Value> {
         let (x, y) = Sheet::new(self, crate::plot::extents(self).0, true).axes?;
         let series: Vec<Value> = self
@@ -137,6 +138,7 @@ impl Plot {
 }
 
 impl Heatmap {
+    /// The map as data: positions, matrix, and the meaning of the colours.
     fn data(&self, x: &Axis, y: &Axis, matrices: &mut Matrices) -> Option<Value> {
         let key = match &self.key {
             Key::Quantity(_) => self.colour_axis()?.data(),
@@ -156,6 +158,7 @@ impl Heatmap {
 }
 
 impl Waterfall {
+    /// The waterfall as data: axes, frequencies, excitations and matrix.
     fn data(&self, matrices: &mut Matrices) -> Option<Value> {
         let [x, depth, up] = self.axes()?;
         Some(json!({
@@ -172,6 +175,7 @@ impl Waterfall {
 }
 
 impl SeriesLook {
+    /// The look as data.
     fn data(&self) -> Value {
         json!({
             "colour": self.colour.to_string(),

@@ -53,6 +53,7 @@ impl KeyList {
         KeyList { entries }
     }
 
+    /// Whether there are no entries.
     pub fn is_empty(&self) -> bool {
         self.entries.is_empty()
     }
@@ -120,6 +121,8 @@ impl KeyList {
 }
 
 impl LegendEntry {
+    /// Draws sample and name from `(x, y)`, the left end of their middle line. `sample` is the length of
+    /// the sample, `room` that of the whole entry.
     fn draw(&self, canvas: &mut Canvas, (x, y): Point, sample: f64, room: f64) {
         let SeriesLook { colour, fill, pen, marker } = self.look;
         let middle = (x + sample / 2.0, y);

@@ -42,6 +42,7 @@ pub(super) struct SeriesLook {
 /// marker.
 pub(super) fn looks(series: &[Series]) -> Vec<SeriesLook> {
     use Marker::{Circle, Cross, Diamond, FilledSquare, OpenCircle, Square, Triangle};
+    // Line styles and markers by the number of the series' colour, so that series differ without colour, too.
     const STROKES: [Stroke; 4] = [Stroke::Solid, Stroke::Dashed, Stroke::DashDot, Stroke::Dotted];
     const MARKERS: [Marker; 7] = [Circle, Square, Triangle, Diamond, OpenCircle, FilledSquare, Cross];
     let mut next = 0;

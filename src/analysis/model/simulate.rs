@@ -199,6 +199,7 @@ fn states(times: &[f64], states: &[State]) -> Table {
     )
 }
 
+/// Every impact, one a row.
 fn impacts(portrait: &Portrait) -> Table {
     table(
         "Impacts",

@@ -14,6 +14,7 @@ use vibro_record::{Error, Result};
 const NATURAL_FREQUENCY: f64 = 100.0;
 const ZETA: f64 = 0.0018;
 
+/// Methods for the damping ratio.
 const METHODS: [EstimationMethod<Measured>; 4] = [
     EstimationMethod::Rival("half power, lines", |m| rivals::half_power(&m.frequency, &m.values, false)),
     EstimationMethod::Rival("half power, between", |m| rivals::half_power(&m.frequency, &m.values, true)),

@@ -86,6 +86,7 @@ fn onset_bound(noise: f64) -> f64 {
     bounds(&[0.37, 1.0], &[1e-4, 1e-4], noise, model)[0]
 }
 
+/// Methods for the impact frequency.
 const RATES: [EstimationMethod<Trace>; 3] = [
     EstimationMethod::Rival("timeav", |t| contact_times(t).map_or(f64::NAN, |f| f.frequency)),
     EstimationMethod::Rival("threshold", |t| RATE * rivals::mean_rate(&rivals::threshold(&t.values))),
@@ -103,6 +104,7 @@ fn middle(times: &[f64]) -> f64 {
     if times.len() == COUNT { times[COUNT / 2] - times[COUNT / 2 - 1] } else { f64::NAN }
 }
 
+/// Methods for one interval between impacts.
 const TIMES: [EstimationMethod<Trace>; 3] = [
     EstimationMethod::Rival("threshold, sample", |t| middle(&rivals::threshold(&t.values)) / RATE),
     EstimationMethod::Rival("threshold, between", |t| {

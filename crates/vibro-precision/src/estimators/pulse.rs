@@ -42,7 +42,9 @@ const TWO_TIMES: EstimationMethod<Pulse> = EstimationMethod::Own("two times", |p
 const FORMULA: EstimationMethod<Pulse> =
     EstimationMethod::Rival("formula of ρ", |p| closed_form(p.times[0] / p.times[1]));
 
+/// Methods for a record of the pulse.
 const METHODS: [EstimationMethod<Pulse>; 2] = [BY_HAND, WHOLE];
+/// These and the methods for two times read elsewhere.
 const ALL_METHODS: [EstimationMethod<Pulse>; 4] = [FORMULA, BY_HAND, TWO_TIMES, WHOLE];
 
 /// ξ from ρ = time to peak / duration, for any ρ.

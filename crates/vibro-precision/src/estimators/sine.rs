@@ -51,6 +51,7 @@ fn hertz(trace: &Trace, window: Window, place: fn(&[f64]) -> f64) -> f64 {
     place(&rivals::lines(trace, window)) * rivals::spacing(trace)
 }
 
+/// Methods for the frequency of a sine.
 const FREQUENCY: [EstimationMethod<Trace>; 5] = [
     EstimationMethod::Rival("zero crossings", |t| {
         RATE * rivals::mean_rate(&rivals::passages(&t.values, rivals::mean(&t.values)))
@@ -65,6 +66,7 @@ const FREQUENCY: [EstimationMethod<Trace>; 5] = [
     }),
 ];
 
+/// Methods for the amplitude of a sine.
 const AMPLITUDE: [EstimationMethod<Trace>; 6] = [
     EstimationMethod::Rival("half the swing", |t| rivals::half_swing(&t.values)),
     EstimationMethod::Rival("line, no window", |t| highest_line(t, Window::Rectangular)),
@@ -83,7 +85,7 @@ fn highest_line(trace: &Trace, window: Window) -> f64 {
     rivals::lines(trace, window).into_iter().fold(0.0, f64::max)
 }
 
-/// The weaker of two sines.
+/// Methods for the frequency of the weaker of two sines.
 const WEAKER: [EstimationMethod<Trace>; 3] = [
     EstimationMethod::Rival("second line", |t| {
         hertz(t, Window::Rectangular, |l| rivals::second(l).map_or(f64::NAN, |k| k as f64))

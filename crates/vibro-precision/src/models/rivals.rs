@@ -42,8 +42,11 @@ type Follow = fn(&Task, f64) -> Result<Log, Found>;
 /// Words before and after a value of a setting; `None` without one.
 type Setting = Option<[&'static str; 2]>;
 
+/// Steps per cycle of the excitation.
 const STEPS: Setting = Some(["", " steps a cycle"]);
+/// Relative tolerance of the integrator.
 const TOLERANCE: Setting = Some(["tolerance ", ""]);
+/// Contact stiffness in N/m.
 const STIFFNESS: Setting = Some(["k₃ ", " N/m"]);
 
 impl Method {

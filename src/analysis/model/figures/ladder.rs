@@ -19,8 +19,10 @@ enum RungVerdict {
 }
 
 impl RungVerdict {
+    /// All verdicts in the order of the legend.
     const ALL: [RungVerdict; 4] =
         [RungVerdict::Chosen, RungVerdict::Adequate, RungVerdict::ChangesTooMuch, RungVerdict::NotValid];
+    /// Their names.
     const NAMES: [&'static str; 4] = ["chosen", "adequate", "answer changes too much", "not valid"];
 
     /// The verdict on a rung of a choice.
