@@ -4,8 +4,8 @@ use super::{KeyStatus, Table};
 use crate::analysis::{self, Progress, Recordings};
 use crate::campaign::{Campaign, Reading};
 use crate::error::{Error, Result};
-use crate::read::{Folder, Header, MAGNITUDE, SweepList};
-use crate::record::{Fact, code, shown};
+use crate::read::{Folder, Header, MAGNITUDE, SweepList, longest_stretch};
+use crate::record::{Fact, shown};
 use rayon::prelude::*;
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
@@ -61,10 +61,8 @@ impl Surveyed {
         let timed = as_stored.as_ref().is_ok_and(|(_, headers, _)| !untimed(headers));
         let stated = reading.rate.or(reading.base_band).is_some();
         let found = if timed || !stated { as_stored } else { survey(reading) };
-        let stretch = found.as_ref().ok().filter(|(_, headers, _)| untimed(headers)).and_then(|(.., all)| {
-            let lost = all.iter().find(|found| found.code == code::SAMPLES_LOST)?;
-            lost.get("longest").map(|number| number as usize)
-        });
+        let lost = found.as_ref().ok().filter(|(_, headers, _)| untimed(headers));
+        let stretch = lost.and_then(|(.., findings)| longest_stretch(findings));
         let longest = stretch.map(|_| survey(&Reading { stretch, ..untimed_reading }));
         let headers = longest.unwrap_or(found).map(|(_, headers, _)| headers);
         Surveyed { timed, stretch, headers }

@@ -191,6 +191,12 @@ fn with_gaps(all: &[Stretch], code: &'static str) -> Option<Finding> {
     Some(if all.len() <= LISTED { found.numbers("durations", durations) } else { found })
 }
 
+/// Number of the longest even stretch that findings on lost samples name.
+pub fn longest_stretch(findings: &[Finding]) -> Option<usize> {
+    let lost = findings.iter().find(|found| found.code == code::SAMPLES_LOST)?;
+    lost.get("longest").map(|number| number as usize)
+}
+
 /// Tolerance for equal steps with coarse digits, over half a unit in the last digit. Doubles of s since 1970
 /// are rounded by 1e-7 s.
 const EQUAL: f64 = 1e-2;

@@ -76,6 +76,7 @@ mod wav;
 
 pub mod write;
 
+pub use assemble::longest_stretch;
 pub use folder::{Digest, Folder, Lock, Manifest, Occupant, Owner, Staged, Walk, listed, plain};
 pub use format::Format;
 pub use limit::Limit;

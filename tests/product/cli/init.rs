@@ -219,7 +219,7 @@ fn of_a_record_with_lost_samples_the_longest_even_stretch_is_proposed() {
     fs::write(dir.path().join("pause.csv"), table).unwrap();
     json(&["init", text(dir.path())]);
     let campaign = fs::read_to_string(dir.path().join("campaign.toml")).unwrap();
-    assert!(campaign.contains("file = \"pause.csv\"\nstretch = 2\n"), "{campaign}");
+    assert!(campaign.contains("\nstretch = 2\n"), "{campaign}");
     let answer = json(&["run", text(dir.path())]);
     let spectrum = &answer["results"]["spectra"][0];
     let values: Vec<f64> = spectrum["value"].as_array().unwrap().iter().filter_map(Value::as_f64).collect();
