@@ -53,7 +53,7 @@ pub(crate) use kind::{Analysis, OfFile};
 pub(crate) use kinds::sections;
 pub(crate) use named_file::few;
 pub(crate) use source::{Source, file_name};
-pub(crate) use twice::twice;
+pub(crate) use twice::double_use;
 
 /// Figures of results, as data.
 pub mod figures {

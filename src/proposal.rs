@@ -1,7 +1,7 @@
 //! Proposes a campaign for the recordings of a folder: keys that were found or guessed, and those that are
 //! missing.
 //!
-//! A record of unknown kind is tried: the first analysis whose answer has no doubt is proposed.
+//! A record of unknown kind is tried: the first analysis with a plausible answer and no doubt is proposed.
 
 mod alike;
 mod folder;
@@ -84,7 +84,8 @@ pub struct TableKey {
     pub known: KeyStatus,
 }
 
-/// Longest `key = value`, in characters, beside which the comments of a table are aligned in a column.
+/// Longest `key = value`, in characters, that the column of comments makes room for; the comment of a
+/// longer one follows it directly.
 const WIDEST: usize = 60;
 
 /// How the value of a key is known.
@@ -118,7 +119,8 @@ impl Table {
         Table { section, about, files, guess: false, rows: Vec::new(), refused }
     }
 
-    /// The same table, with the kind of its files marked as a guess.
+    /// The same table, with the kind of its files marked as a guess: it was found by a trial, not stated by
+    /// the files.
     fn surmised(self) -> Table {
         Table { guess: true, ..self }
     }
@@ -129,6 +131,7 @@ impl Table {
         format!("{}: {}{guess}", self.files, self.about)
     }
 
+    /// Adds a key with a value.
     fn with(mut self, key: &'static str, value: impl Serialize, known: KeyStatus) -> Table {
         // Strings, numbers, booleans and lists of these are written alike in JSON and TOML.
         let value = serde_json::to_string(&value).unwrap_or_default();
@@ -136,10 +139,12 @@ impl Table {
         self
     }
 
+    /// Adds a key whose value the files state.
     fn found(self, key: &'static str, value: impl Serialize) -> Table {
         self.with(key, value, KeyStatus::Found)
     }
 
+    /// Adds a key whose value was inferred, with the reason.
     fn guessed(self, key: &'static str, value: impl Serialize, why: &'static str) -> Table {
         self.with(key, value, KeyStatus::Guessed(why))
     }
@@ -154,6 +159,7 @@ impl Table {
         self.without(key, instead, KeyStatus::Missing(what))
     }
 
+    /// Adds a key without a value, with a placeholder for a trial.
     fn without(mut self, key: &'static str, instead: &str, known: KeyStatus) -> Table {
         self.rows.push(TableKey { key, value: instead.to_owned(), known });
         self
@@ -171,8 +177,8 @@ impl Table {
 
     /// Adds the settings for reading that `reading` states, if the table has a key for them.
     fn stated(&self, reading: &Reading) -> Table {
-        let names = |key| self.rows.iter().any(|row| row.key == key);
-        let takes = |key: &str| names("file") || names("traces") && ["rate", "unit"].contains(&key);
+        let has = |key| self.rows.iter().any(|row| row.key == key);
+        let takes = |key: &str| has("file") || has("traces") && ["rate", "unit"].contains(&key);
         let stated = reading.stated().into_iter().filter(|(key, _)| takes(key));
         stated.fold(self.clone(), |table, (key, value)| table.found(key, value))
     }
@@ -184,8 +190,8 @@ impl Table {
 
     /// Its name in the report.
     pub fn name(&self) -> &str {
-        let own = self.value("name");
-        if own.is_empty() { self.value("sweep") } else { own }
+        let name = self.value("name");
+        if name.is_empty() { self.value("sweep") } else { name }
     }
 
     /// Value of a key without quotes; empty where there is none.
@@ -203,9 +209,9 @@ impl Table {
     /// The table as TOML, with what notes state of its open keys; commented out where a required key is
     /// missing.
     fn toml(&self, notes: &[Note]) -> String {
-        let said = |row: &TableKey| {
+        let stated = |row: &TableKey| {
             let of_key = notes.iter().filter(|note| self.asks(row, note));
-            of_key.fold(String::new(), |said, note| format!("{said}; {}: {}", note.place, note.text))
+            of_key.fold(String::new(), |text, note| format!("{text}; {}: {}", note.place, note.text))
         };
         let mut text = format!("[[{}]]\n", self.section);
         let row = |row: &TableKey| match row.known {
@@ -220,8 +226,8 @@ impl Table {
             let _ = match one.known {
                 KeyStatus::Found => writeln!(text, "{row}"),
                 KeyStatus::Guessed(why) => writeln!(text, "{row:wide$}   # guessed: {why}"),
-                KeyStatus::Open(what) => writeln!(text, "{row:wide$}   # open: {what}{}", said(one)),
-                KeyStatus::Missing(what) => writeln!(text, "{row:wide$}   # missing: {what}{}", said(one)),
+                KeyStatus::Open(what) => writeln!(text, "{row:wide$}   # open: {what}{}", stated(one)),
+                KeyStatus::Missing(what) => writeln!(text, "{row:wide$}   # missing: {what}{}", stated(one)),
             };
         }
         let mut about = format!("# {}\n", shown(self.in_words()));

@@ -1,38 +1,39 @@
-//! What spoils a record: noise, hum, the converter, the end of the range.
+//! Disturbances of simulated records: noise, mains hum, the steps of a converter, clipping.
 
 use std::f64::consts::TAU;
 use vibroimpact::math::Noise;
 
-/// Random numbers of one record, and what they decided.
+/// Random numbers of one record, and a log of the properties and disturbances drawn with them.
 pub struct Mix {
     pub random: Noise,
-    /// Disturbances by name, with their size; those that the record has not are absent.
+    /// Names and sizes of the noted properties and of the disturbances that the record has.
     pub named: Vec<(&'static str, f64)>,
 }
 
 impl Mix {
+    /// The random numbers of a seed.
     pub fn new(seed: u64) -> Mix {
         Mix { random: Noise::new(seed), named: Vec::new() }
     }
 
-    /// Between two numbers, evenly on a logarithmic scale.
+    /// A random number between two limits, evenly distributed on a logarithmic scale.
     pub fn log(&mut self, low: f64, high: f64) -> f64 {
         low * (high / low).powf(self.random.uniform())
     }
 
-    /// True in this share of the records.
+    /// True with this probability.
     pub fn chance(&mut self, share: f64) -> bool {
         self.random.uniform() < share
     }
 
-    /// A property of the record that a person who debugs wants to know.
+    /// Logs a property of the record, for the list of the worst records; returns its size.
     pub fn note(&mut self, name: &'static str, size: f64) -> f64 {
         self.named.push((name, size));
         size
     }
 
-    /// A disturbance that this share of the records has, of a size between two numbers on a logarithmic
-    /// scale; 0 in the others.
+    /// Draws a disturbance that this share of the records has, with a size between two limits, evenly on a
+    /// logarithmic scale; 0 in the other records. Logs it.
     pub fn some(&mut self, share: f64, name: &'static str, low: f64, high: f64) -> f64 {
         if self.chance(share) {
             let size = self.log(low, high);
@@ -42,9 +43,9 @@ impl Mix {
         }
     }
 
-    /// Draws a chain: white noise of a root mean square between two parts of the peak, and in half of the
-    /// records each 1/f noise up to ten times as strong, hum of 50 or 60 Hz up to 2 %, and a converter of
-    /// 12 bits whose range is 1.05 to 4 times the peak.
+    /// Draws a measuring chain: white noise with a root mean square between `low` and `high` times the
+    /// peak, and in half of the records each 1/f noise up to ten times as strong, hum of 50 or 60 Hz up to
+    /// 2 % of the peak, and a converter of 12 bits whose range is 1.05 to 4 times the peak.
     pub fn chain(&mut self, (low, high): (f64, f64)) -> Chain {
         let white = self.log(low, high);
         self.note("white noise", white);
@@ -55,24 +56,25 @@ impl Mix {
         Chain { white, pink, hum, mains, range }
     }
 
-    /// Passes a record through a chain of its own.
+    /// Draws a measuring chain and passes a record with this peak through it.
     pub fn spoil(&mut self, values: &mut [f64], rate: f64, peak: f64, noise: (f64, f64)) {
         self.chain(noise).pass(self, values, rate, peak);
     }
 
+    /// Adds white noise.
     pub fn add_white(&mut self, values: &mut [f64], rms: f64) {
         for v in values {
             *v += rms * self.random.normal();
         }
     }
 
-    /// Noise of a power density that falls as 1/f from the length of the record to a third of the sampling
-    /// rate: first-order processes an octave apart.
+    /// Adds noise whose power density falls as 1/f, from one over the length of the record to a third of
+    /// the sampling rate: a sum of first-order processes with corners an octave apart.
     pub fn add_pink(&mut self, values: &mut [f64], rms: f64) {
-        let octaves = (values.len() as f64).log2().ceil() as i32;
-        let keep: Vec<f64> = (0..octaves).map(|k| (-2.0 * 2f64.powi(-k)).exp()).collect();
+        let processes = (values.len() as f64).log2().ceil() as i32;
+        let keep: Vec<f64> = (0..processes).map(|k| (-2.0 * 2f64.powi(-k)).exp()).collect();
         let mut states: Vec<f64> = keep.iter().map(|_| self.random.normal()).collect();
-        let scale = rms / f64::from(octaves).sqrt();
+        let scale = rms / f64::from(processes).sqrt();
         for v in values {
             for (state, keep) in states.iter_mut().zip(&keep) {
                 *state = keep * *state + (1.0 - keep * keep).sqrt() * self.random.normal();
@@ -82,16 +84,23 @@ impl Mix {
     }
 }
 
-/// What stands between a motion and its record; sizes as parts of the peak, 0 for what is absent.
+/// A measuring chain, which adds noise and hum to a motion and converts it. Sizes are over the peak; 0 for
+/// none.
 pub struct Chain {
+    /// Root mean square of the white noise.
     pub white: f64,
+    /// Root mean square of the 1/f noise.
     pink: f64,
+    /// Amplitude of the mains hum.
     hum: f64,
+    /// Mains frequency in Hz.
     mains: f64,
+    /// Range of the 12-bit converter.
     range: f64,
 }
 
 impl Chain {
+    /// Passes a record through the chain; `rate` in Hz.
     pub fn pass(&self, mix: &mut Mix, values: &mut [f64], rate: f64, peak: f64) {
         mix.add_white(values, self.white * peak);
         if self.pink > 0.0 {
@@ -107,7 +116,7 @@ impl Chain {
     }
 }
 
-/// A converter of so many bits between plus and minus `range`.
+/// Rounds to the steps of a converter with this number of bits between −`range` and `range`, and clips there.
 pub fn convert(values: &mut [f64], range: f64, bits: i32) {
     let step = range * 2f64.powi(1 - bits);
     for v in values {
@@ -115,7 +124,7 @@ pub fn convert(values: &mut [f64], range: f64, bits: i32) {
     }
 }
 
-/// Cuts off what is beyond plus and minus `level`.
+/// Clips at −`level` and `level`.
 pub fn clip(values: &mut [f64], level: f64) {
     for v in values {
         *v = v.clamp(-level, level);

@@ -1,10 +1,12 @@
-//! How often the truth lies within the uncertainties that are stated: records of every kind with random
-//! disturbances, and a truth that only their generator knows.
+//! How often a stated uncertainty covers the truth: simulates records of every kind with random
+//! disturbances, whose true values only the generator knows, and compares the answers of the estimators
+//! with them.
 //!
 //! `cargo run --release --example coverage [-- RECORDS]` takes RECORDS records of each kind, 1000 unless
-//! stated, and writes `docs/coverage.md`. `-- RECORDS --rows KIND` prints its rows alone. `-- RECORDS --worst
-//! KIND` prints the kind's worst records with what was done to them, and its coverage with and without each
-//! disturbance, and writes nothing. Record number n is the same in every run.
+//! stated, and writes `docs/coverage.md`. `-- RECORDS --rows KIND` prints the rows of this kind alone and
+//! writes nothing. `-- RECORDS --worst KIND` prints the kind's three worst records of each quantity with
+//! their disturbances, and its coverage below and above the median size of each disturbance; it writes
+//! nothing, either. Record number n is the same in every run.
 
 mod decays;
 mod disturbance;
@@ -27,29 +29,30 @@ use tally::{Tally, by_quantity};
 use vibroimpact::record::{Axis, Meta, Trace};
 use vibroimpact::units::Unit;
 
+/// Draws the records that the command line asks for, and prints or writes their coverage.
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let count = arguments.first().map_or(Ok(1000), |n| n.parse())?;
-    let named = |option: &str| {
+    let kinds_of = |option: &str| {
         let name = arguments.iter().position(|a| a == option).and_then(|i| arguments.get(i + 1))?;
         Some(kinds().into_iter().filter(|k| k.name.starts_with(name)).collect::<Vec<_>>())
     };
-    if let Some(kinds) = named("--worst") {
+    if let Some(kinds) = kinds_of("--worst") {
         for kind in kinds {
-            print!("{}", worst(kind, &draw(kind, count)));
+            print!("{}", worst_records(kind, &draw(kind, count)));
         }
         return Ok(());
     }
-    if let Some(kinds) = named("--rows") {
+    if let Some(kinds) = kinds_of("--rows") {
         for kind in kinds {
-            print!("{}", rows(kind, &draw(kind, count)));
+            print!("{}", table_rows(kind, &draw(kind, count)));
         }
         return Ok(());
     }
     let mut table = String::from(TABLE);
     let mut ranges = String::from(RANGES);
     for kind in kinds() {
-        let lines = rows(kind, &draw(kind, count));
+        let lines = table_rows(kind, &draw(kind, count));
         print!("{lines}");
         table += &lines;
         writeln!(ranges, "- **{}**: {}.", kind.name, kind.ranges)?;
@@ -59,6 +62,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     Ok(std::fs::write(path, format!("{head}\n{table}\n{ranges}"))?)
 }
 
+/// Beginning of the page; `RECORDS` is replaced by their number.
 const HEAD: &str = "# Coverage
 How often a stated uncertainty holds the truth: RECORDS records of each kind, fewer where an answer takes long, each with its own mix of disturbances. The truth is what made the record.
 `cargo run --release --example coverage` writes this page; its generators know nothing of the estimators.
@@ -69,15 +73,18 @@ How often a stated uncertainty holds the truth: RECORDS records of each kind, fe
 - **invented**: answers, in all records together, to what no record holds, such as a mode that is none.
 ";
 
+/// Head of the table.
 const TABLE: &str = "| kind of record | quantity | asked | answered | doubted | within 1.96 | spread | largest | beyond 4 | invented |
 |---|---|---|---|---|---|---|---|---|---|
 ";
 
+/// Heading over the ranges of each kind.
 const RANGES: &str = "## What is drawn
 Sizes are drawn evenly on a logarithmic scale. Each of the disturbances is in half of the records, unless a share is stated.
 
 ";
 
+/// All kinds of records, in the order of the page.
 fn kinds() -> Vec<&'static Kind> {
     [sweeps::KINDS, decays::KINDS, modes::KINDS, tones::KINDS, drops::KINDS, pulses::KINDS, drills::KINDS]
         .into_iter()
@@ -85,7 +92,8 @@ fn kinds() -> Vec<&'static Kind> {
         .collect()
 }
 
-/// So many records of a kind. The seed hangs on the name: a kind that is added changes no other.
+/// Draws `count`/`every` records of a kind, each with its own seed. The seeds depend on the name of the
+/// kind alone, so a new kind does not change the records of the others.
 fn draw(kind: &Kind, count: u64) -> Vec<(Mix, Record)> {
     let seed =
         kind.name.bytes().fold(0, |seed: u64, byte| seed.wrapping_mul(0x0100_0193) ^ u64::from(byte)) << 20;
@@ -99,12 +107,14 @@ fn draw(kind: &Kind, count: u64) -> Vec<(Mix, Record)> {
         .collect()
 }
 
+/// A time trace with a sampling rate in Hz.
 fn trace(unit: &str, rate: f64, values: Vec<f64>) -> Trace {
     let unit = Unit::parse(unit).unwrap_or_else(Unit::none);
     Trace { meta: Meta::new("record", unit), axis: Axis::time(0.0, 1.0 / rate, values.len()), values }
 }
 
-fn rows(kind: &Kind, drawn: &[(Mix, Record)]) -> String {
+/// Rows of the page for a kind, one a quantity.
+fn table_rows(kind: &Kind, drawn: &[(Mix, Record)]) -> String {
     let records = drawn.iter().map(|(_, record)| record);
     let invented: usize = records.clone().map(|r| r.invented).sum();
     let mut lines = String::new();
@@ -126,9 +136,10 @@ fn rows(kind: &Kind, drawn: &[(Mix, Record)]) -> String {
     lines
 }
 
-/// The worst records of each quantity with their disturbances, and the coverage by disturbance.
-fn worst(kind: &Kind, drawn: &[(Mix, Record)]) -> String {
-    let mut text = format!("# {}\n{}", kind.name, rows(kind, drawn));
+/// For each quantity: the three records with the largest errors and their disturbances; then, for each
+/// disturbance, the coverage of the records with a smaller and with a larger size of it.
+fn worst_records(kind: &Kind, drawn: &[(Mix, Record)]) -> String {
+    let mut text = format!("# {}\n{}", kind.name, table_rows(kind, drawn));
     let mut names: Vec<&str> =
         drawn.iter().flat_map(|(mix, _)| mix.named.iter().map(|(name, _)| *name)).collect();
     names.sort_unstable();
@@ -137,8 +148,8 @@ fn worst(kind: &Kind, drawn: &[(Mix, Record)]) -> String {
         let _ = writeln!(text, "## {quantity}");
         let mut errors: Vec<(f64, usize)> = Vec::new();
         for (i, (_, record)) in drawn.iter().enumerate() {
-            let own = record.answers.iter().filter(|a| a.quantity == quantity);
-            errors.extend(own.filter_map(record::Answer::error).map(|e| (e, i)));
+            let asked = record.answers.iter().filter(|a| a.quantity == quantity);
+            errors.extend(asked.filter_map(record::Answer::error).map(|e| (e, i)));
         }
         errors.sort_by(|a, b| b.0.abs().total_cmp(&a.0.abs()));
         for (error, i) in errors.iter().take(3) {
@@ -150,17 +161,18 @@ fn worst(kind: &Kind, drawn: &[(Mix, Record)]) -> String {
             let size = |mix: &Mix| mix.named.iter().find(|(n, _)| n == name).map_or(0.0, |(_, size)| *size);
             let mut sizes: Vec<f64> = drawn.iter().map(|(mix, _)| size(mix)).collect();
             sizes.sort_by(f64::total_cmp);
-            // The median, or what lies below it where it is the largest size, too.
-            let most = sizes[sizes.len() - 1];
-            let middle = sizes[..=sizes.len() / 2].iter().rfind(|s| **s < most).unwrap_or(&most);
-            let part = |above: bool| {
-                let some = drawn.iter().filter(|(mix, _)| (size(mix) > *middle) == above);
-                Tally::of(some.flat_map(|(_, r)| &r.answers).filter(|a| a.quantity == quantity))
+            // The median size divides the records. Where the median is also the largest size, the next
+            // smaller one does, so that neither part is empty.
+            let largest = sizes[sizes.len() - 1];
+            let median = sizes[..=sizes.len() / 2].iter().rfind(|s| **s < largest).unwrap_or(&largest);
+            let tally = |above: bool| {
+                let part = drawn.iter().filter(|(mix, _)| (size(mix) > *median) == above);
+                Tally::of(part.flat_map(|(_, r)| &r.answers).filter(|a| a.quantity == quantity))
             };
-            let (below, above) = (part(false), part(true));
+            let (below, above) = (tally(false), tally(true));
             let _ = writeln!(
                 text,
-                "{name:>26} up to {middle:<10.4}: {:5.1} % of {:5}, {:3} beyond 4; above: {:5.1} % of {:5}, {:3} beyond 4",
+                "{name:>26} up to {median:<10.4}: {:5.1} % of {:5}, {:3} beyond 4; above: {:5.1} % of {:5}, {:3} beyond 4",
                 below.covered(),
                 below.errors.len(),
                 below.beyond(4.0),

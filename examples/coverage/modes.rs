@@ -1,4 +1,5 @@
-//! Modes of frequency response functions.
+//! Random synthetic frequency response functions (FRFs) with known modes, to check how often the stated
+//! uncertainty of the modal fit covers the truth.
 
 use super::disturbance::{Mix, peak};
 use super::record::{Answer, Kind, Record, pairs};
@@ -12,128 +13,168 @@ use vibroimpact::signal::fft::Transform;
 use vibroimpact::signal::transfer::Estimator;
 use vibroimpact::units::Quantity;
 
+/// The kinds of records drawn here.
 pub const KINDS: &[Kind] = &[
     Kind {
         name: "one mode of a function",
         ranges: "ζ 0.002 to 0.1, 1 to 20 lines in the half-power bandwidth, a residual stiffness and mass; \
         noise of each line 30 to 60 dB below the peak; receptance, mobility or accelerance",
         every: 1,
-        draw: |mix| of_lines(mix, 1),
+        draw: |mix| direct_frf(mix, 1),
     },
     Kind {
         name: "two modes of a function",
         ranges: "as one mode; the second 0.5 to 8 half-power bandwidths above, ζ 0.5 to 2 times, modal \
         constant 0.3 to 1 times that of the first, of either sign",
         every: 1,
-        draw: |mix| of_lines(mix, 2),
+        draw: |mix| direct_frf(mix, 2),
     },
     Kind {
         name: "one mode of averaged spectra",
         ranges: "random force, 10 to 60 segments of 512 to 2048 samples, Hann window, overlap 0.5, H1; \
         1 to 20 lines in the half-power bandwidth; noise of the response 30 to 60 dB below its peak, 1/f noise, hum and 12 bits",
         every: 8,
-        draw: |mix| averaged(mix, 1),
+        draw: |mix| averaged_frf(mix, 1),
     },
     Kind {
         name: "two modes of averaged spectra",
         ranges: "as before, with modes as in two modes of a function",
         every: 8,
-        draw: |mix| averaged(mix, 2),
+        draw: |mix| averaged_frf(mix, 2),
     },
 ];
 
-/// One or two modes around line `centre`, lines 1 Hz apart.
-fn modes(mix: &mut Mix, count: usize, zeta: f64, centre: f64) -> Vec<Pole> {
+/// Draws one or two true modes. The first lies at `centre` Hz with damping ratio `zeta` and modal constant
+/// 1; the second lies 0.5 to 8 half-power bandwidths above it.
+fn draw_modes(mix: &mut Mix, count: usize, zeta: f64, centre: f64) -> Vec<Pole> {
     let mut poles = vec![Pole { frequency: centre, zeta, constant: Complex64::new(1.0, 0.0) }];
     if count == 2 {
-        let apart = mix.log(0.5, 8.0);
-        mix.note("bandwidths apart", apart);
-        let ratio = mix.log(0.5, 2.0);
-        let size = mix.log(0.3, 1.0);
-        mix.note("ratio of damping", ratio);
+        let bandwidths_apart = mix.log(0.5, 8.0);
+        mix.note("bandwidths apart", bandwidths_apart);
+        let relative_damping = mix.log(0.5, 2.0);
+        let magnitude = mix.log(0.3, 1.0);
+        mix.note("ratio of damping", relative_damping);
         let sign = if mix.chance(0.5) { 1.0 } else { -1.0 };
-        let constant = mix.note("second constant", sign * size);
-        let second = centre * (1.0 + 2.0 * zeta * apart);
-        poles.push(Pole { frequency: second, zeta: zeta * ratio, constant: Complex64::new(constant, 0.0) });
+        let constant = mix.note("second constant", sign * magnitude);
+        let second = centre * (1.0 + 2.0 * zeta * bandwidths_apart);
+        poles.push(Pole {
+            frequency: second,
+            zeta: zeta * relative_damping,
+            constant: Complex64::new(constant, 0.0),
+        });
     }
     poles
 }
 
-/// Receptance times (iω)^`power` of viscous modes.
+/// True FRF of viscously damped modes at `f` Hz: the receptance times (iω)^`power`.
 fn response(poles: &[Pole], f: f64, power: i32) -> Complex64 {
     let w = TAU * f;
     let sum: Complex64 = poles
         .iter()
         .map(|p| {
-            let own = TAU * p.frequency;
-            p.constant / Complex64::new(own * own - w * w, 2.0 * p.zeta * own * w)
+            let natural_omega = TAU * p.frequency;
+            let stiffness_term = natural_omega * natural_omega - w * w;
+            p.constant / Complex64::new(stiffness_term, 2.0 * p.zeta * natural_omega * w)
         })
         .sum();
     sum * Complex64::new(0.0, w).powi(power)
 }
 
-fn kind(mix: &mut Mix) -> (Quantity, i32, &'static str) {
-    let all =
+/// Draws the kind of FRF: its quantity, the power of iω over a receptance, and the unit of its response.
+fn draw_quantity(mix: &mut Mix) -> (Quantity, i32, &'static str) {
+    let quantities =
         [(Quantity::Receptance, 0, "m"), (Quantity::Mobility, 1, "m/s"), (Quantity::Accelerance, 2, "m/s^2")];
-    all[mix.random.between(0.0, 3.0) as usize]
+    quantities[mix.random.between(0.0, 3.0) as usize]
 }
 
-fn of_lines(mix: &mut Mix, count: usize) -> Record {
+/// Draws the lines of an FRF directly, 1 Hz apart, with white noise, as an analyser would state them.
+/// Compares the modes that are fitted to them with the true ones.
+fn direct_frf(mix: &mut Mix, count: usize) -> Record {
     let zeta = mix.log(0.002, 0.1);
-    let wide = mix.log(1.0, 20.0);
+    let lines_in_bandwidth = mix.log(1.0, 20.0);
     mix.note("ζ", zeta);
-    mix.note("lines in the bandwidth", wide);
-    let centre = wide / (2.0 * zeta) + mix.random.uniform();
-    let poles = modes(mix, count, zeta, centre);
-    let (kind, power, _) = kind(mix);
-    // What stands far below and far above the band.
-    let far = mix.some(0.7, "far modes", 0.1, 3.0);
-    let mut all = poles.clone();
+    mix.note("lines in the bandwidth", lines_in_bandwidth);
+    let centre = lines_in_bandwidth / (2.0 * zeta) + mix.random.uniform();
+    let poles = draw_modes(mix, count, zeta, centre);
+    let (quantity, power, _) = draw_quantity(mix);
+    // Residual terms: one mode a decade below and one a decade above the band.
+    let residual = mix.some(0.7, "far modes", 0.1, 3.0);
+    let mut with_residuals = poles.clone();
     for ratio in [0.1, 10.0] {
-        let constant = Complex64::new(far * ratio * mix.random.between(-1.0, 1.0), 0.0);
-        all.push(Pole { frequency: ratio * centre, zeta: 0.01, constant });
+        let constant = Complex64::new(residual * ratio * mix.random.between(-1.0, 1.0), 0.0);
+        with_residuals.push(Pole { frequency: ratio * centre, zeta: 0.01, constant });
     }
-    let reach = (wide * mix.log(6.0, 25.0)).max(12.0);
-    let last = poles[count - 1].frequency + reach;
-    let frequency: Vec<f64> =
-        (((centre - reach).max(0.3 * centre).max(1.0) as usize)..last as usize).map(|k| k as f64).collect();
-    let mut values: Vec<Complex64> = frequency.iter().map(|f| response(&all, *f, power)).collect();
-    let top = values.iter().fold(0.0, |most: f64, v| v.norm().max(most));
+    // In lines, on either side of the modes.
+    let half_span = (lines_in_bandwidth * mix.log(6.0, 25.0)).max(12.0);
+    let first = (centre - half_span).max(0.3 * centre).max(1.0);
+    let last = poles[count - 1].frequency + half_span;
+    let frequency: Vec<f64> = (first as usize..last as usize).map(|k| k as f64).collect();
+    let mut values: Vec<Complex64> = frequency.iter().map(|f| response(&with_residuals, *f, power)).collect();
+    let largest = values.iter().fold(0.0, |most: f64, v| v.norm().max(most));
     let noise = mix.log(1e-3, 10f64.powf(-1.5));
     mix.note("noise", noise);
     for v in &mut values {
-        *v += Complex64::new(mix.random.normal(), mix.random.normal()) * (noise * top / 2f64.sqrt());
+        *v += Complex64::new(mix.random.normal(), mix.random.normal()) * (noise * largest / 2f64.sqrt());
     }
-    let measured = Measured::new(frequency, values, kind);
-    compare(&measured, &poles)
+    compare_modes(&Measured::new(frequency, values, quantity), &poles)
 }
 
-fn averaged(mix: &mut Mix, count: usize) -> Record {
+/// Draws a random force and the response of the modes to it, disturbed as by a measuring chain, and
+/// averages their spectra to an FRF. Compares the modes that are fitted to it with the true ones.
+fn averaged_frf(mix: &mut Mix, count: usize) -> Record {
     let segment = [512, 1024, 2048][mix.random.between(0.0, 3.0) as usize];
     let segments = mix.log(10.0, 60.0) as usize;
     mix.note("segments", segments as f64);
-    let wide = mix.log(1.0, 20.0);
-    mix.note("lines in the bandwidth", wide);
+    let lines_in_bandwidth = mix.log(1.0, 20.0);
+    mix.note("lines in the bandwidth", lines_in_bandwidth);
     let centre = mix.random.between(0.1, 0.3) * segment as f64;
-    let zeta = mix.note("ζ", (wide / (2.0 * centre)).min(0.1));
-    let poles = modes(mix, count, zeta, centre);
-    let (_, power, unit) = kind(mix);
-    // A force that repeats after twice the record or later: exact steady motion, whose lines lie too close
-    // together to be seen.
+    let zeta = mix.note("ζ", (lines_in_bandwidth / (2.0 * centre)).min(0.1));
+    let poles = draw_modes(mix, count, zeta, centre);
+    let (_, power, unit) = draw_quantity(mix);
+    // One line a Hz.
     let (rate, n) = (segment as f64, (segments + 1) * segment / 2);
-    let half = n.next_power_of_two();
-    let transform = Transform::new(2 * half);
-    let step = rate / (2 * half) as f64;
-    let force: Vec<Complex64> = (0..=half)
+    let (force, motion) = random_response(mix, &poles, power, rate, n);
+    let traces = Traces::from_memory(vec![trace("N", rate, force), trace(unit, rate, motion)]);
+    let options = SpectralOptions {
+        segment: Some(segment),
+        window: Some(Window::Hann),
+        estimator: Some(Estimator::H1),
+        ..SpectralOptions::default()
+    };
+    let averaged = traces.and_then(|mut traces| spectral(&mut traces, &options, |_| ()));
+    let Some(Lines::Transfer(transfer)) = averaged.ok().map(|a| a.found) else {
+        return mode_answers(&poles, |_| None);
+    };
+    let mut measured = Measured::complex(&transfer.frf);
+    measured.coherence = Some(transfer.coherence);
+    measured.window = Some(Window::Hann);
+    let finite: Vec<usize> =
+        (0..measured.values.len()).filter(|k| measured.values[*k].norm().is_finite()).collect();
+    measured.frequency = finite.iter().map(|k| measured.frequency[*k]).collect();
+    measured.values = finite.iter().map(|k| measured.values[*k]).collect();
+    measured.coherence = measured.coherence.map(|c| finite.iter().map(|k| c[*k]).collect());
+    compare_modes(&measured, &poles)
+}
+
+/// A random force of `n` samples up to 0.45 of the sampling rate with a peak of 1, and the response of the
+/// modes with noise, hum and converter.
+///
+/// The force is periodic with at least twice the record, so the response is exactly steady-state and its
+/// line spacing is finer than the analysis can resolve.
+fn random_response(mix: &mut Mix, poles: &[Pole], power: i32, rate: f64, n: usize) -> (Vec<f64>, Vec<f64>) {
+    let half_period = n.next_power_of_two();
+    let transform = Transform::new(2 * half_period);
+    let spacing = rate / (2 * half_period) as f64;
+    let force: Vec<Complex64> = (0..=half_period)
         .map(|k| {
             Complex64::new(mix.random.normal(), mix.random.normal())
-                * f64::from(u8::from((k as f64) * step < 0.45 * rate && k > 0))
+                * f64::from(u8::from((k as f64) * spacing < 0.45 * rate && k > 0))
         })
         .collect();
     let motion: Vec<Complex64> = force
         .iter()
         .enumerate()
-        .map(|(k, f)| f * if k > 0 { response(&poles, k as f64 * step, power) } else { Complex64::ZERO })
+        .map(|(k, f)| f * if k > 0 { response(poles, k as f64 * spacing, power) } else { Complex64::ZERO })
         .collect();
     let (mut force, mut motion) = (transform.inverse(&force), transform.inverse(&motion));
     force.truncate(n);
@@ -145,49 +186,36 @@ fn averaged(mix: &mut Mix, count: usize) -> Record {
     for v in &mut motion {
         *v *= scale;
     }
-    let top = peak(&motion);
-    mix.spoil(&mut motion, rate, top, (1e-3, 0.03));
-    let traces = Traces::from_memory(vec![trace("N", rate, force), trace(unit, rate, motion)]);
-    let options = SpectralOptions {
-        segment: Some(segment),
-        window: Some(Window::Hann),
-        estimator: Some(Estimator::H1),
-        ..SpectralOptions::default()
-    };
-    let found = traces.and_then(|mut traces| spectral(&mut traces, &options, |_| ()));
-    let Some(Lines::Transfer(transfer)) = found.ok().map(|f| f.found) else { return asked(&poles, |_| None) };
-    let mut measured = Measured::complex(&transfer.frf);
-    measured.coherence = Some(transfer.coherence);
-    measured.window = Some(Window::Hann);
-    let known: Vec<usize> =
-        (0..measured.values.len()).filter(|k| measured.values[*k].norm().is_finite()).collect();
-    measured.frequency = known.iter().map(|k| measured.frequency[*k]).collect();
-    measured.values = known.iter().map(|k| measured.values[*k]).collect();
-    measured.coherence = measured.coherence.map(|c| known.iter().map(|k| c[*k]).collect());
-    compare(&measured, &poles)
+    let largest = peak(&motion);
+    mix.spoil(&mut motion, rate, largest, (1e-3, 0.03));
+    (force, motion)
 }
 
-fn compare(measured: &Measured, poles: &[Pole]) -> Record {
-    let Ok(found) = modal(measured, &ModalOptions::default()) else { return asked(poles, |_| None) };
-    let reach: Vec<f64> = poles.iter().map(|p| (2.0 * p.zeta * p.frequency).max(1.0)).collect();
+/// Fits modes to an FRF and pairs each true mode with the fitted one nearest in frequency, at most one
+/// half-power bandwidth (or one line) away. A fitted mode without a partner is an invented answer.
+fn compare_modes(measured: &Measured, poles: &[Pole]) -> Record {
+    let Ok(fit) = modal(measured, &ModalOptions::default()) else { return mode_answers(poles, |_| None) };
+    let limits: Vec<f64> = poles.iter().map(|p| (2.0 * p.zeta * p.frequency).max(1.0)).collect();
     let truths: Vec<f64> = poles.iter().map(|p| p.frequency).collect();
-    let own = pairs(&truths, &reach, &found.modes.iter().map(|m| m.frequency.value).collect::<Vec<_>>());
-    let mut record = asked(poles, |i| own[i].map(|k| &found.modes[k]));
-    let unowned = |k: &usize| !own.contains(&Some(*k)) && found.modes[*k].frequency.std.is_some();
-    record.invented = (0..found.modes.len()).filter(unowned).count();
+    let paired = pairs(&truths, &limits, &fit.modes.iter().map(|m| m.frequency.value).collect::<Vec<_>>());
+    let mut record = mode_answers(poles, |i| paired[i].map(|k| &fit.modes[k]));
+    let is_invented = |k: &usize| !paired.contains(&Some(*k)) && fit.modes[*k].frequency.std.is_some();
+    record.invented = (0..fit.modes.len()).filter(is_invented).count();
     record
 }
 
-fn asked<'a>(
+/// The answers for each true mode: frequency, damping ratio and modal constant of the fitted mode
+/// `fitted(i)`, or none where it was not found.
+fn mode_answers<'a>(
     poles: &[Pole],
-    found: impl Fn(usize) -> Option<&'a vibroimpact::measure::modal::Mode>,
+    fitted: impl Fn(usize) -> Option<&'a vibroimpact::measure::modal::Mode>,
 ) -> Record {
     let mut record = Record::default();
     for (i, pole) in poles.iter().enumerate() {
-        let own = found(i);
-        record.answers.push(Answer::new("frequency", pole.frequency, own.map(|m| &m.frequency)));
-        record.answers.push(Answer::new("damping ratio", pole.zeta, own.map(|m| &m.zeta)));
-        record.answers.push(Answer::new("modal constant", pole.constant.re, own.map(|m| &m.modal_constant)));
+        let mode = fitted(i);
+        record.answers.push(Answer::new("frequency", pole.frequency, mode.map(|m| &m.frequency)));
+        record.answers.push(Answer::new("damping ratio", pole.zeta, mode.map(|m| &m.zeta)));
+        record.answers.push(Answer::new("modal constant", pole.constant.re, mode.map(|m| &m.modal_constant)));
     }
     record
 }

@@ -1,4 +1,5 @@
-//! Contact pulses, integrated here.
+//! Contact pulses of random contact laws, integrated here, to check how often the stated uncertainties of
+//! restitution, duration and velocity cover the truth.
 
 use super::disturbance::{Mix, peak};
 use super::record::{Answer, Kind, Record};
@@ -6,6 +7,7 @@ use super::trace;
 use std::f64::consts::TAU;
 use vibroimpact::measure::pulse::{Instrument, LowPass, PulseOptions, pulse};
 
+/// The kinds of records drawn here.
 pub const KINDS: &[Kind] = &[
     Kind {
         name: "pulse, spring and damper",
@@ -35,6 +37,7 @@ pub const KINDS: &[Kind] = &[
     },
 ];
 
+/// Kinds of pulses by their contact law and instrument.
 #[derive(Clone, Copy, PartialEq)]
 enum Family {
     SpringDamper,
@@ -43,36 +46,46 @@ enum Family {
     Other,
 }
 
-/// F = δⁿ + c δˢ δ̇ of unit mass, the spring so much stiffer on the way back.
+/// Contact law F = δⁿ + c δˢ δ̇ of a unit mass with the compression δ. A linear spring may be stiffer in
+/// restitution than in compression.
 #[derive(Clone, Copy)]
 struct Law {
+    /// Exponent n of the spring.
     n: f64,
+    /// Exponent s of the loss.
     s: f64,
+    /// Coefficient c of the loss.
     loss: f64,
-    back: f64,
+    /// Stiffness in restitution over that in compression; 1 for the same.
+    unloading: f64,
 }
 
 impl Law {
+    /// Contact force at compression `d` and its rate `v`; `most` is the largest compression so far.
     fn force(&self, d: f64, v: f64, most: f64) -> f64 {
         let d = d.max(0.0);
-        if self.back > 1.0 && v < 0.0 {
-            // Walton and Braun: a straight line from the largest force with a higher stiffness.
-            return most.powf(self.n) * (1.0 - self.back * (1.0 - d / most));
+        if self.unloading > 1.0 && v < 0.0 {
+            // Walton and Braun: unloading along a straight line from the largest force, with a higher
+            // stiffness.
+            return most.powf(self.n) * (1.0 - self.unloading * (1.0 - d / most));
         }
         d.powf(self.n) + self.loss * d.powf(self.s) * v
     }
 }
 
-/// A contact met at velocity 1: force over time at steps of `step`, its duration and the velocity at which it
-/// is left.
+/// The contact of a unit mass that arrives with velocity 1.
 struct Contact {
+    /// Time from one value of the force to the next.
     step: f64,
     force: Vec<f64>,
     duration: f64,
+    /// Velocity at the end, opposite to that at the start.
     restitution: f64,
 }
 
 impl Contact {
+    /// Integrates a contact by the Runge–Kutta method of order 4, until the force or the compression
+    /// vanishes.
     fn of(law: Law) -> Contact {
         let step = 1e-3;
         let (mut d, mut v, mut most, mut force) = (0.0, 1.0, 0.0, vec![law.force(0.0, 1.0, 0.0)]);
@@ -89,7 +102,8 @@ impl Contact {
             most = f64::max(most, next.0);
             let (before, after) = (force[force.len() - 1], law.force(next.0, next.1, most));
             if next.1 < 0.0 && (after <= 0.0 || next.0 <= 0.0) {
-                // The step is small beside the contact: a straight line to the instant without force.
+                // The step is small beside the contact: the end is found on a straight line between two
+                // steps.
                 let part = if after < 0.0 { before / (before - after) } else { d / (d - next.0).max(1e-300) };
                 let duration = (force.len() as f64 - 1.0 + part.min(1.0)) * step;
                 return Contact { step, force, duration, restitution: -(v + part.min(1.0) * (next.1 - v)) };
@@ -99,6 +113,7 @@ impl Contact {
         }
     }
 
+    /// Force at time `t` after the first touch, by linear interpolation; 0 outside the contact.
     fn at(&self, t: f64) -> f64 {
         let place = t / self.step;
         if !(0.0..self.duration / self.step).contains(&place) {
@@ -110,79 +125,112 @@ impl Contact {
     }
 }
 
-fn law(mix: &mut Mix, family: Family) -> Law {
+/// Draws a contact law of a family.
+fn draw_law(mix: &mut Mix, family: Family) -> Law {
     match family {
-        Family::SpringDamper => Law { n: 1.0, s: 0.0, loss: 2.0 * mix.random.between(0.01, 0.45), back: 1.0 },
-        Family::HuntCrossley => Law { n: 1.5, s: 1.5, loss: mix.log(0.015, 1.6), back: 1.0 },
-        Family::Ringing if mix.chance(0.5) => law(mix, Family::SpringDamper),
-        Family::Ringing => law(mix, Family::HuntCrossley),
+        Family::SpringDamper => {
+            Law { n: 1.0, s: 0.0, loss: 2.0 * mix.random.between(0.01, 0.45), unloading: 1.0 }
+        }
+        Family::HuntCrossley => Law { n: 1.5, s: 1.5, loss: mix.log(0.015, 1.6), unloading: 1.0 },
+        Family::Ringing if mix.chance(0.5) => draw_law(mix, Family::SpringDamper),
+        Family::Ringing => draw_law(mix, Family::HuntCrossley),
         Family::Other if mix.chance(0.3) => {
-            let back = mix.random.between(1.05, 3.0);
-            Law { n: 1.0, s: 0.0, loss: 0.0, back: mix.note("stiffer on the way back", back) }
+            let unloading = mix.random.between(1.05, 3.0);
+            Law { n: 1.0, s: 0.0, loss: 0.0, unloading: mix.note("stiffer on the way back", unloading) }
         }
         Family::Other => {
             let (n, s) = (mix.random.between(1.1, 2.2), mix.random.between(0.0, 1.5));
             mix.note("exponent", n);
-            Law { n, s: mix.note("exponent of the loss", s), loss: mix.log(0.02, 0.6), back: 1.0 }
+            Law { n, s: mix.note("exponent of the loss", s), loss: mix.log(0.02, 0.6), unloading: 1.0 }
         }
     }
 }
 
+/// What a sensor and its electronics change of a contact force.
+struct Sensor {
+    /// Corner of the low-pass over one per duration of the contact, and its order; 0 without a low-pass.
+    corner: f64,
+    order: usize,
+    /// Share of the force that the ringing mode takes; 0 without ringing.
+    ringing: f64,
+    /// Natural angular frequency and damping ratio of the ringing mode.
+    omega: f64,
+    zeta: f64,
+}
+
+impl Sensor {
+    /// Draws the sensor for a contact.
+    fn draw(mix: &mut Mix, family: Family, contact: &Contact) -> Sensor {
+        let corner =
+            if family == Family::Ringing { 0.0 } else { mix.some(0.33, "low-pass by duration", 0.7, 10.0) };
+        let order = mix.random.between(1.0, 5.0) as usize;
+        if corner > 0.0 {
+            mix.note("order", order as f64);
+        }
+        let ringing = if family == Family::Ringing { mix.some(1.0, "ringing", 0.003, 0.2) } else { 0.0 };
+        let omega = TAU * mix.log(0.7, 8.0) / contact.duration;
+        let zeta = mix.log(0.005, 0.1);
+        if ringing > 0.0 {
+            mix.note("ringing by duration", omega / TAU * contact.duration);
+        }
+        Sensor { corner, order, ringing, omega, zeta }
+    }
+
+    /// The force that the sensor shows at `n` times `interval` apart; the contact starts at `onset`.
+    fn shown(&self, contact: &Contact, n: usize, interval: f64, onset: f64) -> Vec<f64> {
+        // Steps of the sensor's integration in an interval: finer than the steps of the contact.
+        let substeps = (interval / contact.step).ceil().max(4.0) as usize;
+        let step = interval / substeps as f64;
+        let mut sections = butterworth(self.order, TAU * self.corner / contact.duration);
+        let (mut x, mut v) = (0.0, 0.0);
+        let mut shown = Vec::with_capacity(n);
+        for i in 0..n * substeps {
+            let t = i as f64 * step - onset;
+            let mut force = contact.at(t);
+            if self.corner > 0.0 {
+                let middle = contact.at(t - 0.5 * step);
+                force = sections.iter_mut().fold(middle, |input, section| section.pass(input, step));
+            } else if self.ringing > 0.0 {
+                // A mode of unit static gain in the sensor, integrated by half a step of x, a step of v, and
+                // half a step of x.
+                x += 0.5 * step * v;
+                v += step * (self.omega * self.omega * (force - x) - 2.0 * self.zeta * self.omega * v);
+                x += 0.5 * step * v;
+                force += self.ringing * (x - force);
+            }
+            if i % substeps == 0 {
+                shown.push(force);
+            }
+        }
+        shown
+    }
+}
+
+/// Draws a contact of a family as the sensor shows it, with noise, hum and converter. Compares restitution,
+/// duration and approach velocity with the truth; damping ratio and frequency, too, for spring and damper.
 fn draw(mix: &mut Mix, family: Family) -> Record {
-    let law = law(mix, family);
+    let law = draw_law(mix, family);
     let contact = Contact::of(law);
     mix.note("restitution", contact.restitution);
     let samples = mix.log(15.0, 300.0);
     mix.note("samples a contact", samples);
-    let corner =
-        if family == Family::Ringing { 0.0 } else { mix.some(0.33, "low-pass by duration", 0.7, 10.0) };
-    let order = mix.random.between(1.0, 5.0) as usize;
-    if corner > 0.0 {
-        mix.note("order", order as f64);
-    }
-    let rings = if family == Family::Ringing { mix.some(1.0, "ringing", 0.003, 0.2) } else { 0.0 };
-    let own = TAU * mix.log(0.7, 8.0) / contact.duration;
-    let damping = mix.log(0.005, 0.1);
-    if rings > 0.0 {
-        mix.note("ringing by duration", own / TAU * contact.duration);
-    }
+    let sensor = Sensor::draw(mix, family, &contact);
+    // Record before and after the contact, over its duration.
     let (before, after) = (mix.random.between(1.0, 4.0), mix.random.between(2.0, 8.0));
     let n = ((before + 1.0 + after) * samples) as usize;
     let onset = (before * samples + mix.random.uniform()) / samples * contact.duration;
-    // Finer than a sample and than the step of the contact: the instrument is integrated with it.
-    let fine = (contact.duration / samples / contact.step).ceil().max(4.0) as usize;
-    let step = contact.duration / samples / fine as f64;
-    let mut sections = butterworth(order, TAU * corner / contact.duration);
-    let (mut x, mut v) = (0.0, 0.0);
-    let mut shown = Vec::with_capacity(n);
-    for i in 0..n * fine {
-        let t = i as f64 * step - onset;
-        let mut force = contact.at(t);
-        if corner > 0.0 {
-            let middle = contact.at(t - 0.5 * step);
-            force = sections.iter_mut().fold(middle, |input, section| section.pass(input, step));
-        } else if rings > 0.0 {
-            // A structure of unit static gain behind the sensor; half a step each way.
-            x += 0.5 * step * v;
-            v += step * (own * own * (force - x) - 2.0 * damping * own * v);
-            x += 0.5 * step * v;
-            force += rings * (x - force);
-        }
-        if i % fine == 0 {
-            shown.push(force);
-        }
-    }
-    // From the scales of the integration to those of a bench.
+    let mut shown = sensor.shown(&contact, n, contact.duration / samples, onset);
+    // From the scales of the integration to those of a bench: velocity in m/s, duration in s.
     let (velocity, duration) = (mix.log(0.05, 5.0), mix.log(2e-5, 5e-3));
     let scale = velocity * contact.duration / duration;
     for a in &mut shown {
         *a *= scale;
     }
-    let top = peak(&shown);
+    let largest = peak(&shown);
     let rate = samples / duration;
-    mix.spoil(&mut shown, rate, top, (3e-4, 0.03));
-    let instrument = match LowPass::new(corner / duration, order) {
-        Ok(low_pass) if corner > 0.0 => Instrument::LowPass(low_pass),
+    mix.spoil(&mut shown, rate, largest, (3e-4, 0.03));
+    let instrument = match LowPass::new(sensor.corner / duration, sensor.order) {
+        Ok(low_pass) if sensor.corner > 0.0 => Instrument::LowPass(low_pass),
         _ => Instrument::Flat,
     };
     let found = pulse(&trace("m/s^2", rate, shown), &PulseOptions { instrument, mass: None }).ok();
@@ -200,17 +248,20 @@ fn draw(mix: &mut Mix, family: Family) -> Record {
     record
 }
 
-/// One part of a low-pass of first or second order: x″ + 2ζω x′ + ω² x = ω² u, or x′ = ω (u − x).
+/// A section of a low-pass with input u: of second order, x″ + 2ζω x′ + ω² x = ω² u, or of first order,
+/// x′ = ω (u − x).
 struct Section {
     omega: f64,
+    /// Damping ratio ζ; `None` for a section of first order.
     zeta: Option<f64>,
+    /// Output x and its rate.
     x: f64,
     v: f64,
 }
 
 impl Section {
-    /// What the section shows a step later, by the trapezoidal rule; the input is that in the middle of the
-    /// step.
+    /// Advances the section by `step`, by the trapezoidal rule; `input` is u in the middle of the step.
+    /// Returns the mean output over the step.
     fn pass(&mut self, input: f64, step: f64) -> f64 {
         let h = 0.5 * step * self.omega;
         let before = self.x;
@@ -227,10 +278,11 @@ impl Section {
     }
 }
 
-/// Parts of a Butterworth low-pass with its corner at ω.
+/// Sections of a Butterworth low-pass with its corner at ω.
 fn butterworth(order: usize, omega: f64) -> Vec<Section> {
-    let pair = |k: usize| ((2 * k + 1) as f64 * TAU / (4.0 * order as f64)).sin();
-    let pairs = (0..order / 2).map(|k| Some(pair(k)));
+    // Damping ratio of each pair of poles; an odd order has one real pole beside.
+    let zeta = |k: usize| ((2 * k + 1) as f64 * TAU / (4.0 * order as f64)).sin();
+    let pairs = (0..order / 2).map(|k| Some(zeta(k)));
     pairs
         .chain((order % 2 == 1).then_some(None))
         .map(|zeta| Section { omega, zeta, x: 0.0, v: 0.0 })

@@ -1,14 +1,16 @@
-//! A record, what was done to it, and what an estimator answers of it.
+//! Kinds of simulated records, and the answers of an estimator beside the true values.
 
 use vibroimpact::measure::Estimate;
 
 /// A kind of records.
 pub struct Kind {
+    /// Name on the page; it also selects the seeds.
     pub name: &'static str,
-    /// What is drawn at random, and between which limits.
+    /// The properties drawn at random with their limits, as text for the page.
     pub ranges: &'static str,
-    /// Every so many records one is drawn: 1, more where the answer takes long.
+    /// Of every this many records only one is drawn: 1, or more where the estimator is slow.
     pub every: u64,
+    /// Draws a record, runs the estimator on it and returns its answers beside the true values.
     pub draw: fn(&mut super::disturbance::Mix) -> Record,
 }
 
@@ -16,12 +18,14 @@ pub struct Kind {
 #[derive(Default)]
 pub struct Record {
     pub answers: Vec<Answer>,
-    /// Answers with an uncertainty to what the record does not hold, such as a mode that is none.
+    /// Number of answers with an uncertainty for something that the record does not hold, such as a mode
+    /// fitted to noise.
     pub invented: usize,
 }
 
-/// One number that was asked of a record.
+/// One quantity of a record: its true value and the estimator's answer.
 pub struct Answer {
+    /// Name of the quantity on the page.
     pub quantity: &'static str,
     pub truth: f64,
     /// Value and standard uncertainty; `None` where there is no value, or one without an uncertainty.
@@ -29,35 +33,38 @@ pub struct Answer {
 }
 
 impl Answer {
+    /// The answer by an estimate, or none.
     pub fn new(quantity: &'static str, truth: f64, found: Option<&Estimate>) -> Answer {
         Answer::of(quantity, truth, found.map(|e| (e.value, e.std)))
     }
 
+    /// The answer by a value and its standard uncertainty; none without an uncertainty.
     pub fn of(quantity: &'static str, truth: f64, found: Option<(f64, Option<f64>)>) -> Answer {
         let found = found.and_then(|(value, std)| Some((value, std?)));
         Answer { quantity, truth, found: found.filter(|(value, _)| value.is_finite()) }
     }
 
-    /// Error in standard uncertainties.
+    /// Error of the answer in standard uncertainties; `None` without an answer.
     pub fn error(&self) -> Option<f64> {
         self.found.map(|(value, std)| (value - self.truth) / std)
     }
 }
 
-/// For each truth the index of the value found that is its own: pairs within their `reach`, the nearest (as a
-/// part of it) first.
-pub fn pairs(truths: &[f64], reach: &[f64], found: &[f64]) -> Vec<Option<usize>> {
-    let mut near: Vec<(f64, usize, usize)> = Vec::new();
-    for (i, (truth, reach)) in truths.iter().zip(reach).enumerate() {
-        near.extend(found.iter().enumerate().map(|(k, f)| ((f - truth).abs() / reach, i, k)));
+/// Pairs each true value with the value found for it, and gives the index of that. The two are at
+/// most the true value's limit apart. Pairs with the smallest distance over limit are formed first; no
+/// value is in two pairs.
+pub fn pairs(truths: &[f64], limits: &[f64], found: &[f64]) -> Vec<Option<usize>> {
+    let mut candidates: Vec<(f64, usize, usize)> = Vec::new();
+    for (i, (truth, limit)) in truths.iter().zip(limits).enumerate() {
+        candidates.extend(found.iter().enumerate().map(|(k, f)| ((f - truth).abs() / limit, i, k)));
     }
-    near.retain(|(apart, ..)| *apart <= 1.0);
-    near.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let mut own = vec![None; truths.len()];
-    for (_, i, k) in near {
-        if own[i].is_none() && !own.contains(&Some(k)) {
-            own[i] = Some(k);
+    candidates.retain(|(distance, ..)| *distance <= 1.0);
+    candidates.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let mut paired = vec![None; truths.len()];
+    for (_, i, k) in candidates {
+        if paired[i].is_none() && !paired.contains(&Some(k)) {
+            paired[i] = Some(k);
         }
     }
-    own
+    paired
 }

@@ -1,13 +1,15 @@
-//! Stepped-sine sweeps of a mass on a spring, without impacts.
+//! Random stepped-sine sweeps of a mass on a spring, without impacts, to check how often the stated
+//! uncertainties of excitation frequency, force, amplitude and resonance cover the truth.
 
-use super::disturbance::Mix;
+use super::disturbance::{Chain, Mix};
 use super::record::{Answer, Kind, Record};
 use super::trace;
 use std::f64::consts::{PI, TAU};
-use vibroimpact::measure::response::{ResponseOptions, response};
+use vibroimpact::measure::response::{Response, ResponseOptions, response};
 use vibroimpact::record::{Axis, Direction, Scaling, Spectrum, Sweep, SweepPoint, Values, Window};
 use vibroimpact::signal::fft::Transform;
 
+/// The kinds of records drawn here.
 pub const KINDS: &[Kind] = &[Kind {
     name: "sweep",
     ranges: "12 to 30 steps over 1 to 6 half-power bandwidths, ζ 0.005 to 0.1, 512 or 1024 samples a spectrum, Hann window, resonance at 12 to 60 lines; \
@@ -17,8 +19,13 @@ pub const KINDS: &[Kind] = &[Kind {
     draw,
 }];
 
-/// One line spectrum of peak magnitudes behind a Hann window.
-fn lines(transform: &Transform, values: &[f64]) -> Vec<f64> {
+/// Distance between the lines of a spectrum in Hz.
+const LINE_SPACING: f64 = 0.0625;
+/// Mass in kg.
+const MASS: f64 = 0.2;
+
+/// Peak-amplitude line spectrum with a Hann window, up to 1/2.56 of the sampling rate.
+fn peak_spectrum(transform: &Transform, values: &[f64]) -> Vec<f64> {
     let n = values.len();
     let hann = |i: usize| 1.0 - (TAU * i as f64 / n as f64).cos();
     let windowed: Vec<f64> = values.iter().enumerate().map(|(i, v)| v * hann(i)).collect();
@@ -28,92 +35,157 @@ fn lines(transform: &Transform, values: &[f64]) -> Vec<f64> {
     lines
 }
 
-fn draw(mix: &mut Mix) -> Record {
-    let n = if mix.chance(0.5) { 512 } else { 1024 };
-    // The rate is that of lines 1/16 Hz apart.
-    let width = 0.0625;
-    let rate = width * n as f64;
-    let zeta = mix.log(0.005, 0.1);
-    mix.note("ζ", zeta);
-    let own = width * mix.log(12.0, 60.0);
-    mix.note("resonance in lines", own / width);
-    let reach = zeta * own * mix.log(1.0, 6.0);
-    let steps = mix.random.between(12.0, 31.0) as usize;
-    let mass = 0.2;
-    // Displacement over force.
-    let receptance = |f: f64| 1.0 / (mass * TAU * TAU * (own * own - f * f).hypot(2.0 * zeta * own * f));
-    let force = mix.log(0.1, 10.0);
-    let drift = mix.some(0.33, "drift in lines", 0.01, 0.2);
-    let modulation = mix.some(0.33, "modulation", 1e-3, 0.02);
-    let wave = mix.log(0.5, 20.0);
-    if modulation > 0.0 {
-        mix.note("modulation at lines", wave);
+/// Mean over a record of 1 + `modulation` cos(2πwu + `phase`) under a Hann window, with the place u in the
+/// record from 0 to 1 and w = `modulation_lines`.
+fn windowed_mean(modulation: f64, modulation_lines: f64, phase: f64) -> f64 {
+    let mean_cosine = |w: f64| ((TAU * w + phase).sin() - phase.sin()) / (TAU * w);
+    let w = modulation_lines;
+    // The window 1 − cos 2πu moves half of the cosine to w ± 1.
+    1.0 + modulation * (mean_cosine(w) - 0.5 * (mean_cosine(w + 1.0) + mean_cosine(w - 1.0)))
+}
+
+/// The oscillator and the excitation of one sweep, the same for all its steps.
+struct Setup {
+    /// Samples of a record.
+    samples: usize,
+    /// Undamped natural frequency in Hz.
+    natural_frequency: f64,
+    /// Damping ratio.
+    zeta: f64,
+    /// Amplitude of the force in N.
+    force: f64,
+    /// Change of the excitation frequency over a record, in lines; 0 for none.
+    drift: f64,
+    /// Relative amplitude modulation; 0 for none.
+    modulation: f64,
+    /// Frequency of the modulation in lines.
+    modulation_lines: f64,
+    /// Measuring chain of the response.
+    chain: Chain,
+}
+
+/// True values of a step: excitation frequency in Hz, amplitudes of force in N and of displacement in m.
+struct Truth {
+    excitation: f64,
+    force: f64,
+    amplitude: f64,
+}
+
+impl Setup {
+    /// Displacement over force in m/N at `f` Hz.
+    fn receptance(&self, f: f64) -> f64 {
+        let (natural, zeta) = (self.natural_frequency, self.zeta);
+        1.0 / (MASS * TAU * TAU * (natural * natural - f * f).hypot(2.0 * zeta * natural * f))
     }
-    let chain = mix.chain((1e-4, 0.01));
-    let largest =
-        (0..=100).map(|k| own + reach * (f64::from(k) / 50.0 - 1.0)).map(|f| TAU * f * receptance(f) * force);
-    let largest = largest.fold(0.0, f64::max);
-    let transform = Transform::new(n);
-    let (mut points, mut truths) = (Vec::new(), Vec::new());
-    for k in 0..steps {
-        let f = (own - reach + 2.0 * reach * k as f64 / (steps - 1) as f64).max(6.0 * width);
-        let (phase, lag, beat) =
+
+    /// Velocity amplitude in m/s at `f` Hz.
+    fn velocity(&self, f: f64) -> f64 {
+        TAU * f * self.receptance(f) * self.force
+    }
+
+    /// Draws the records of force and velocity at `f` Hz, and makes their spectra. The chain's noise, hum
+    /// and range are parts of `largest`, the largest velocity of the sweep in m/s.
+    fn step(&self, mix: &mut Mix, f: f64, number: usize, largest: f64) -> (SweepPoint, Truth) {
+        let n = self.samples;
+        let rate = LINE_SPACING * n as f64;
+        let (phase, response_phase, modulation_phase) =
             (mix.random.between(-PI, PI), mix.random.between(-PI, PI), mix.random.between(-PI, PI));
-        // Phase and size at the place u of the record, 0 to 1.
-        let turn = |u: f64| TAU * (f / width * u + 0.5 * drift * u * (u - 1.0)) + phase;
-        let size = |u: f64| 1.0 + modulation * (TAU * wave * u + beat).cos();
-        // The mean of a cosine of w waves, and that under the window.
-        let plain = |w: f64| ((TAU * w + beat).sin() - beat.sin()) / (TAU * w);
-        let mean = 1.0 + modulation * (plain(wave) - 0.5 * (plain(wave + 1.0) + plain(wave - 1.0)));
-        let place = |i: usize| i as f64 / n as f64;
-        let mut pressed: Vec<f64> = (0..n).map(|i| force * size(place(i)) * turn(place(i)).cos()).collect();
-        let speed = TAU * f * receptance(f) * force;
-        let mut moved: Vec<f64> =
-            (0..n).map(|i| speed * size(place(i)) * (turn(place(i)) + lag).cos()).collect();
-        chain.pass(mix, &mut moved, rate, largest);
-        mix.add_white(&mut pressed, 0.3 * chain.white * force);
-        let meta = trace("m/s", rate, Vec::new()).meta;
-        let values = Values::Real(lines(&transform, &moved));
-        let axis = Axis::frequency(0.0, width, values.len());
-        let spectrum = Spectrum {
-            meta,
-            axis,
+        // Phase and relative amplitude at the place u of the record, 0 to 1.
+        let phase_at = |u: f64| TAU * (f / LINE_SPACING * u + 0.5 * self.drift * u * (u - 1.0)) + phase;
+        let envelope =
+            |u: f64| 1.0 + self.modulation * (TAU * self.modulation_lines * u + modulation_phase).cos();
+        let record = |amplitude: f64, lag: f64| -> Vec<f64> {
+            let places = (0..n).map(|i| i as f64 / n as f64);
+            places.map(|u| amplitude * envelope(u) * (phase_at(u) + lag).cos()).collect()
+        };
+        let mut force_record = record(self.force, 0.0);
+        let mut velocity_record = record(self.velocity(f), response_phase);
+        self.chain.pass(mix, &mut velocity_record, rate, largest);
+        mix.add_white(&mut force_record, 0.3 * self.chain.white * self.force);
+        let transform = Transform::new(n);
+        let values = Values::Real(peak_spectrum(&transform, &velocity_record));
+        let response = Spectrum {
+            meta: trace("m/s", rate, Vec::new()).meta,
+            axis: Axis::frequency(0.0, LINE_SPACING, values.len()),
             values,
             scaling: Scaling::Peak,
             window: Some(Window::Hann),
             enbw: Some(1.5),
         };
-        points.push(SweepPoint {
+        let point = SweepPoint {
             force_path: None,
-            response_path: format!("{k}").into(),
-            force: Values::Real(lines(&transform, &pressed)),
+            response_path: format!("{number}").into(),
+            force: Values::Real(peak_spectrum(&transform, &force_record)),
             given: None,
-            response: spectrum,
-        });
-        truths.push((f, force * mean, receptance(f) * force * mean));
+            response,
+        };
+        let mean = windowed_mean(self.modulation, self.modulation_lines, modulation_phase);
+        let force = self.force * mean;
+        (point, Truth { excitation: f, force, amplitude: self.receptance(f) * self.force * mean })
     }
+}
+
+/// Draws a sweep: each step a sine with frequency drift and amplitude modulation, passed through the
+/// measuring chain; compares excitation, force, amplitude and resonance with the truth.
+fn draw(mix: &mut Mix) -> Record {
+    let samples = if mix.chance(0.5) { 512 } else { 1024 };
+    let zeta = mix.log(0.005, 0.1);
+    mix.note("ζ", zeta);
+    let natural_frequency = LINE_SPACING * mix.log(12.0, 60.0);
+    mix.note("resonance in lines", natural_frequency / LINE_SPACING);
+    // Frequency range on either side of the resonance in Hz.
+    let half_span = zeta * natural_frequency * mix.log(1.0, 6.0);
+    let steps = mix.random.between(12.0, 31.0) as usize;
+    let force = mix.log(0.1, 10.0);
+    let drift = mix.some(0.33, "drift in lines", 0.01, 0.2);
+    let modulation = mix.some(0.33, "modulation", 1e-3, 0.02);
+    let modulation_lines = mix.log(0.5, 20.0);
+    if modulation > 0.0 {
+        mix.note("modulation at lines", modulation_lines);
+    }
+    let chain = mix.chain((1e-4, 0.01));
+    let setup = Setup { samples, natural_frequency, zeta, force, drift, modulation, modulation_lines, chain };
+    let across = |k: i32| natural_frequency + half_span * (f64::from(k) / 50.0 - 1.0);
+    let largest = (0..=100).map(|k| setup.velocity(across(k))).fold(0.0, f64::max);
+    let frequency =
+        |k: usize| natural_frequency - half_span + 2.0 * half_span * k as f64 / (steps - 1) as f64;
+    // The lowest excitation frequency of a step: six lines.
+    let lowest = 6.0 * LINE_SPACING;
+    let (points, truths): (Vec<SweepPoint>, Vec<Truth>) =
+        (0..steps).map(|k| setup.step(mix, frequency(k).max(lowest), k, largest)).unzip();
     let axis = points[0].response.axis.clone();
     let (name, direction) = ("sweep".into(), Some(Direction::Up));
     let sweep =
         Sweep { name, direction, mass: Some(1), axis, analyser_integrated: 0, points, findings: Vec::new() };
     let found = response(&sweep, &ResponseOptions::default()).ok();
+    sweep_answers(&setup, truths, found.as_ref())
+}
+
+/// The answers for every step, and for the resonance nearest to the true one.
+fn sweep_answers(setup: &Setup, truths: Vec<Truth>, found: Option<&Response>) -> Record {
     let mut record = Record::default();
-    for (k, (f, force, amplitude)) in truths.into_iter().enumerate() {
-        let point = found.as_ref().map(|r| &r.points[k]);
-        record.answers.push(Answer::of("excitation", f, point.map(|p| (p.excitation, p.excitation_std))));
-        record.answers.push(Answer::of("force", force, point.and_then(|p| Some((p.force?, p.force_std)))));
-        let amplitudes = point.filter(|p| p.upper_limit.is_none()).map(|p| &p.amplitude);
-        record.answers.push(Answer::new("amplitude", amplitude, amplitudes));
+    for (k, truth) in truths.into_iter().enumerate() {
+        let point = found.map(|r| &r.points[k]);
+        let excitation = point.map(|p| (p.excitation, p.excitation_std));
+        record.answers.push(Answer::of("excitation", truth.excitation, excitation));
+        let force = point.and_then(|p| Some((p.force?, p.force_std)));
+        record.answers.push(Answer::of("force", truth.force, force));
+        let amplitude = point.filter(|p| p.upper_limit.is_none()).map(|p| &p.amplitude);
+        record.answers.push(Answer::new("amplitude", truth.amplitude, amplitude));
     }
-    // The displacement is largest below the undamped frequency.
-    let top = own * (1.0 - 2.0 * zeta * zeta).sqrt();
+    // The displacement is largest below the undamped natural frequency.
+    let resonance = setup.natural_frequency * (1.0 - 2.0 * setup.zeta * setup.zeta).sqrt();
+    let distance = |f: f64| (f - resonance).abs();
     let resonances = found.iter().flat_map(|r| &r.resonances);
-    let nearest = resonances.min_by(|a, b| (a.frequency - top).abs().total_cmp(&(b.frequency - top).abs()));
-    record.answers.push(Answer::of("resonance", top, nearest.map(|r| (r.frequency, r.frequency_std))));
-    // The steps of a force that changes at random lie on no curve.
-    if modulation == 0.0 {
-        let found = nearest.map(|r| (r.amplitude, r.amplitude_std));
-        record.answers.push(Answer::of("height of resonance", receptance(top) * force, found));
+    let nearest = resonances.min_by(|a, b| distance(a.frequency).total_cmp(&distance(b.frequency)));
+    let frequency = nearest.map(|r| (r.frequency, r.frequency_std));
+    record.answers.push(Answer::of("resonance", resonance, frequency));
+    // With modulation each step has its own mean force, so the steps do not lie on one resonance curve and
+    // no height is asked.
+    if setup.modulation == 0.0 {
+        let height = nearest.map(|r| (r.amplitude, r.amplitude_std));
+        let truth = setup.receptance(resonance) * setup.force;
+        record.answers.push(Answer::of("height of resonance", truth, height));
     }
     record
 }

@@ -114,7 +114,7 @@ pub(crate) fn unwritten(error: serde_json::Error) -> Error {
     Error::refused(format!("the result cannot be written as JSON: {error}"))
 }
 
-/// Finding under this code that a record gave no answer, with the reason.
+/// Finding that a record gave no answer, under this code, with the reason and the hint of the error.
 pub fn left_out(code: &'static str, error: &Error) -> Finding {
     let found = Finding::caution(code).name("why", error.why().trim_end_matches('.'));
     let found = error.code().into_iter().fold(found, |found, code| found.name("refusal", code));

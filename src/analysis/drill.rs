@@ -111,8 +111,8 @@ fn needed<T>(key: &'static str, value: Option<T>) -> Result<T> {
 
 /// Error that these keys are missing; the channels of the file are listed to choose from.
 fn missing(keys: &[&'static str], channels: &[Header]) -> Error {
-    let one = |(i, header): (usize, &Header)| format!("{} {} [{}]", i + 1, header.name, header.unit);
-    let list = channels.iter().enumerate().map(one).collect::<Vec<_>>().join(", ");
+    let described = |(i, header): (usize, &Header)| format!("{} {} [{}]", i + 1, header.name, header.unit);
+    let list = channels.iter().enumerate().map(described).collect::<Vec<_>>().join(", ");
     let velocity = channels.iter().position(|header| header.quantity == "velocity").unwrap_or(0);
     let what = |key| if key == "velocity" && !channels.is_empty() { &list } else { expected(key).0 };
     let value = |key| match key {
@@ -145,15 +145,16 @@ impl Keys {
     fn complete(&self, channels: &[Header]) -> Result<()> {
         let (pulses, edge) = (self.pulses_per_turn.is_some(), self.edge.is_some());
         let reference = self.reference.is_some();
-        let wanted =
+        // Whether the keys of a reference are required.
+        let needs_reference =
             reference || pulses || edge || self.level.is_some() || self.delay.is_some() || channels.len() > 1;
         let stated = [
             ("velocity", self.velocity.is_some()),
-            ("reference", reference || !wanted),
+            ("reference", reference || !needs_reference),
             ("beam_angle", self.beam_angle.is_some()),
             ("beam_from", self.beam_from.is_some()),
-            ("pulses_per_turn", pulses || !wanted),
-            ("edge", edge || !wanted),
+            ("pulses_per_turn", pulses || !needs_reference),
+            ("edge", edge || !needs_reference),
         ];
         let keys: Vec<&'static str> = stated.iter().filter(|(_, stated)| !stated).map(|row| row.0).collect();
         if keys.is_empty() { Ok(()) } else { Err(missing(&keys, channels)) }
@@ -177,7 +178,7 @@ impl Keys {
     /// that is a velocity.
     fn options(&self, beam: Beam) -> Result<DrillOptions> {
         let sensitivity = self.sensitivity.unwrap_or(1.0);
-        let plain = if self.reference.is_some() {
+        let defaults = if self.reference.is_some() {
             let pulses = needed("pulses_per_turn", self.pulses_per_turn)?;
             DrillOptions::new(sensitivity, beam, pulses, needed("edge", self.edge)?)
         } else {
@@ -187,11 +188,11 @@ impl Keys {
             level: self.level,
             mass: self.mass,
             struck_mass: self.struck_mass,
-            contact: self.contact.unwrap_or(plain.contact),
-            fit: self.fit_duration.unwrap_or(plain.fit),
-            longest_dropout: self.longest_dropout.unwrap_or(plain.longest_dropout),
-            delay: self.delay.unwrap_or(plain.delay),
-            points: self.points.unwrap_or(plain.points),
+            contact: self.contact.unwrap_or(defaults.contact),
+            fit: self.fit_duration.unwrap_or(defaults.fit),
+            longest_dropout: self.longest_dropout.unwrap_or(defaults.longest_dropout),
+            delay: self.delay.unwrap_or(defaults.delay),
+            points: self.points.unwrap_or(defaults.points),
             smoothing: match (self.low_pass, self.smoothing) {
                 (Some(LowPass::Off), _) => Smoothing::Off,
                 (Some(LowPass::Corner(corner)), _) => Smoothing::LowPass(corner),
@@ -199,9 +200,9 @@ impl Keys {
                 (None, None) => Smoothing::default(),
             },
             instrument: self.instrument,
-            margin: self.margin.unwrap_or(plain.margin),
+            margin: self.margin.unwrap_or(defaults.margin),
             hours: self.exposure,
-            ..plain
+            ..defaults
         })
     }
 
@@ -227,7 +228,8 @@ impl Keys {
         let velocity = needed("velocity", self.velocity.as_deref())?;
         let mut names = vec![velocity];
         names.extend(self.reference.as_deref());
-        let own = names.len();
+        // Channels from here on are those of the handle.
+        let first_handle = names.len();
         names.extend(self.handle.iter().map(String::as_str));
         let mut channels = Channels::read(source.reader()?, source.path, &names, source.progress)?;
         if !channels.is(0, Quantity::Velocity) {
@@ -236,23 +238,23 @@ impl Keys {
             let found = Finding::doubt("drill-velocity-scaled-twice");
             channels.findings.push(found.number("sensitivity", options.sensitivity));
         }
-        if (own..names.len()).any(|channel| !channels.is(channel, Quantity::Acceleration)) {
+        if (first_handle..names.len()).any(|channel| !channels.is(channel, Quantity::Acceleration)) {
             needed("handle_sensitivity", self.handle_sensitivity)?;
         }
-        channels.scale(own, self.handle_sensitivity.unwrap_or(1.0));
-        let still = source.further("noise_record", self.noise_record.as_ref())?;
-        let still =
-            still.map(|path| Channels::read(source.reader()?, &path, &[velocity], &())).transpose()?;
-        if let Some(rate) = still.as_ref().map(|s| s.rate).filter(|r| (r / channels.rate - 1.0).abs() > 1e-9)
+        channels.scale(first_handle, self.handle_sensitivity.unwrap_or(1.0));
+        let noise = source.further("noise_record", self.noise_record.as_ref())?;
+        let noise =
+            noise.map(|path| Channels::read(source.reader()?, &path, &[velocity], &())).transpose()?;
+        if let Some(rate) = noise.as_ref().map(|s| s.rate).filter(|r| (r / channels.rate - 1.0).abs() > 1e-9)
         {
             let why = format!("the noise was sampled at {rate} Hz, the motion at {} Hz", channels.rate);
             return Err(Error::refused(why).setting("noise_record"));
         }
-        let still = still.and_then(|s| s.values.into_iter().next());
+        let noise = noise.and_then(|s| s.values.into_iter().next());
         let record =
             Slices { rate: channels.rate, channels: channels.values.iter().map(Vec::as_slice).collect() };
         let options = DrillOptions { clock: channels.clock(), ..options };
-        let mut found = drill_each(&record, &options, still.as_deref(), each)?;
+        let mut found = drill_each(&record, &options, noise.as_deref(), each)?;
         found.findings.splice(..0, channels.findings);
         let mut answer = Answer::of(&found)?;
         answer.add("", &found.findings);
@@ -288,8 +290,8 @@ impl Analysis for Keys {
 
     fn channels(&self) -> Vec<(&'static str, &String)> {
         let handles = self.handle.iter().map(|name| ("handle", name));
-        let one = [("velocity", &self.velocity), ("reference", &self.reference)];
-        one.into_iter().filter_map(|(key, name)| Some((key, name.as_ref()?))).chain(handles).collect()
+        let others = [("velocity", &self.velocity), ("reference", &self.reference)];
+        others.into_iter().filter_map(|(key, name)| Some((key, name.as_ref()?))).chain(handles).collect()
     }
 
     fn beside(&self) -> Option<(&'static str, &PathBuf)> {

@@ -152,7 +152,9 @@ impl Keys {
 
 /// Drops of one name, evaluated together.
 pub struct Series {
+    /// Height and first intervals.
     drop: Drop,
+    /// Bounces of each drop.
     trains: Vec<Train>,
     velocities: Option<Velocities>,
     contact_time: Option<f64>,
@@ -204,13 +206,13 @@ impl Series {
         let file = file_name(source.path);
         let recording = source.recording()?;
         let trace = source.trace(&recording)?;
-        let how = ImpactsOptions {
+        let options = ImpactsOptions {
             threshold: Some(keys.threshold.unwrap_or(Train::THRESHOLD)),
             refractory: keys.refractory,
             keep_hum: keys.keep_hum,
             ..ImpactsOptions::default()
         };
-        let (train, found) = Train::of(&trace, &how, self.drop.full_flight())?;
+        let (train, found) = Train::of(&trace, &options, self.drop.full_flight())?;
         if let Some(first) = train.intervals.first() {
             self.drop.possible(*first, "the first interval")?;
         }
@@ -239,6 +241,7 @@ impl Series {
         Ok(())
     }
 
+    /// Whether no drop has given numbers.
     fn is_empty(&self) -> bool {
         self.drop.intervals.is_empty() && self.trains.is_empty() && self.velocities.is_none()
     }
@@ -255,8 +258,8 @@ impl Series {
         }
         let files = self.records.len();
         let drop = self.drop.beginning(&self.trains);
-        let fell = drop.height.is_finite() && !drop.intervals.is_empty();
-        let drop = fell.then_some(drop);
+        let has_fall = drop.height.is_finite() && !drop.intervals.is_empty();
+        let drop = has_fall.then_some(drop);
         let (trains, velocities, contact_time) = (self.trains, self.velocities, self.contact_time);
         let found = restitution(&Measured { drop, trains, velocities, contact_time })?;
         let mut answer = Answer::of(&found)?;
@@ -280,7 +283,7 @@ impl Series {
         answer.table("restitution", by_method(name, &found));
         let columns: [Shown<Restitution>; 3] = [
             ("series", "", &|_| name.into()),
-            ("methods", "", &|r| together(r).into()),
+            ("methods", "", &|r| agreement(r).into()),
             ("std of R by bootstrap", "", &|r| r.bootstrap_std.map(|std| significant(std, 2)).into()),
         ];
         if found.by.len() > 1 || found.bootstrap_std.is_some() {
@@ -291,7 +294,7 @@ impl Series {
 }
 
 /// Whether the methods agree, in words.
-fn together(found: &Restitution) -> &'static str {
+fn agreement(found: &Restitution) -> &'static str {
     match found.agree {
         _ if found.by.len() < 2 => "one method",
         Some(true) => "agree",
@@ -333,9 +336,10 @@ impl Analysis for Keys {
             )
             .setting(key));
         }
-        let same = |e: &Entry<Keys>| (&e.file, &e.channel.channel) == (&entry.file, &entry.channel.channel);
+        let same_record =
+            |e: &Entry<Keys>| (&e.file, &e.channel.channel) == (&entry.file, &entry.channel.channel);
         if let Some(file) = &entry.file
-            && series.clone().any(same)
+            && series.clone().any(same_record)
         {
             let found = format!("{} is in the series {name:?} twice", shown(file));
             return Err(Error::usage(found, "each record once").setting("file"));

@@ -11,9 +11,9 @@ use std::path::PathBuf;
 
 /// The tables of a kind of record with the errors in them. A table with a pattern gives one table for each
 /// matching file.
-fn written<A: Analysis>(campaign: &Campaign) -> Result<Vec<(Entry<A>, Result<()>)>> {
+fn expanded<A: Analysis>(campaign: &Campaign) -> Result<Vec<(Entry<A>, Result<()>)>> {
     let folder = campaign.within();
-    let each = |(entry, checked): (Entry<A>, Result<()>)| {
+    let expand = |(entry, checked): (Entry<A>, Result<()>)| {
         let pattern = entry.file.clone().filter(|file| checked.is_ok() && is_pattern(folder, file));
         let Some(pattern) = pattern else { return vec![(entry, checked)] };
         let files = match matching(folder, &pattern) {
@@ -23,18 +23,18 @@ fn written<A: Analysis>(campaign: &Campaign) -> Result<Vec<(Entry<A>, Result<()>
                 return vec![(entry, Err(error))];
             }
         };
-        let one = |file: PathBuf| {
-            let own = |name: &String| {
+        let entry_of_file = |file: PathBuf| {
+            let entry_name = |name: &String| {
                 if A::TOGETHER { name.clone() } else { format!("{name}, {}", shown(&file)) }
             };
             let mut one = entry.clone();
-            one.name = entry.name.as_ref().map(own);
+            one.name = entry.name.as_ref().map(entry_name);
             one.file = Some(file);
             (one, Ok(()))
         };
-        files.into_iter().map(one).collect()
+        files.into_iter().map(entry_of_file).collect()
     };
-    Ok(campaign.entries(A::SECTION, A::OF_FILES)?.into_iter().flat_map(each).collect())
+    Ok(campaign.entries(A::SECTION, A::OF_FILES)?.into_iter().flat_map(expand).collect())
 }
 
 /// The tables of a kind of record without faults. A table with a pattern gives one table for each matching
@@ -44,7 +44,7 @@ fn written<A: Analysis>(campaign: &Campaign) -> Result<Vec<(Entry<A>, Result<()>
 /// As [`Campaign::entries`].
 pub(crate) fn entries<A: Analysis>(campaign: &Campaign) -> Result<Vec<Entry<A>>> {
     let faults: BTreeSet<_> = campaign.faults().iter().map(|fault| &fault.place).collect();
-    let all = written::<A>(campaign)?.into_iter().map(|(entry, _)| entry);
+    let all = expanded::<A>(campaign)?.into_iter().map(|(entry, _)| entry);
     Ok(all.filter(|entry| !faults.contains(&entry.place())).collect())
 }
 
@@ -63,11 +63,11 @@ pub(crate) fn all_entries<A: Analysis>(campaign: &Campaign) -> Result<Vec<Entry<
 /// As [`Campaign::entries`].
 pub(crate) fn check<A: Analysis>(campaign: &Campaign) -> Result<Vec<Fault>> {
     let (mut usable, mut faults): (Vec<Entry<A>>, Vec<Fault>) = (Vec::new(), Vec::new());
-    for (entry, checked) in written::<A>(campaign)? {
-        let reads = entry.reads().filter(|_| A::OF_FILES && entry.file.is_none());
+    for (entry, checked) in expanded::<A>(campaign)? {
+        let reading_key = entry.reads().filter(|_| A::OF_FILES && entry.file.is_none());
         let without =
             |key| Error::usage(format!("{key} without a file"), "file, too, or leave it out").setting(key);
-        let checked = checked.and_then(|()| match reads {
+        let checked = checked.and_then(|()| match reading_key {
             Some(key) => Err(campaign.fault(&entry, without(key))),
             None => (entry.reading.reader().and_then(|_| A::check(&entry, &usable)))
                 .map_err(|e| campaign.fault(&entry, e)),

@@ -5,7 +5,7 @@ use crate::report::layout::{Shown, table};
 use crate::report::{Cell, Table};
 
 /// Largest number of rows of a headline.
-const ROWS: usize = 10;
+const MOST_ROWS: usize = 10;
 
 /// Name of the last column.
 const REMARK: &str = "remark";
@@ -22,11 +22,12 @@ pub fn remarked<T>(
     columns: &[Shown<'_, T>],
     remark: &dyn Fn(&T) -> &'static str,
 ) -> Table {
-    let of = |item: &T| Cell::from(remark(item));
-    table(title, items, &[columns, &[(REMARK, "", &of)]].concat())
+    let remark_of = |item: &T| Cell::from(remark(item));
+    table(title, items, &[columns, &[(REMARK, "", &remark_of)]].concat())
 }
 
-/// The headline of a record of this name; it points to the doubt, if there is one.
+/// The headline with the name of its record as first column. If a finding is a doubt, the remark of each
+/// row points to it.
 pub fn of_record<'a>(
     mut headline: Table,
     name: &str,
@@ -49,8 +50,8 @@ pub fn of_record<'a>(
 pub fn shortened(headlines: &[Table]) -> Vec<Table> {
     let short = |table: &Table| {
         let mut table = table.clone();
-        let more = table.rows.len().saturating_sub(ROWS);
-        table.rows.truncate(ROWS);
+        let more = table.rows.len().saturating_sub(MOST_ROWS);
+        table.rows.truncate(MOST_ROWS);
         if more == 0 { table } else { table.note(format!("{more} more below.")) }
     };
     headlines.iter().filter(|table| !table.rows.is_empty()).map(short).collect()

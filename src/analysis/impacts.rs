@@ -19,9 +19,9 @@ use crate::units::notation::quantity;
 use serde::Deserialize;
 use std::path::PathBuf;
 
-/// Memory for the search, as a multiple of the trace: with ten million samples 3.6 traces were measured in
-/// all.
-const BESIDE: f64 = 3.0;
+/// Memory for the search beside the trace, as a multiple of it. With ten million samples, trace and search
+/// together took 3.6 times the trace.
+const SEARCH_MEMORY: f64 = 3.0;
 
 /// How impacts are found, and what is known of them.
 #[derive(Debug, Clone, Default, Deserialize)]
@@ -72,7 +72,7 @@ impl Keys {
     /// If the file cannot be read, or its trace allows no answer.
     pub fn measure(&self, source: &Source<'_>) -> Result<Answer> {
         self.usable()?;
-        let mut recording = source.channels(self.reference.as_ref(), BESIDE)?;
+        let mut recording = source.channels(self.reference.as_ref(), SEARCH_MEMORY)?;
         let reference = self.reference.as_ref().map(|channel| recording.trace(Some(channel), None));
         let reference = reference.transpose()?;
         let trace = recording.take_trace(source.channel.channel.as_deref(), source.channel.calibration)?;
@@ -139,20 +139,23 @@ fn summary(name: &str, found: &Impacts) -> Table {
     )
 }
 
+/// Impacts per excitation cycles, such as `2/1`.
 fn per_cycle(found: &Impacts) -> Cell {
     found.per_cycle.map(|p| format!("{}/{}", p.impacts, p.cycles)).into()
 }
 
 /// How the impacts repeat, in words.
 fn rhythm(found: &Impacts) -> String {
-    let unlike = found.pattern.filter(|_| found.missed + found.doubled == 0);
+    // Length of the pattern of unequal intervals, if no impact is missed or double.
+    let pattern = found.pattern.filter(|_| found.missed + found.doubled == 0);
     let even = found.pattern.is_some() || found.spread.is_some_and(|s| s < REGULAR * found.median_interval);
-    match (found.regular, unlike) {
+    match (found.regular, pattern) {
         (true, Some(length)) => {
             let steps: Vec<f64> = found.times.windows(2).map(|w| w[1] - w[0]).collect();
-            let of = |place| median(steps.iter().skip(place).step_by(length));
-            let each: Vec<String> = (0..length).map(|place| quantity(of(place), "s", 3)).collect();
-            format!("regular, intervals in turn {}", each.join(", "))
+            let median_step = |place| median(steps.iter().skip(place).step_by(length));
+            let intervals: Vec<String> =
+                (0..length).map(|place| quantity(median_step(place), "s", 3)).collect();
+            format!("regular, intervals in turn {}", intervals.join(", "))
         }
         (true, None) => "regular".to_owned(),
         _ if found.n == 2 => "unknown (2 impacts)".to_owned(),

@@ -9,8 +9,8 @@ use rayon::prelude::*;
 use sha2::{Digest as _, Sha256};
 use std::path::{Path, PathBuf};
 
-/// A line for the program, the campaign and `all` of its recordings, as `sha256sum` writes them; names are
-/// relative to the folder of the campaign.
+/// Digests of the program, the campaign and `all` of its recordings, one a line as `sha256sum` writes them;
+/// names are relative to the folder of the campaign.
 pub fn inputs(campaign: &Campaign, mut all: Vec<PathBuf>, kept: &AnswerCache) -> String {
     for path in &mut all {
         *path = campaign.within().file(path).to_owned();
@@ -19,9 +19,9 @@ pub fn inputs(campaign: &Campaign, mut all: Vec<PathBuf>, kept: &AnswerCache) ->
     all.dedup();
     // The reader reports what is wrong with a folder or a pipe.
     all.retain(|path| campaign.within().is_file(path));
-    let own = listed(&Sha256::digest(campaign.text()).into(), &file_name(campaign.path()));
+    let campaign_line = listed(&Sha256::digest(campaign.text()).into(), &file_name(campaign.path()));
     // A proposed campaign is no file that could be checked: its line is a comment.
-    let own = if campaign.is_file() { own } else { format!("# {own}") };
+    let campaign_line = if campaign.is_file() { campaign_line } else { format!("# {campaign_line}") };
     let program = listed(&kept.program().unwrap_or_default(), concat!("vibro ", env!("CARGO_PKG_VERSION")));
     let of_file = |path: &Path| {
         let name = path.strip_prefix(campaign.folder()).unwrap_or(path);
@@ -30,5 +30,5 @@ pub fn inputs(campaign: &Campaign, mut all: Vec<PathBuf>, kept: &AnswerCache) ->
         kept.file(path).map_or_else(unread, |digest| listed(&digest, &name.to_string_lossy()))
     };
     let lines: Vec<String> = all.par_iter().map(|path| of_file(path)).collect();
-    format!("# {program}{own}{}", lines.concat())
+    format!("# {program}{campaign_line}{}", lines.concat())
 }

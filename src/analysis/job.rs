@@ -39,6 +39,7 @@ pub struct Job<'a> {
 }
 
 impl<'a> Job<'a> {
+    /// A run without answers yet.
     pub(super) fn new(
         campaign: &'a Campaign,
         kept: &'a AnswerCache,
@@ -56,6 +57,7 @@ impl<'a> Job<'a> {
         found.map_err(|error| self.leave_out(record, error)).ok()
     }
 
+    /// Adds a finding that a record is left out, and keeps the first error that is no refusal.
     fn leave_out(&mut self, record: &str, error: Error) {
         self.found.add(record, [left_out("left-out", &error)]);
         if error.refusal().is_none() {
@@ -108,7 +110,7 @@ impl<'a> Job<'a> {
         let of_record = |headline| of_record(headline, name, findings.iter().map(|(_, finding)| finding));
         let headlines = headlines.into_iter().map(of_record).collect();
         put(&mut result, &findings, Voice::Campaign);
-        let about =
+        let with_record =
             |(record, finding): About| (if record.is_empty() { name.to_owned() } else { record }, finding);
         let marked = |name: String| match name.rsplit_once('.') {
             _ if mark.is_empty() => name,
@@ -116,7 +118,7 @@ impl<'a> Job<'a> {
             None => format!("{name}_{mark}"),
         };
         self.found.append(Answer {
-            findings: findings.into_iter().map(about).collect(),
+            findings: findings.into_iter().map(with_record).collect(),
             headlines,
             tables,
             histories,
@@ -139,17 +141,17 @@ impl<'a> Job<'a> {
         section: &str,
         measure: impl FnOnce(&mut Job<'_>) -> Result<()>,
     ) -> Result<()> {
-        let (on, files) = self.rests_on(&[section])?;
-        let answered = self.kept.or_make(on, &files, || {
-            let mut own = Job::new(self.campaign, self.kept, self.kinds, self.progress);
-            measure(&mut own)?;
-            match own.failed {
-                Some(error) if own.answers == 0 => Err(error),
-                _ => Ok((own.found, own.answers)),
+        let (inputs, files) = self.inputs_of(&[section])?;
+        let answered = self.kept.or_make(inputs, &files, || {
+            let mut job = Job::new(self.campaign, self.kept, self.kinds, self.progress);
+            measure(&mut job)?;
+            match job.failed {
+                Some(error) if job.answers == 0 => Err(error),
+                _ => Ok((job.found, job.answers)),
             }
         });
         let Some((all, answers)) = self.found(section, answered) else { return Ok(()) };
-        if self.kept.is_old(&on) {
+        if self.kept.is_old(&inputs) {
             self.again += answers;
         }
         self.found.append(all);
@@ -159,7 +161,7 @@ impl<'a> Job<'a> {
 
     /// Digest of all inputs of these sections, and their files. Inputs are the files and all tables of the
     /// campaign except those of other records.
-    fn rests_on(&self, sections: &[&str]) -> Result<(Digest, Vec<PathBuf>)> {
+    fn inputs_of(&self, sections: &[&str]) -> Result<(Digest, Vec<PathBuf>)> {
         let (these, others): (Vec<&AnalysisKind>, Vec<&AnalysisKind>) =
             self.kinds.iter().partition(|kind| sections.contains(&kind.section));
         let files: Result<Vec<_>> = these.iter().map(|kind| (kind.files)(self.campaign)).collect();
@@ -196,13 +198,13 @@ impl<'a> Job<'a> {
             let Some(mut files) = self.found(&name, K::files(self.campaign, entry)) else { continue };
             // A table of numbers alone has no file.
             let path = files.first().filter(|_| entry.file.is_some()).cloned().unwrap_or_default();
-            let own = [K::SECTION.to_owned(), name.clone(), self.campaign.stated_in(entry)];
-            let mut on = self.digest(own, &files);
+            let table = [K::SECTION.to_owned(), name.clone(), self.campaign.stated_in(entry)];
+            let mut inputs = self.digest(table, &files);
             if entry.file.is_none() && !K::RESTS_ON.is_empty() {
-                let (others, beside) = self.rests_on(K::RESTS_ON)?;
-                (on, files) = (digest([on, others]), beside);
+                let (others, other_files) = self.inputs_of(K::RESTS_ON)?;
+                (inputs, files) = (digest([inputs, others]), other_files);
             }
-            let found = self.kept.or_make(on, &files, || {
+            let found = self.kept.or_make(inputs, &files, || {
                 match self.measured(entry, &name, &path, |source| measure(entry, source)) {
                     Err(error) if error.refusal().is_some() => Ok(Err(left_out("left-out", &error))),
                     found => found.map(Ok),
@@ -216,7 +218,7 @@ impl<'a> Job<'a> {
                 }
                 None => Vec::new(),
             };
-            if self.kept.is_old(&on) {
+            if self.kept.is_old(&inputs) {
                 self.again += found.len();
             }
             for answer in found {

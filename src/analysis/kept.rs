@@ -1,5 +1,5 @@
-//! Answers and pictures kept for the next run. Only those are computed again whose keys, files or program
-//! changed.
+//! Cache of answers and pictures for the next run. They are computed again only where their keys, their
+//! files or the program changed.
 
 use crate::error::Result;
 use crate::read::{Digest, Folder};
@@ -19,18 +19,19 @@ type Stamp = Option<(u64, SystemTime)>;
 /// Answers and pictures by a digest of all their inputs.
 #[derive(Debug, Default)]
 pub struct AnswerCache {
-    /// Access to files.
+    /// Folder through which the files are read.
     folder: Folder,
     /// Answers of the last run.
     old: BTreeMap<Digest, Vec<u8>>,
     /// Answers of this run.
     now: Mutex<BTreeMap<Digest, Vec<u8>>>,
-    /// Digests of files, with size and time from before they were read for it.
+    /// Digests of files, with the size and time that the file had before it was hashed, to notice later
+    /// changes.
     files: Mutex<BTreeMap<PathBuf, (Digest, Stamp)>>,
 }
 
 impl AnswerCache {
-    /// The file of a folder of results in which they are kept.
+    /// Name of the file of a folder of results in which the cache is kept.
     pub const FILE: &str = Output::KEPT;
 
     /// A cache without an earlier run.
@@ -52,34 +53,34 @@ impl AnswerCache {
     }
 
     /// Whether the last run kept an answer for these inputs.
-    pub fn is_old(&self, on: &Digest) -> bool {
-        self.old.contains_key(on)
+    pub fn is_old(&self, inputs: &Digest) -> bool {
+        self.old.contains_key(inputs)
     }
 
-    /// The kept answer for the inputs `on`, else the one that `make` computes. That is kept unless one of
-    /// the files changed meanwhile.
+    /// The kept answer for the digest `inputs`, else the one that `make` computes. The computed one is kept
+    /// unless one of the files changed since it was hashed.
     ///
     /// # Errors
     /// Those of `make`; they are not kept.
-    pub fn or_make<T>(&self, on: Digest, files: &[PathBuf], make: impl FnOnce() -> Result<T>) -> Result<T>
+    pub fn or_make<T>(&self, inputs: Digest, files: &[PathBuf], make: impl FnOnce() -> Result<T>) -> Result<T>
     where
         T: Serialize + DeserializeOwned,
     {
-        let known = locked(&self.now).get(&on).or_else(|| self.old.get(&on)).cloned();
-        let known = known.and_then(|bytes| Some((rmp_serde::from_slice(&bytes).ok()?, bytes)));
-        if let Some((found, bytes)) = known {
-            locked(&self.now).insert(on, bytes);
+        let kept = locked(&self.now).get(&inputs).or_else(|| self.old.get(&inputs)).cloned();
+        let kept = kept.and_then(|bytes| Some((rmp_serde::from_slice(&bytes).ok()?, bytes)));
+        if let Some((found, bytes)) = kept {
+            locked(&self.now).insert(inputs, bytes);
             return Ok(found);
         }
         let made = make()?;
-        let known = |path: &PathBuf| locked(&self.files).get(path).map(|(_, before)| *before);
-        if files.iter().all(|path| known(path) == Some(self.folder.stamp(path))) {
-            locked(&self.now).extend(packed(&made).map(|bytes| (on, bytes)));
+        let hashed_stamp = |path: &PathBuf| locked(&self.files).get(path).map(|(_, stamp)| *stamp);
+        if files.iter().all(|path| hashed_stamp(path) == Some(self.folder.stamp(path))) {
+            locked(&self.now).extend(packed(&made).map(|bytes| (inputs, bytes)));
         }
         Ok(made)
     }
 
-    /// Content of the file for the next run.
+    /// Content of the file of the cache: a digest, then the program and the answers of this run.
     pub fn bytes(&self) -> Vec<u8> {
         let rest = packed(&(self.program(), &*locked(&self.now))).unwrap_or_default();
         [&digest([&rest])[..], &rest].concat()
@@ -90,19 +91,19 @@ impl AnswerCache {
     /// # Errors
     /// If the file cannot be read.
     pub fn file(&self, path: &Path) -> Result<Digest> {
-        if let Some(known) = locked(&self.files).get(path) {
-            return Ok(known.0);
+        if let Some((digest, _)) = locked(&self.files).get(path) {
+            return Ok(*digest);
         }
-        let before = self.folder.stamp(path);
+        let stamp = self.folder.stamp(path);
         let digest = self.folder.digest(path)?;
-        locked(&self.files).insert(path.to_owned(), (digest, before));
+        locked(&self.files).insert(path.to_owned(), (digest, stamp));
         Ok(digest)
     }
 
     /// The digest of the running program.
     pub fn program(&self) -> Option<Digest> {
-        static OWN: OnceLock<Option<Digest>> = OnceLock::new();
-        *OWN.get_or_init(|| Folder::default().digest(&std::env::current_exe().ok()?).ok())
+        static PROGRAM: OnceLock<Option<Digest>> = OnceLock::new();
+        *PROGRAM.get_or_init(|| Folder::default().digest(&std::env::current_exe().ok()?).ok())
     }
 }
 
@@ -123,6 +124,7 @@ pub fn packed(value: &impl Serialize) -> Option<Vec<u8>> {
     value.serialize(&mut packer).ok().map(|()| bytes)
 }
 
+/// The content of a mutex. One that another thread left by a panic is used as it is.
 fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }

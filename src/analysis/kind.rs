@@ -96,8 +96,8 @@ pub(crate) struct AnalysisKind {
 
 /// The file of a table, and other files that it names.
 pub(super) fn named_in<A: Analysis>(campaign: &Campaign, entry: &Entry<A>) -> Result<Vec<PathBuf>> {
-    let own = entry.file.as_ref().map(|file| ("file", file));
-    let all = own.into_iter().chain(entry.keys.beside());
+    let record = entry.file.as_ref().map(|file| ("file", file));
+    let all = record.into_iter().chain(entry.keys.beside());
     all.map(|(key, file)| campaign.file(entry, key, file)).collect()
 }
 

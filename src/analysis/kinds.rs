@@ -57,6 +57,7 @@ pub fn parse(within: &Folder, path: &Path, text: String) -> Result<Campaign> {
     checked(Campaign::parse(within, path, text, &sections().collect::<Vec<_>>())?)
 }
 
+/// The campaign without the tables that have impossible values.
 fn checked(campaign: Campaign) -> Result<Campaign> {
     let faults = faults(&campaign)?;
     Ok(campaign.without(faults))
@@ -105,6 +106,7 @@ const fn row<A: Analysis>() -> AnalysisKind {
     }
 }
 
+/// Errors about the channels that the tables of a kind name.
 fn channels_of<A: Analysis>(campaign: &Campaign) -> Result<Vec<Error>> {
     Ok(entries::<A>(campaign)?.iter().filter_map(|entry| channels_in(campaign, entry).err()).collect())
 }
@@ -132,12 +134,14 @@ fn channels_in<A: Analysis>(campaign: &Campaign, entry: &Entry<A>) -> Result<()>
     })
 }
 
+/// The recordings that the tables of a kind name.
 fn files_of<A: Analysis>(campaign: &Campaign) -> Result<Vec<PathBuf>> {
     // A table with missing files reports that itself.
     let files = entries::<A>(campaign)?.into_iter().filter_map(|entry| A::files(campaign, &entry).ok());
     Ok(files.flatten().collect())
 }
 
+/// The files that the tables of a kind name, each with what is stated of its record.
 fn records_of<A: Analysis>(campaign: &Campaign) -> Result<Vec<NamedFile>> {
     let mut all = Vec::new();
     for entry in &entries::<A>(campaign)? {
@@ -146,8 +150,8 @@ fn records_of<A: Analysis>(campaign: &Campaign) -> Result<Vec<NamedFile>> {
             None if A::OF_FILES => Vec::new(),
             None => A::measured(campaign, entry).unwrap_or_default(),
         };
-        let (own, also) = (&entry.channel.channel, entry.keys.channels());
-        let record = format!("{own:?} {also:?} {:?}", entry.reading.stated());
+        let (channel, others) = (&entry.channel.channel, entry.keys.channels());
+        let record = format!("{channel:?} {others:?} {:?}", entry.reading.stated());
         let (section, table) = (A::SECTION, name_of(entry));
         let named = |file: PathBuf| NamedFile {
             file: plain(&file),
@@ -160,6 +164,7 @@ fn records_of<A: Analysis>(campaign: &Campaign) -> Result<Vec<NamedFile>> {
     Ok(all)
 }
 
+/// Measures the records of a kind; tables with a fault give findings.
 fn run_all<A: Analysis>(job: &mut Job<'_>) -> Result<()> {
     for fault in job.campaign.faults().iter().filter(|fault| fault.section == A::SECTION) {
         job.found.add(&fault.name, [left_out("left-out", &fault.error)]);

@@ -65,9 +65,9 @@ impl SceneKeys {
         for (key, value) in given.into_iter().filter_map(|(key, value)| Some((key, value?))) {
             draft.put(&format!("excitation.{key}"), value);
         }
-        let driven = ["force", "impulse", "width", "parts", "kind"];
+        let excitation_keys = ["force", "impulse", "width", "parts", "kind"];
         if let Some(frequency) = frequency
-            && driven.iter().any(|key| draft.has(&format!("excitation.{key}")))
+            && excitation_keys.iter().any(|key| draft.has(&format!("excitation.{key}")))
         {
             draft.put("excitation.frequency", frequency);
         }
@@ -99,6 +99,7 @@ struct JudgedOrbit<'a> {
     lines: Vec<[f64; 2]>,
     /// Whether grazing is farther away than the uncertainty of the gap, where that is stated.
     robust: Option<bool>,
+    /// Whether grazing is as near as that uncertainty.
     near_grazing: Option<bool>,
 }
 

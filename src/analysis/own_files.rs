@@ -3,7 +3,7 @@
 /// Name of the file of a folder's own campaign.
 pub const OWN: &str = "campaign.toml";
 
-/// The files of a campaign's results that are not figures or tables of one record.
+/// All numbers of a campaign.
 pub const RESULTS: &str = "results.json";
 /// The report.
 pub const REPORT: &str = "report.html";

@@ -32,7 +32,7 @@ pub fn page(
     page = page.answers(&shortened(&all.headlines));
     let mut worst = graded(&all.findings, Voice::Campaign);
     worst.retain(|(severity, _)| *severity > Severity::Note);
-    let shown = foremost(&worst).min(MOST);
+    let shown = foremost(&worst).min(MOST_FINDINGS);
     page = page.findings(&worst[..shown]);
     if worst.len() > shown {
         let more = counted(worst.len() - shown, "more caution");
@@ -55,13 +55,14 @@ pub fn page(
     if let Some(sliders) = compared.and_then(|compared| compared.sliders.as_ref()) {
         page = page.heading("What if").paragraph(WHAT_IF).what_if(json!(sliders));
     }
+    // Findings after those of the parts are about the campaign.
     let rest = parts.last().map_or(0, |(_, [.., findings])| findings.end);
     page =
         page.heading("Where the numbers come from").findings(&graded(&all.findings[rest..], Voice::Campaign));
     if let Some(ComparedRig { rig, .. }) = compared {
         let mut rig = *rig;
         let values: Vec<(&str, String)> =
-            Parameter::of_rig().filter_map(|p| Some((p.name(), constant(p, *p.place(&mut rig)?)))).collect();
+            Parameter::of_rig().filter_map(|p| Some((p.name(), with_unit(p, *p.place(&mut rig)?)))).collect();
         page =
             page.details("Rig of the comparison", values.iter().map(|(key, value)| (*key, value.as_str())));
     }
@@ -86,8 +87,8 @@ pub fn page(
 }
 
 /// A value of a rig with its unit.
-fn constant(of: Parameter, value: f64) -> String {
-    format!("{} {}", json!(value), Some(of.unit()).filter(|unit| *unit != "1").unwrap_or_default())
+fn with_unit(parameter: Parameter, value: f64) -> String {
+    format!("{} {}", json!(value), Some(parameter.unit()).filter(|unit| *unit != "1").unwrap_or_default())
 }
 
 /// Text above the sliders.
@@ -95,20 +96,21 @@ const WHAT_IF: &str = "Curves: motions with one impact a cycle and without impac
     order, and curves end where the contact lasts longer than 2.5 % of a cycle.";
 
 /// Largest number of findings at the head of the page.
-const MOST: usize = 8;
+const MOST_FINDINGS: usize = 8;
 
+/// Processing steps as text, one a line.
 fn history(steps: &[Step]) -> String {
     let mut text = String::new();
     for step in steps {
         let arguments: Vec<String> =
-            step.arguments.iter().map(|(k, v)| format!("{k} {}", brief(v))).collect();
+            step.arguments.iter().map(|(k, v)| format!("{k} {}", without_rounding(v))).collect();
         let _ = writeln!(text, "{} (version {}): {}", step.name, step.version, arguments.join(", "));
     }
     text
 }
 
-/// An argument as it is; a decimal number with at most twelve digits.
-fn brief(argument: &str) -> String {
+/// An argument of a step; a decimal number with at most twelve digits, without the remains of rounding.
+fn without_rounding(argument: &str) -> String {
     match argument.parse() {
         Ok(number) if argument.contains('.') => shortest(number),
         _ => argument.to_owned(),
@@ -121,10 +123,10 @@ mod tests {
 
     #[test]
     fn arguments_are_shown_without_the_remains_of_computing() {
-        assert_eq!(brief("0.00019999999999999998"), "0.0002");
-        assert_eq!(brief("0.039990000000000005"), "0.03999");
-        assert_eq!(brief("135.0625"), "135.0625");
-        assert_eq!(brief("20251120123456"), "20251120123456");
-        assert_eq!(brief("UP1.TXT"), "UP1.TXT");
+        assert_eq!(without_rounding("0.00019999999999999998"), "0.0002");
+        assert_eq!(without_rounding("0.039990000000000005"), "0.03999");
+        assert_eq!(without_rounding("135.0625"), "135.0625");
+        assert_eq!(without_rounding("20251120123456"), "20251120123456");
+        assert_eq!(without_rounding("UP1.TXT"), "UP1.TXT");
     }
 }

@@ -35,6 +35,7 @@ pub fn precision(scenes: &[BenchmarkScene]) -> Table {
     )
 }
 
+/// The word yes, or an empty cell.
 fn yes(yes: bool) -> Cell {
     if yes { "yes" } else { "" }.into()
 }

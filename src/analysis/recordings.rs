@@ -35,17 +35,17 @@ pub fn recordings(folder: &Folder) -> Result<Recordings> {
     let top = plain(folder.root());
     // Versions without a manifest had a folder for results alone: all files in it are results.
     let has = |path: &Path, name: &str| folder.is_file(&path.join(name));
-    let results =
+    let is_results =
         |path: &Path| path != top && has(path, RESULTS) && has(path, REPORT) && !has(path, Manifest::FILE);
-    let mut known: BTreeMap<PathBuf, bool> = BTreeMap::new();
+    let mut results: BTreeMap<PathBuf, bool> = BTreeMap::new();
     files.retain(|path| {
         let parent = path.parent().unwrap_or(Path::new("")).to_owned();
-        !*known.entry(parent).or_insert_with_key(|parent| results(parent))
+        !*results.entry(parent).or_insert_with_key(|parent| is_results(parent))
     });
     let ending =
         |path: &Path| path.extension().map_or_else(String::new, |e| e.to_string_lossy().to_lowercase());
-    let is_none = |path: &PathBuf| NO_RECORDINGS.split(' ').any(|known| known == ending(path));
-    let (others, mut files): (Vec<_>, Vec<_>) = files.into_iter().partition(is_none);
+    let is_no_recording = |path: &PathBuf| NO_RECORDINGS.split(' ').any(|known| known == ending(path));
+    let (others, mut files): (Vec<_>, Vec<_>) = files.into_iter().partition(is_no_recording);
     in_order(&mut files);
     Ok(Recordings { files, others, skipped })
 }
@@ -93,27 +93,27 @@ pub fn matching(folder: &Folder, name: &Path) -> Result<Vec<PathBuf>> {
         return Ok(vec![name.to_owned()]);
     }
     let name = plain(name);
-    let wild = |part: &Component<'_>| part.as_os_str().to_string_lossy().contains(['*', '?', '[']);
-    let fixed: PathBuf = name.components().take_while(|part| !wild(part)).collect();
-    let levels = name.components().skip_while(|part| !wild(part)).count();
+    let is_pattern_part = |part: &Component<'_>| part.as_os_str().to_string_lossy().contains(['*', '?', '[']);
+    let fixed: PathBuf = name.components().take_while(|part| !is_pattern_part(part)).collect();
+    let levels = name.components().skip_while(|part| !is_pattern_part(part)).count();
     let levels = if name.to_string_lossy().contains("**") { DEEPEST } else { levels.saturating_sub(1) };
-    let wrong = |e: glob::PatternError| {
+    let invalid = |e: glob::PatternError| {
         Error::usage(format!("the pattern {}: {e}", shown(&name)), "a pattern such as step*.csv")
     };
-    let pattern = Pattern::new(&name.to_string_lossy()).map_err(wrong)?;
+    let pattern = Pattern::new(&name.to_string_lossy()).map_err(invalid)?;
     let top = plain(&folder.root().join(fixed));
     let found = if folder.is_folder(&top) || top == Path::new("") {
         folder.walk(&top, levels)?
     } else {
         Walk::default()
     };
-    let own = plain(folder.root());
-    let within = |path: &Path| path.strip_prefix(&own).map_or_else(|_| path.to_owned(), Path::to_owned);
-    let meant = |path: &Path| pattern.matches_path_with(path, WHOLE_NAMES);
-    let mut skipped = found.skipped.iter().map(|(path, _)| within(path)).filter(|path| meant(path));
+    let root = plain(folder.root());
+    let within = |path: &Path| path.strip_prefix(&root).map_or_else(|_| path.to_owned(), Path::to_owned);
+    let matches = |path: &Path| pattern.matches_path_with(path, WHOLE_NAMES);
+    let mut skipped = found.skipped.iter().map(|(path, _)| within(path)).filter(|path| matches(path));
     skipped.try_for_each(|path| folder.path(&path).map(drop))?;
     let mut files: Vec<PathBuf> =
-        found.files.iter().map(|path| within(path)).filter(|path| meant(path)).collect();
+        found.files.iter().map(|path| within(path)).filter(|path| matches(path)).collect();
     if files.is_empty() {
         let found = format!("no file matches {}", shown(folder.root().join(&name)));
         return Err(Error::absent(found, folder.root(), &name));
@@ -122,7 +122,7 @@ pub fn matching(folder: &Folder, name: &Path) -> Result<Vec<PathBuf>> {
     Ok(files)
 }
 
-/// A star matches only within one part of a path.
+/// Options of patterns: a star matches only within one part of a path.
 pub(super) const WHOLE_NAMES: MatchOptions = MatchOptions {
     case_sensitive: true,
     require_literal_separator: true,

@@ -10,7 +10,7 @@ use super::kinds::{KINDS, faults, files as files_of};
 use super::own_files::{INPUTS, REPORT, RESULTS};
 use super::page;
 use super::progress::Progress;
-use super::twice::twice;
+use super::twice::double_use;
 use super::unnamed::beside;
 use crate::campaign::Campaign;
 use crate::error::Result;
@@ -19,7 +19,7 @@ use crate::report::words::{Voice, put};
 use crate::report::{Output, Picture, files};
 
 /// Numbers of tables, figures, long tables and findings in an answer.
-fn size(answer: &Answer) -> [usize; 4] {
+fn counts(answer: &Answer) -> [usize; 4] {
     [answer.tables.len(), answer.figures.len(), answer.details.len(), answer.findings.len()]
 }
 
@@ -73,10 +73,11 @@ pub fn run(
     for path in &files {
         campaign.within().reads(path);
     }
-    let asked = |kind: &&AnalysisKind| campaign.written(kind.section).is_ok_and(|tables| !tables.is_empty());
-    let (own, kinds) =
-        ([RESULTS, REPORT, INPUTS, AnswerCache::FILE], KINDS.iter().filter(asked).collect::<Vec<_>>());
-    output.expect(|name| own.contains(&name) || kinds.iter().any(|kind| kind.names.has(name)))?;
+    let has_tables =
+        |kind: &&AnalysisKind| campaign.written(kind.section).is_ok_and(|tables| !tables.is_empty());
+    let (fixed_names, kinds) =
+        ([RESULTS, REPORT, INPUTS, AnswerCache::FILE], KINDS.iter().filter(has_tables).collect::<Vec<_>>());
+    output.expect(|name| fixed_names.contains(&name) || kinds.iter().any(|kind| kind.names.has(name)))?;
     let mut job = Job::new(campaign, kept, KINDS, progress);
     // Digests are taken before files are read: a change meanwhile is for the next run.
     let inputs = inputs(campaign, files, kept);
@@ -85,14 +86,14 @@ pub fn run(
     job.put("version", &version)?;
     let mut parts = Vec::new();
     for kind in KINDS {
-        let from = size(&job.found);
+        let from = counts(&job.found);
         (kind.run)(&mut job)?;
-        let to = size(&job.found);
+        let to = counts(&job.found);
         parts.push((kind.title, [0, 1, 2, 3].map(|i| from[i]..to[i])));
     }
     job.found.add("", campaign.commented());
     job.found.add("", beside(campaign)?);
-    job.found.add("", twice(campaign)?);
+    job.found.add("", double_use(campaign)?);
     if job.answers == 0 {
         let of_tables = faults(campaign)?.into_iter().map(|fault| fault.error);
         of_tables.chain(job.failed.take()).next().map_or(Ok(()), Err)?;
@@ -106,8 +107,8 @@ pub fn run(
     progress.start("drawing figures", all.figures.len());
     let medium = output.medium;
     let pictures = files::figures(output, &all.figures, |figure| {
-        let on = digest([packed(&(medium as u8, figure)).unwrap_or_default()]);
-        let picture = kept.or_make(on, &[], || Picture::of(figure, medium));
+        let inputs = digest([packed(&(medium as u8, figure)).unwrap_or_default()]);
+        let picture = kept.or_make(inputs, &[], || Picture::of(figure, medium));
         progress.step();
         picture
     })?;

@@ -77,8 +77,8 @@ pub fn file_name(path: &Path) -> String {
     shown(path.file_name().map_or(path, Path::new))
 }
 
-/// Name of a table for people: stated, else of its file, else of its section with its number.
+/// Name of a table for people: the stated name, else that of its file, else its section with its number.
 pub(crate) fn name_of<K: Analysis>(entry: &Entry<K>) -> String {
-    let own = K::stated_name(entry).or_else(|| entry.file.as_deref().map(file_name));
-    own.unwrap_or_else(|| format!("{} {}", K::SECTION, entry.number))
+    let name = K::stated_name(entry).or_else(|| entry.file.as_deref().map(file_name));
+    name.unwrap_or_else(|| format!("{} {}", K::SECTION, entry.number))
 }

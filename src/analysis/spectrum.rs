@@ -125,7 +125,9 @@ impl Keys {
             Ok(traces) => traces,
             // A stated base band is then that of the stored lines, and gives no sampling rate.
             Err(why) => match source.reader()?.survey(source.path) {
-                Ok((_, headers, _)) if is_of_spectra(source, &headers) => return of_file(source, &options),
+                Ok((_, headers, _)) if is_of_spectra(source, &headers) => {
+                    return stored_lines(source, &options);
+                }
                 Err(other) if source.reading.base_band.is_some() => return Err(other),
                 _ => return Err(why),
             },
@@ -136,8 +138,8 @@ impl Keys {
     }
 }
 
-/// Spectral lines that the file itself stores.
-fn of_file(source: &Source<'_>, options: &SpectralOptions) -> Result<SpectralResult> {
+/// The spectral lines that a file stores.
+fn stored_lines(source: &Source<'_>, options: &SpectralOptions) -> Result<SpectralResult> {
     if let Some(factor) = source.channel.calibration {
         let found = format!("a calibration of {factor} of a spectrum that the file holds");
         return Err(Error::usage(found, "the unit of its lines").setting("calibration").setting("unit"));
@@ -151,11 +153,11 @@ fn of_file(source: &Source<'_>, options: &SpectralOptions) -> Result<SpectralRes
 
 /// Whether a file stores spectra and no traces, or the named channel is a spectrum.
 fn is_of_spectra(source: &Source<'_>, headers: &[Header]) -> bool {
-    let of = |kind| headers.iter().filter(move |header| header.kind == kind);
-    if of("trace").next().is_none() {
-        return of("spectrum").next().is_some();
+    let records_of = |kind| headers.iter().filter(move |header| header.kind == kind);
+    if records_of("trace").next().is_none() {
+        return records_of("spectrum").next().is_some();
     }
-    let spectra = of("spectrum").map(|header| (header.name.as_str(), header.quantity));
+    let spectra = records_of("spectrum").map(|header| (header.name.as_str(), header.quantity));
     let named = source.channel.channel.as_deref().filter(|name| name.parse::<usize>().is_err());
     named.is_some_and(|name| find_channel(source.path, name, spectra).is_ok())
 }
@@ -168,17 +170,18 @@ impl Keys {
     pub(super) fn traces(&self, source: &Source<'_>) -> Result<Traces> {
         let reader = source.reader()?.rate_of_base_band();
         let (channel, reference) = (source.channel, self.reference.as_deref());
-        let beside = reference.and_then(in_other_file);
-        let beside = beside.and_then(|(file, name)| Some(((source.beside)("reference", file).ok()?, name)));
-        let Some((file, name)) = beside.filter(|(file, _)| source.folder.exists(file)) else {
+        let elsewhere = reference.and_then(in_other_file);
+        let elsewhere =
+            elsewhere.and_then(|(file, name)| Some(((source.beside)("reference", file).ok()?, name)));
+        let Some((file, name)) = elsewhere.filter(|(file, _)| source.folder.exists(file)) else {
             let (named, factor) = (channel.channel.as_deref(), channel.calibration);
             return reader.stream_chosen(source.path, reference, named, factor);
         };
-        let of_force = reader.from_path(&file)?;
-        let force = of_force.trace(Some(name), None)?;
+        let reference_recording = reader.from_path(&file)?;
+        let force = reference_recording.trace(Some(name), None)?;
         let recording = reader.from_path(source.path)?;
         let response = source.trace(&recording)?;
-        let findings = [of_force.findings, recording.findings].concat();
+        let findings = [reference_recording.findings, recording.findings].concat();
         let traces = Traces::of_file(source.path.to_owned(), findings, vec![force, response]);
         traces.map_err(|error| error.aside(format!("reference in {}", shown(&file))))
     }
@@ -209,8 +212,8 @@ pub(super) fn with_reference<A: Analysis>(
 
 /// The reference, if it is a channel of the record's own file.
 pub(super) fn own_reference(reference: Option<&String>) -> Vec<(&'static str, &String)> {
-    let own = reference.filter(|reference| in_other_file(reference).is_none());
-    own.into_iter().map(|name| ("reference", name)).collect()
+    let in_this_file = reference.filter(|reference| in_other_file(reference).is_none());
+    in_this_file.into_iter().map(|name| ("reference", name)).collect()
 }
 
 impl OfFile for Keys {
@@ -232,28 +235,31 @@ impl OfFile for Keys {
 }
 
 /// Number of largest peaks in the table of a record.
-const SHOWN: usize = 8;
+const SHOWN_PEAKS: usize = 8;
 
 /// The largest peaks of a record, one row a peak.
 fn peaks(name: &str, found: &SpectralResult) -> Table {
-    let of = |values: &[f64], k: usize| values.get(k).copied().filter(|v| v.is_finite());
+    let finite_at = |values: &[f64], k: usize| values.get(k).copied().filter(|v| v.is_finite());
     let response = found.response.as_ref();
     // A peak lies anywhere within half a line spacing of its line: rectangular, spacing/√12.
-    let line = found.frequency.windows(2).next().map_or(f64::NAN, |w| (w[1] - w[0]) / f64::sqrt(12.0));
+    let line_std = found.frequency.windows(2).next().map_or(f64::NAN, |w| (w[1] - w[0]) / f64::sqrt(12.0));
     let peaks = table(
         "Largest peaks of spectra",
-        found.peaks(SHOWN),
+        found.peaks(SHOWN_PEAKS),
         &[
             ("record", "", &|_| Cell::from(name)),
-            ("frequency", "Hz", &|k| Cell::Estimate { value: found.frequency[*k], std: Some(line) }),
-            ("value", "", &|k| Cell::Estimate { value: found.value[*k], std: of(&found.value_std, *k) }),
+            ("frequency", "Hz", &|k| Cell::Estimate { value: found.frequency[*k], std: Some(line_std) }),
+            ("value", "", &|k| Cell::Estimate {
+                value: found.value[*k],
+                std: finite_at(&found.value_std, *k),
+            }),
             ("unit", "", &|_| Cell::from(found.unit.as_str())),
             ("scaling", "", &|_| Cell::from(found.scaling)),
-            ("phase", "°", &|k| Cell::from(response.and_then(|r| of(&r.phase, *k)))),
-            ("coherence", "", &|k| Cell::from(response.and_then(|r| of(r.coherence.as_ref()?, *k)))),
+            ("phase", "°", &|k| Cell::from(response.and_then(|r| finite_at(&r.phase, *k)))),
+            ("coherence", "", &|k| Cell::from(response.and_then(|r| finite_at(r.coherence.as_ref()?, *k)))),
         ],
     );
-    let low = LOW.iter().find(|(window, _)| *window == found.window).map_or("", |(_, low)| low);
+    let low = READS_LOW.iter().find(|(window, _)| *window == found.window).map_or("", |(_, low)| low);
     match &found.found {
         Lines::Spectrum(_) if !low.is_empty() && found.tones.is_empty() => peaks.note(format!(
             "A sine between two lines reads low, by up to {low}; tones = 1 gives its true amplitude."
@@ -262,8 +268,8 @@ fn peaks(name: &str, found: &SpectralResult) -> Table {
     }
 }
 
-/// Largest error of a sine's amplitude, half-way between two lines, by window.
-const LOW: [(&str, &str); 3] = [("hann", "15 %"), ("rectangular", "36 %"), ("hamming", "18 %")];
+/// By how much a sine half-way between two lines reads low, by window.
+const READS_LOW: [(&str, &str); 3] = [("hann", "15 %"), ("rectangular", "36 %"), ("hamming", "18 %")];
 
 /// Settings with which the lines were computed.
 fn settings_table(found: &SpectralResult) -> Table {

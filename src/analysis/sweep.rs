@@ -74,6 +74,7 @@ pub struct Keys {
 }
 
 impl Keys {
+    /// Checks that the keys are complete and do not contradict each other.
     fn usable(&self) -> Result<()> {
         let wrong = |key, found: &str, expected: &str| Err(Error::usage(found, expected).setting(key));
         if self.name.is_empty() {
@@ -82,9 +83,9 @@ impl Keys {
         if !self.traces.is_empty() {
             return self.usable_traces();
         }
-        let written = !self.response.is_empty();
-        if self.list.is_some() == written {
-            let found = if written { "both a list and response" } else { "neither a list nor response" };
+        let lists_files = !self.response.is_empty();
+        if self.list.is_some() == lists_files {
+            let found = if lists_files { "both a list and response" } else { "neither a list nor response" };
             let expected = "list = \"…\"; or force, response, lines and base_band; or traces, with a channel of force and of response";
             return wrong("name", &format!("{found} files"), expected);
         }
@@ -94,10 +95,10 @@ impl Keys {
         }
         let band = self.base_band.is_some_and(|b| b.is_finite() && b > 0.0);
         let complete = band && self.lines.is_some_and(|l| l > 0) && self.force.len() == self.response.len();
-        if written && !complete {
-            let said = |value: Option<f64>| value.map_or_else(|| "left out".to_owned(), |v| v.to_string());
+        if lists_files && !complete {
+            let stated = |value: Option<f64>| value.map_or_else(|| "left out".to_owned(), |v| v.to_string());
             let (force, response) = (self.force.len(), self.response.len());
-            let (lines, band) = (said(self.lines.map(|n| n as f64)), said(self.base_band));
+            let (lines, band) = (stated(self.lines.map(|n| n as f64)), stated(self.base_band));
             let found =
                 format!("{force} force and {response} response files, lines {lines}, base_band {band}");
             return wrong("name", &found, "as many force as response files, and both numbers above 0");
@@ -105,6 +106,7 @@ impl Keys {
         self.checked()
     }
 
+    /// As [`Keys::usable`], for a sweep of time traces.
     fn usable_traces(&self) -> Result<()> {
         let wrong = |key, found: &str, expected: &str| Err(Error::usage(found, expected).setting(key));
         let beside = [
@@ -132,18 +134,19 @@ impl Keys {
     }
 
     /// One sweep for each response in the same traces.
-    fn each(&self) -> Vec<Keys> {
+    fn per_response(&self) -> Vec<Keys> {
         if self.traces.is_empty() || self.force.len() > 1 || self.response.len() < 2 {
             return vec![self.clone()];
         }
-        let one = |channel: &String| Keys {
+        let with_response = |channel: &String| Keys {
             name: format!("{} {channel}", self.name),
             response: vec![channel.clone()],
             ..self.clone()
         };
-        self.response.iter().map(one).collect()
+        self.response.iter().map(with_response).collect()
     }
 
+    /// Checks the mass and the settings of the reader.
     fn checked(&self) -> Result<()> {
         if let Some(mass) = self.mass.filter(|m| !matches!(m, 1 | 2)) {
             let found = format!("mass = {mass}");
@@ -188,10 +191,10 @@ impl Keys {
 /// # Errors
 /// If there is no such sweep, or its list cannot be read.
 pub fn named(campaign: &Campaign, name: Option<&str>) -> Result<Listed> {
-    let all = each(entries(campaign)?);
+    let all = per_response(entries(campaign)?);
     // A faulty table gives its own error.
-    let meant = |fault: &Fault| name.map_or(all.is_empty(), |name| fault.name == name);
-    if let Some(fault) = check::<Keys>(campaign)?.into_iter().find(meant) {
+    let is_meant = |fault: &Fault| name.map_or(all.is_empty(), |name| fault.name == name);
+    if let Some(fault) = check::<Keys>(campaign)?.into_iter().find(is_meant) {
         return Err(fault.error);
     }
     let names = || all.iter().map(|s| s.keys.name.as_str()).collect::<Vec<_>>().join(", ");
@@ -220,16 +223,16 @@ pub fn named(campaign: &Campaign, name: Option<&str>) -> Result<Listed> {
 }
 
 /// The tables of sweeps, one for each response.
-fn each(entries: Vec<Entry<Keys>>) -> Vec<Entry<Keys>> {
-    let one = |entry: Entry<Keys>| {
-        let parts = entry.keys.each().into_iter();
+fn per_response(entries: Vec<Entry<Keys>>) -> Vec<Entry<Keys>> {
+    let parts_of = |entry: Entry<Keys>| {
+        let parts = entry.keys.per_response().into_iter();
         parts.map(move |keys| {
             let mut part = entry.clone();
             part.keys = keys;
             part
         })
     };
-    entries.into_iter().flat_map(one).collect()
+    entries.into_iter().flat_map(parts_of).collect()
 }
 
 /// Responses of all sweeps of a campaign, converted to displacement, with named resonances.
@@ -246,17 +249,18 @@ pub fn responses(campaign: &Campaign, progress: &dyn Progress) -> Result<Vec<Res
     Ok(responses)
 }
 
+/// A sweep, its response, and the settings with which that was found.
 type SweptResponse = (Sweep, Response, ResponseOptions);
 
-/// Sweep and response of each of these tables, with the name of the sweep.
+/// Reads the sweep of each of these tables and its response, with the name of the sweep.
 fn read_responses(
     campaign: &Campaign,
     entries: Vec<Entry<Keys>>,
     progress: &dyn Progress,
 ) -> Vec<(String, Result<SweptResponse>)> {
-    let entries = each(entries);
+    let entries = per_response(entries);
     progress.start("reading sweeps", entries.len());
-    let one = |entry: &Entry<Keys>| {
+    let read = |entry: &Entry<Keys>| {
         let listed = Listed::of(campaign, entry)?;
         let compute = &campaign.compute;
         let options = ResponseOptions { band: compute.peak_lines, integrate: None, fmin: compute.fmin };
@@ -264,7 +268,7 @@ fn read_responses(
         progress.step();
         Ok((sweep, response, options))
     };
-    entries.par_iter().map(|entry| (entry.keys.name.clone(), one(entry))).collect()
+    entries.par_iter().map(|entry| (entry.keys.name.clone(), read(entry))).collect()
 }
 
 /// Findings on responses, each about its sweep.
@@ -344,7 +348,7 @@ impl Analysis for Keys {
         job.answers += responses.len();
         job.put("antiresonance", &pairing::antiresonances(&responses))?;
         job.put("crossings", &pairing::all_crossings(&responses))?;
-        let mut all = Answer { findings: pairing::twice(&responses), ..Answer::default() };
+        let mut all = Answer { findings: pairing::swept_twice(&responses), ..Answer::default() };
         if !responses.is_empty() {
             all.figure("response", figures::response(&job.title, &responses));
             if let Some(figure) = figures::receptance(&job.title, &responses) {

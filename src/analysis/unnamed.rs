@@ -21,16 +21,17 @@ pub fn unnamed(campaign: &Campaign, all: &[PathBuf]) -> Result<Vec<PathBuf>> {
     let named: BTreeSet<PathBuf> =
         files(campaign)?.iter().map(|path| plain(campaign.within().file(path))).collect();
     let folder = plain(campaign.folder());
-    let ends = |c: char| !c.is_alphanumeric() && !['_', '-', '.', '/', '\\'].contains(&c);
+    // A character that cannot belong to a file name.
+    let ends_name = |c: char| !c.is_alphanumeric() && !['_', '-', '.', '/', '\\'].contains(&c);
     // A table that is commented out may name a pattern.
     let commented = campaign.text().lines().filter_map(|line| {
         let key = line.trim_start().strip_prefix('#')?.trim_start().strip_prefix("file")?;
         key.trim_start().strip_prefix('=')?.split('"').nth(1)
     });
     let patterns: Vec<Pattern> = commented.filter_map(|text| Pattern::new(text).ok()).collect();
-    let said = |path: &Path| {
+    let mentioned = |path: &Path| {
         let name = path.strip_prefix(&folder).unwrap_or(path).to_string_lossy().replace('\\', "/");
-        let in_words = || {
+        let in_text = || {
             campaign.text().match_indices(&name).any(|(at, _)| {
                 let (before, behind) = (&campaign.text()[..at], &campaign.text()[at + name.len()..]);
                 // A full stop may end a sentence. A slash begins the name of a part of the file.
@@ -38,17 +39,17 @@ pub fn unnamed(campaign: &Campaign, all: &[PathBuf]) -> Result<Vec<PathBuf>> {
                     .strip_prefix('.')
                     .filter(|b| !b.starts_with(char::is_alphanumeric))
                     .unwrap_or(behind);
-                before.chars().next_back().is_none_or(ends)
-                    && behind.chars().next().is_none_or(|c| c == '/' || ends(c))
+                before.chars().next_back().is_none_or(ends_name)
+                    && behind.chars().next().is_none_or(|c| c == '/' || ends_name(c))
             })
         };
-        patterns.iter().any(|pattern| pattern.matches_with(&name, WHOLE_NAMES)) || in_words()
+        patterns.iter().any(|pattern| pattern.matches_with(&name, WHOLE_NAMES)) || in_text()
     };
-    let new = |path: &&PathBuf| {
+    let is_new = |path: &&PathBuf| {
         let path = plain(path);
-        !named.contains(&path) && !said(&path)
+        !named.contains(&path) && !mentioned(&path)
     };
-    Ok(all.iter().filter(new).cloned().collect())
+    Ok(all.iter().filter(is_new).cloned().collect())
 }
 
 /// Notes on files that a campaign does not name, and on files that could not be read. Only the folder's own

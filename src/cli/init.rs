@@ -171,7 +171,7 @@ impl super::CommandArgs for Check {
             return Ok(complain::errors(&errors, Voice::Campaign, json));
         }
         let files = analysis::files(&campaign)?;
-        let found = campaign.commented().into_iter().chain(analysis::twice(&campaign)?);
+        let found = campaign.commented().into_iter().chain(analysis::double_use(&campaign)?);
         let commented: Vec<_> = found.map(|found| (String::new(), found)).collect();
         if json {
             let mut answer = Map::new();

@@ -1,4 +1,5 @@
-//! Groups of similar files: a few are analysed, and represent the others where they agree.
+//! Groups of similar files. A few files of a group are analysed; where their tables agree, they represent
+//! the others.
 
 use super::folder::FileSeries;
 use super::found::FoundTables;
@@ -12,13 +13,16 @@ use std::collections::BTreeMap;
 /// Size up to which every file of a group is analysed; of larger groups this many, at even distances.
 const FEW: usize = 8;
 
-/// Number of files analysed in a group that does not agree: 20 s of work with averaged frequency responses.
-const MOST: usize = 256;
+/// Most files analysed in a group whose tables do not agree: about 20 s of work with averaged frequency
+/// responses.
+const BUDGET: usize = 256;
 
-/// Least mean run length of files of one kind; a random mixture of two kinds has a mean of two.
-const IN_A_ROW: usize = 8;
+/// Least mean number of consecutive files of one kind for the ends of such runs to be searched; a random
+/// mixture of two kinds has a mean of two.
+const LEAST_MEAN_RUN: usize = 8;
 
-/// The tables of each series, in order. Series and their files are analysed in parallel.
+/// The tables of each series, in order. A series is tried as a whole, as a sweep or as drops; the files of
+/// the others are analysed in groups of probably one kind. Series and files are analysed in parallel.
 pub(super) fn all<'a>(
     series: &'a [FileSeries],
     folder: &'a Folder,
@@ -27,21 +31,23 @@ pub(super) fn all<'a>(
 ) -> Vec<FoundTables> {
     progress.start("looking at files", series.iter().map(|one| one.files.len()).sum());
     let trial = |one: &'a FileSeries| Trial { folder, reading: &one.reading, kept };
-    let together = |one: &'a FileSeries| {
+    let as_a_whole = |one: &'a FileSeries| {
         let (trial, few) = (trial(one), one.part(spread(one.files.len(), FEW)));
         let found = trial.sweep(one, &few).or_else(|| trial.drops(one, &few))?;
         one.files.iter().for_each(|_| progress.step());
         Some(found)
     };
     let share = share(series.iter().map(FileSeries::values).max().unwrap_or(0));
-    let mut found: Vec<Option<FoundTables>> = series.par_iter().with_min_len(share).map(together).collect();
-    let mut kin: BTreeMap<String, Vec<(usize, &String)>> = BTreeMap::new();
+    let mut found: Vec<Option<FoundTables>> = series.par_iter().with_min_len(share).map(as_a_whole).collect();
+    let mut groups: BTreeMap<String, Vec<(usize, &String)>> = BTreeMap::new();
+    // Groups of files of probably one kind, each file with the index of its series.
     for (i, one) in series.iter().enumerate().filter(|(i, _)| found[*i].is_none()) {
-        kin.entry(one.kin()).or_default().extend(one.files.iter().map(|file| (i, file)));
+        groups.entry(one.kin()).or_default().extend(one.files.iter().map(|file| (i, file)));
     }
-    let each = |files: &Vec<(usize, &String)>| {
+    // The tables of each series in a group.
+    let by_series = |files: &Vec<(usize, &String)>| {
         let values = series[files[0].0].values();
-        let (tries, own) = tried((files.len(), self::share(values)), FoundTables::agrees, |k| {
+        let (tries, tables) = analysed((files.len(), self::share(values)), FoundTables::agrees, |k| {
             let (one, file) = (&series[files[k].0], files[k].1);
             let alone = FileSeries { files: vec![file.clone()], ..one.clone() };
             let found = trial(one).file(&alone, one.label(file));
@@ -49,17 +55,17 @@ pub(super) fn all<'a>(
             found.renamed(one.label(file), [""; 3])
         });
         (tries..files.len()).for_each(|_| progress.step());
-        let (mut own, of_series) = (own.into_iter(), files.chunk_by(|(i, _), (j, _)| i == j));
+        let (mut tables, of_series) = (tables.into_iter(), files.chunk_by(|(i, _), (j, _)| i == j));
         let gathered = |files: &[(usize, &String)]| {
-            let (i, own) = (files[0].0, own.by_ref().take(files.len()).collect::<Vec<_>>());
-            (i, series[i].gathered(&own, tries))
+            let (i, tables) = (files[0].0, tables.by_ref().take(files.len()).collect::<Vec<_>>());
+            (i, series[i].gathered(&tables, tries))
         };
         of_series.map(gathered).collect::<Vec<_>>()
     };
-    let kin: Vec<_> = kin.into_values().collect();
-    let tried: Vec<_> = kin.par_iter().with_min_len(share).flat_map_iter(each).collect();
-    for (i, one) in tried {
-        found[i] = Some(one);
+    let groups: Vec<_> = groups.into_values().collect();
+    let by_group: Vec<_> = groups.par_iter().with_min_len(share).flat_map_iter(by_series).collect();
+    for (i, tables) in by_group {
+        found[i] = Some(tables);
     }
     let stated = |(mut found, one): (FoundTables, &FileSeries)| {
         found.tables.iter_mut().for_each(|table| *table = table.stated(&one.reading));
@@ -68,45 +74,48 @@ pub(super) fn all<'a>(
     found.into_iter().flatten().zip(series).map(stated).collect()
 }
 
-/// At most `few` of `n` files, at even distances.
+/// Indices of at most `few` of `n` files, at even distances, the first and the last among them.
 pub(super) fn spread(n: usize, few: usize) -> Vec<usize> {
     if n <= few { (0..n).collect() } else { (0..few).map(|k| k * (n - 1) / (few - 1)).collect() }
 }
 
-/// Analyses a few of `n` files. Where they do not agree it analyses more; where kinds occur in runs, it
-/// finds their ends by bisection. Files between two that agree are taken as alike; in a mixture they stay
-/// unknown. Gives the number of analyses, too. The choice does not depend on the number of cores.
-fn tried<T: Clone + Send + Sync>(
+/// Analyses some of `n` files, and returns the number of analyses and the result for each file.
+///
+/// A few files are analysed first, and up to [`BUDGET`] if these do not agree. Where files of one kind
+/// follow one another in runs, bisection finds the ends of the runs. A file between two that agree gets
+/// their result; in a mixture it stays `None`. The choice of files does not depend on the number of cores.
+fn analysed<T: Clone + Send + Sync>(
     (n, share): (usize, usize),
     agree: impl Fn(&T, &T) -> bool,
     trial: impl Fn(usize) -> T + Sync,
 ) -> (usize, Vec<Option<T>>) {
-    let (mut known, mut next) = (BTreeMap::new(), spread(n, FEW));
+    let (mut results, mut next) = (BTreeMap::new(), spread(n, FEW));
     loop {
-        next.retain(|k| !known.contains_key(k));
-        known.extend(next.par_iter().with_min_len(share).map(|k| (*k, trial(*k))).collect::<Vec<_>>());
-        let pairs = known.iter().zip(known.iter().skip(1));
-        let differ = pairs.filter(|((_, one), (_, other))| !agree(one, other));
-        let differ: Vec<(usize, usize)> = differ.map(|((a, _), (b, _))| (*a, *b)).collect();
-        let rows = differ.len() * IN_A_ROW <= known.len();
-        let apart = differ.iter().filter(|(a, b)| rows && b - a > 1);
-        next = if !differ.is_empty() && known.len() < n.min(MOST) {
-            spread(n, MOST)
+        next.retain(|k| !results.contains_key(k));
+        results.extend(next.par_iter().with_min_len(share).map(|k| (*k, trial(*k))).collect::<Vec<_>>());
+        let pairs = results.iter().zip(results.iter().skip(1));
+        let changes = pairs.filter(|((_, one), (_, other))| !agree(one, other));
+        let changes: Vec<(usize, usize)> = changes.map(|((a, _), (b, _))| (*a, *b)).collect();
+        let in_runs = changes.len() * LEAST_MEAN_RUN <= results.len();
+        let ends = changes.iter().filter(|(a, b)| in_runs && b - a > 1);
+        next = if !changes.is_empty() && results.len() < n.min(BUDGET) {
+            spread(n, BUDGET)
         } else {
-            apart.map(|(a, b)| usize::midpoint(*a, *b)).collect()
+            ends.map(|(a, b)| usize::midpoint(*a, *b)).collect()
         };
         if next.is_empty() {
-            let nearest = |k: usize| {
-                let (below, above) = (known.range(..=k).next_back()?.1, known.range(k..).next()?.1);
-                ((rows || known.contains_key(&k)) && agree(below, above)).then(|| below.clone())
+            // The result of a file: its own, or that of its analysed neighbours if these agree.
+            let result = |k: usize| {
+                let (below, above) = (results.range(..=k).next_back()?.1, results.range(k..).next()?.1);
+                ((in_runs || results.contains_key(&k)) && agree(below, above)).then(|| below.clone())
             };
-            return (known.len(), (0..n).map(nearest).collect());
+            return (results.len(), (0..n).map(result).collect());
         }
     }
 }
 
 impl FileSeries {
-    /// A series of some of its files, by index.
+    /// The series of the files with these indices.
     pub(super) fn part(&self, places: Vec<usize>) -> FileSeries {
         let pattern = self.pattern.clone().filter(|_| places.len() == self.files.len());
         FileSeries {
@@ -116,26 +125,26 @@ impl FileSeries {
         }
     }
 
-    /// The name of a file in tables.
+    /// The name of a file in tables: the file, or the name of the series where it has only one.
     fn label<'a>(&'a self, file: &'a str) -> &'a str {
         if self.files.len() > 1 { file } else { &self.name }
     }
 
-    /// The tables of all its files; each file was analysed, is like its neighbours, or is named as not
-    /// tried.
-    fn gathered(&self, own: &[Option<FoundTables>], tries: usize) -> FoundTables {
-        if let (Some(pattern), [Some(one), more @ ..]) = (&self.pattern, own)
-            && own.len() > FEW
+    /// The tables of all its files, from those of each: one table for a series whose files agree, else one
+    /// a file. Files without a result are named as not tried.
+    fn gathered(&self, results: &[Option<FoundTables>], tries: usize) -> FoundTables {
+        if let (Some(pattern), [Some(one), more @ ..]) = (&self.pattern, results)
+            && results.len() > FEW
             && more.iter().all(|other| other.as_ref().is_some_and(|other| other.agrees(one)))
         {
             return one.renamed("", [&self.name, pattern, &self.in_words()]);
         }
         let mut found = FoundTables::default();
-        for (file, one) in self.files.iter().zip(own) {
-            let own = one.as_ref().map(|one| one.renamed("", [self.label(file), file, file]));
-            found.add(own.unwrap_or_default());
+        for (file, one) in self.files.iter().zip(results) {
+            let tables = one.as_ref().map(|one| one.renamed("", [self.label(file), file, file]));
+            found.add(tables.unwrap_or_default());
         }
-        let untried: Vec<usize> = (0..own.len()).filter(|k| own[*k].is_none()).collect();
+        let untried: Vec<usize> = (0..results.len()).filter(|k| results[*k].is_none()).collect();
         if !untried.is_empty() {
             let why = format!(
                 "{tries} files like these were tried and are of several kinds; write a table for each kind by hand, as docs/campaign.md shows"
@@ -145,7 +154,8 @@ impl FileSeries {
         found
     }
 
-    /// Key of files that are probably of one kind: names without numbers, channels, and approximate length.
+    /// Key of files that are probably of one kind: settings for reading, name without digits, channels with
+    /// their rates, and length to within a factor of two.
     fn kin(&self) -> String {
         let channel =
             |h: &Header| format!("\n{}|{}|{}|{:?}|{}", h.name, h.unit, h.kind, h.rate, h.n.max(1).ilog2());
@@ -168,7 +178,7 @@ mod tests {
             count.fetch_add(1, Ordering::Relaxed);
             kind(k)
         };
-        let (tries, known) = tried((n, 1), |a, b| a == b, counted);
+        let (tries, known) = analysed((n, 1), |a, b| a == b, counted);
         assert_eq!(tries, count.into_inner());
         (tries, known)
     }
@@ -180,11 +190,11 @@ mod tests {
         }
         // All files of a mixture are analysed, or the budget is spent and the others stay unknown.
         let mixed = |k: usize| (k * k) % 7 % 2;
-        for n in [2, FEW, MOST] {
+        for n in [2, FEW, BUDGET] {
             assert_eq!(tries(n, mixed), (n, (0..n).map(|k| Some(mixed(k))).collect()));
         }
         let (n, known) = tries(5000, mixed);
-        assert!(n <= FEW + MOST && known.iter().flatten().count() == n, "{n}");
+        assert!(n <= FEW + BUDGET && known.iter().flatten().count() == n, "{n}");
     }
 
     #[test]
@@ -194,7 +204,7 @@ mod tests {
             let (n, known) = tries(5000, kind);
             // Bisecting 5000/255 files takes five steps.
             assert!(
-                n <= FEW + MOST + 5 && known == (0..5000).map(|k| Some(kind(k))).collect::<Vec<_>>(),
+                n <= FEW + BUDGET + 5 && known == (0..5000).map(|k| Some(kind(k))).collect::<Vec<_>>(),
                 "{at}: {n}"
             );
         }

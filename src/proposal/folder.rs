@@ -17,12 +17,12 @@ pub(super) struct Inventory {
     pub lists: Vec<(String, String)>,
     /// Series of files, in order.
     pub series: Vec<FileSeries>,
-    /// Files that are no recordings, and why.
+    /// Files left out, with the reason: no recordings, or without a sampling rate.
     pub left: Vec<(String, String)>,
 }
 
-/// A series of files with the same channels: their names differ in one number, or their contents belong
-/// together. Or a single file.
+/// A single file, or a series of files with the same channels whose names differ in one number or whose
+/// contents belong together.
 #[derive(Debug, Clone)]
 pub struct FileSeries {
     /// The common part of their names.
@@ -42,25 +42,25 @@ pub struct FileSeries {
 /// A file and its channels.
 type Member = (PathBuf, Vec<Header>);
 
-/// A file's channels, and how they are read.
+/// The channels of a file, as far as its head shows them.
 struct Surveyed {
     /// Whether the file states its sampling times.
     timed: bool,
-    /// Number of the longest even stretch, where samples are lost.
+    /// Where samples are lost: number of the longest stretch with even sampling.
     stretch: Option<usize>,
     headers: Result<Vec<Header>>,
 }
 
 impl Surveyed {
-    /// Reads with what the file states itself, else with the stated rate; where samples are lost, the longest
-    /// even stretch.
+    /// Surveys a file with the sampling times that it states itself, else with the stated rate; where
+    /// samples are lost, the longest stretch with even sampling.
     fn of(path: &Path, reading: &Reading, folder: &Folder) -> Surveyed {
         let survey = |reading: &Reading| reading.reader()?.within(folder).survey(path);
         let untimed_reading = reading.untimed();
-        let own = survey(&untimed_reading);
-        let timed = own.as_ref().is_ok_and(|(_, headers, _)| !untimed(headers));
+        let as_stored = survey(&untimed_reading);
+        let timed = as_stored.as_ref().is_ok_and(|(_, headers, _)| !untimed(headers));
         let stated = reading.rate.or(reading.base_band).is_some();
-        let found = if timed || !stated { own } else { survey(reading) };
+        let found = if timed || !stated { as_stored } else { survey(reading) };
         let lost = found.as_ref().ok().filter(|(_, headers, _)| untimed(headers));
         let stretch = lost.and_then(|(.., findings)| longest_stretch(findings));
         let longest = stretch.map(|_| survey(&Reading { stretch, ..untimed_reading }));
@@ -74,7 +74,7 @@ impl Surveyed {
 struct FileKind {
     /// Their name, with `*` for the number in which they differ.
     name: String,
-    /// Their channels in words.
+    /// Units and kinds of their channels.
     channels: String,
     /// Whether the files state their sampling times.
     timed: bool,
@@ -83,18 +83,19 @@ struct FileKind {
 }
 
 impl FileKind {
-    /// A pattern that matches these files and no other of `every`.
+    /// A pattern with `*` that matches these files and no other of `every`; `None` if there is none.
     fn pattern(&self, files: &[String], every: &[String], numbers: &Numbers) -> Option<String> {
-        let [before, after] = apart(&files[0], numbers);
-        let meant = |own: &&String| {
-            own.len() > before.len() + after.len() && own.starts_with(&before) && own.ends_with(&after)
+        let [before, after] = split_at_number(&files[0], numbers);
+        let matches = |name: &&String| {
+            name.len() > before.len() + after.len() && name.starts_with(&before) && name.ends_with(&after)
         };
         let plain = !self.name.replacen('*', "", 1).contains(['*', '?', '[']);
-        (plain && every.iter().filter(meant).count() == files.len()).then(|| self.name.clone())
+        (plain && every.iter().filter(matches).count() == files.len()).then(|| self.name.clone())
     }
 }
 
-/// Channels of the first of several files; channels whose names differ between files go by number.
+/// Channels of the first of several files. A channel whose name differs between the files loses it and goes
+/// by its number.
 pub(super) fn named_alike(files: &[&[Header]]) -> Vec<Header> {
     let mut headers = files[0].to_vec();
     for (k, header) in headers.iter_mut().enumerate() {
@@ -206,7 +207,7 @@ impl Inventory {
                         .to_owned()
                 }
                 Ok(headers) => {
-                    let name = apart(&within(&path), numbers).join("*");
+                    let name = split_at_number(&within(&path), numbers).join("*");
                     let kind = FileKind { name, channels: signature(&headers), timed, stretch };
                     let place = *places.entry(kind.clone()).or_insert(kinds.len());
                     if place == kinds.len() {
@@ -222,7 +223,8 @@ impl Inventory {
         kinds
     }
 
-    /// Uses the path as name where several folders or archives hold files of one name.
+    /// Names single files by their path where several series have the same name, as in several folders or
+    /// archives.
     fn name_apart(&mut self) {
         let names: Vec<String> = self.series.iter().map(|series| series.name.clone()).collect();
         for series in &mut self.series {
@@ -236,7 +238,7 @@ impl Inventory {
 }
 
 impl FileSeries {
-    /// The table of a stepped sweep, if each file holds a force and responses.
+    /// The table of a stepped sweep, if the files hold a force and responses.
     pub(super) fn sweep(&self) -> Option<Table> {
         let (force, responses) = self.force_and_responses()?;
         let table = Table::new("sweep", "a stepped sweep, one file a step", &self.in_words());
@@ -291,7 +293,7 @@ impl FileSeries {
         if name.is_empty() || same > 1 { (k + 1).into() } else { name.as_str().into() }
     }
 
-    /// Its files as text.
+    /// Its files in words.
     pub(super) fn in_words(&self) -> String {
         match self.files.as_slice() {
             [one] => one.clone(),
@@ -313,40 +315,43 @@ pub(super) fn stem(path: &Path) -> String {
 pub(super) fn name(files: &[String]) -> String {
     match files {
         [one] => stem(Path::new(one)),
-        [first, ..] => common(&apart(first, &numbers(files))[0]),
+        [first, ..] => common(&split_at_number(first, &numbers(files))[0]),
         [] => String::new(),
     }
 }
 
 /// The text before and after each number of a file name; folder and ending are not searched.
-fn runs(name: &str) -> Vec<[String; 2]> {
+fn around_numbers(name: &str) -> Vec<[String; 2]> {
     let from = name.rfind('/').map_or(0, |at| at + 1);
     let to = name[from..].rfind('.').map_or(name.len(), |at| from + at);
     let digits = |at: usize| name[at..to].bytes().take_while(u8::is_ascii_digit).count();
-    let begins = (from..to).filter(|at| digits_at(name, *at) && (*at == from || !digits_at(name, at - 1)));
+    let begins =
+        (from..to).filter(|at| is_digit_at(name, *at) && (*at == from || !is_digit_at(name, at - 1)));
     begins.map(|at| [name[..at].to_owned(), name[at + digits(at)..].to_owned()]).collect()
 }
 
-fn digits_at(name: &str, at: usize) -> bool {
+/// Whether the byte at this place is a digit.
+fn is_digit_at(name: &str, at: usize) -> bool {
     name.as_bytes()[at].is_ascii_digit()
 }
 
 /// Number of names that have a number between the same two texts.
 type Numbers = HashMap<[String; 2], usize>;
 
+/// Counts, for each text before and after a number, the names with it.
 fn numbers(names: &[String]) -> Numbers {
     let mut numbers = Numbers::new();
-    names.iter().flat_map(|name| runs(name)).for_each(|run| *numbers.entry(run).or_default() += 1);
+    names.iter().flat_map(|name| around_numbers(name)).for_each(|run| *numbers.entry(run).or_default() += 1);
     numbers
 }
 
-/// The text before and after the number that varies among similar names; else around the last number. A name
-/// without a number is all before.
-fn apart(name: &str, numbers: &Numbers) -> [String; 2] {
-    let mut runs = runs(name);
+/// The text before and after the number that varies among similar names; else around the last number. A
+/// name without a number is the text before, with nothing after.
+fn split_at_number(name: &str, numbers: &Numbers) -> [String; 2] {
+    let mut pairs = around_numbers(name);
     let varies = |run: &[String; 2]| numbers.get(run).is_some_and(|n| *n > 1);
-    match runs.iter().rposition(varies).or(runs.len().checked_sub(1)) {
-        Some(at) => runs.swap_remove(at),
+    match pairs.iter().rposition(varies).or(pairs.len().checked_sub(1)) {
+        Some(at) => pairs.swap_remove(at),
         None => [name.to_owned(), String::new()],
     }
 }
@@ -354,7 +359,7 @@ fn apart(name: &str, numbers: &Numbers) -> [String; 2] {
 /// Whether two names differ in exactly one number.
 pub(super) fn alike(one: &str, other: &str) -> bool {
     let both = numbers(&[one.to_owned(), other.to_owned()]);
-    one != other && apart(one, &both) == apart(other, &both)
+    one != other && split_at_number(one, &both) == split_at_number(other, &both)
 }
 
 /// The name of a series: the text before its number, without trailing separators.
@@ -364,7 +369,7 @@ fn common(before: &str) -> String {
     if name.is_empty() { "series".to_owned() } else { name.to_owned() }
 }
 
-/// Channels that files of one kind share.
+/// Units and kinds of the channels, as a key of files of one kind.
 fn signature(headers: &[Header]) -> String {
     let one = |h: &Header| [h.unit.as_str(), h.kind].join("|");
     headers.iter().map(one).collect::<Vec<_>>().join("\n")
@@ -404,7 +409,7 @@ mod tests {
             ("record.mp3", ["record.mp3", ""]),
             ("a5/plain", ["a5/plain", ""]),
         ] {
-            assert_eq!(apart(name, &numbers(&all)), expected, "{name}");
+            assert_eq!(split_at_number(name, &numbers(&all)), expected, "{name}");
         }
         assert_eq!([common("x/step_"), common("")], ["step", "series"]);
     }

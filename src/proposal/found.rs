@@ -1,4 +1,4 @@
-//! The tables proposed for files.
+//! Proposed tables, together with the files for which there is none.
 
 use super::Table;
 
@@ -22,14 +22,14 @@ impl FoundTables {
         FoundTables { left: vec![(file.into(), why.into())], ..FoundTables::default() }
     }
 
-    /// Adds those of further files.
+    /// Adds the tables of further files, and the files without one.
     pub fn add(&mut self, more: FoundTables) {
         self.tables.extend(more.tables);
         self.left.extend(more.left);
     }
 
-    /// The same for another file or for a pattern: prefix of the tables' names, value of `file`, and the
-    /// files as text.
+    /// The same tables for another file or for a pattern: the prefix `from` of their names becomes `name`,
+    /// the key `file` the value `file`, and their files in words `words`.
     pub fn renamed(&self, from: &str, [name, file, words]: [&str; 3]) -> FoundTables {
         let table = |table: &Table| {
             let mut table = Table { files: words.to_owned(), ..table.clone() };
@@ -48,8 +48,8 @@ impl FoundTables {
         FoundTables { tables: self.tables.iter().map(table).collect(), left: left.collect() }
     }
 
-    /// Whether two files, names aside, have the same tables. The reasons why they have none may differ in
-    /// numbers.
+    /// Whether two files have the same tables, their names removed by [`FoundTables::renamed`]. Reasons for
+    /// no table are not compared, since they may differ in numbers.
     pub fn agrees(&self, other: &FoundTables) -> bool {
         self.tables == other.tables && self.left.len() == other.left.len()
     }

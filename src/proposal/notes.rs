@@ -4,14 +4,14 @@
 use crate::read::Folder;
 use crate::record::shown;
 
-/// First words of the names of note files, in lower case.
-const NAMES: [&str; 5] = ["readme", "note", "notiz", "liesmich", "lisez"];
+/// Beginnings of the names of note files, in lower case.
+const NAME_BEGINNINGS: [&str; 5] = ["readme", "note", "notiz", "liesmich", "lisez"];
 /// Largest size of a note file in bytes.
-const LONGEST: u64 = 1 << 16;
+const MOST_BYTES: u64 = 1 << 16;
 /// Characters shown of a line.
-const SHOWN: usize = 60;
+const SHOWN_CHARACTERS: usize = 60;
 /// Keys that a line may state, with the words that indicate each.
-const WORDS: [(&str, &[&str]); 3] =
+const KEY_WORDS: [(&str, &[&str]); 3] =
     [("height", &["height"]), ("mass", &["mass", "kg"]), ("sensitivity", &["sensitivity", "mv/"])];
 
 /// A line of notes that states a number.
@@ -28,30 +28,32 @@ impl Note {
     pub fn all(folder: &Folder) -> Vec<Note> {
         let is_notes = |name: &String| {
             let name = name.to_lowercase();
-            NAMES.iter().any(|begin| name.starts_with(begin))
+            NAME_BEGINNINGS.iter().any(|begin| name.starts_with(begin))
                 && [".txt", ".md"].iter().any(|end| name.ends_with(end))
         };
         let of_file = |name: String| {
             let path = folder.root().join(&name);
-            let short = folder.is_file(&path) && folder.stamp(&path).is_some_and(|stamp| stamp.0 <= LONGEST);
+            let short =
+                folder.is_file(&path) && folder.stamp(&path).is_some_and(|stamp| stamp.0 <= MOST_BYTES);
             let bytes = if short { folder.read(&path).unwrap_or_default() } else { Vec::new() };
             let text = String::from_utf8_lossy(&bytes).into_owned();
             let note = |(i, line): (usize, &str)| Note {
                 place: format!("{}, line {}", shown(&name), i + 1),
-                text: shown(line.trim().chars().take(SHOWN).collect::<String>()),
+                text: shown(line.trim().chars().take(SHOWN_CHARACTERS).collect::<String>()),
             };
-            text.lines().enumerate().map(note).filter(Note::states).collect::<Vec<_>>()
+            text.lines().enumerate().map(note).filter(Note::states_a_value).collect::<Vec<_>>()
         };
         folder.names().into_iter().filter(is_notes).flat_map(of_file).collect()
     }
 
-    fn states(&self) -> bool {
-        self.text.contains(|c: char| c.is_ascii_digit()) && WORDS.iter().any(|(key, _)| self.is_of(key))
+    /// Whether the line has a number and a word for a key.
+    fn states_a_value(&self) -> bool {
+        self.text.contains(|c: char| c.is_ascii_digit()) && KEY_WORDS.iter().any(|(key, _)| self.is_of(key))
     }
 
     /// Whether the line is about this key.
     pub fn is_of(&self, key: &str) -> bool {
         let text = self.text.to_lowercase();
-        WORDS.iter().any(|(of, words)| *of == key && words.iter().any(|word| text.contains(word)))
+        KEY_WORDS.iter().any(|(name, words)| *name == key && words.iter().any(|word| text.contains(word)))
     }
 }

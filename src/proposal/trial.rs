@@ -1,4 +1,12 @@
-//! Identifies records by trying one analysis after another.
+//! Identifies records of unknown kind by trying one analysis after another. The first table with a
+//! plausible answer is proposed: one without a finding of severity [`Severity::Doubt`], and with the
+//! evidence of its kind.
+//!
+//! A key of a proposed table has one of four states ([`KeyStatus`]). *found*: the files state its value.
+//! *guessed*: it was inferred, with a reason. *missing*: required, a person must add it. *open*: optional,
+//! a person may add it. Three methods of [`Table`] prepare it. *tried* fills in placeholders for missing
+//! and open keys, so that the table can run. *stated* adds the settings for reading that the command line
+//! states. *surmised* marks the kind of the files, not a key, as a guess.
 
 use super::folder::{FileSeries, short};
 use super::found::FoundTables;
@@ -19,53 +27,57 @@ const HEIGHT: &str = "height of the fall in m";
 /// Longest contact in s; a longer hump is no contact pulse.
 const LONGEST_CONTACT: f64 = 0.1;
 
-/// Findings of a decay with friction, whose amplitude falls by a constant step per swing.
-const FRICTION: [&str; 2] = [code::DECAY_UNEXPLAINED, code::DECAY_CHANGES];
+/// Codes of the doubts about a friction-damped decay, whose amplitude falls by a constant step per swing.
+const FRICTION_DOUBTS: [&str; 2] = [code::DECAY_UNEXPLAINED, code::DECAY_CHANGES];
 
-/// Least number of segments for a frequency response, and the samples of a segment that are sufficient.
-const AVERAGES: usize = 4;
-const LONG: usize = 8192;
+/// A frequency response needs at least this many segments without overlap.
+const LEAST_SEGMENTS: usize = 4;
+/// Samples of a segment that always suffice. Where a record gives fewer, the length of its segments is
+/// stated.
+const LONG_SEGMENT: usize = 8192;
 
-/// Least share of the record after its start that a decay must take, where a train of impacts is also
-/// possible.
-const MOSTLY: f64 = 0.2;
+/// Least share of the rest of the record that a decay takes from its start. A shorter one may be the
+/// ringing after one of several impacts.
+const LEAST_DECAY_SHARE: f64 = 0.2;
 
-/// Largest share of the record before a decay that starts at once.
-const AT_ONCE: f64 = 0.01;
+/// Largest share of the record before a decay that starts at once, as after a release; before a drop there
+/// is a longer rest.
+const MOST_LEAD_SHARE: f64 = 0.01;
 
 /// Square of the crest factor of a sine: 2, plus an allowance for noise; a square wave has 1.
-const SINE: Range<f64> = 1.8..2.7;
+const SINE_CREST_SQUARED: Range<f64> = 1.8..2.7;
 
-/// Restitution above which a body does not bounce: it rings.
-const LOSSLESS: f64 = 0.99;
+/// Largest coefficient of restitution of a bouncing body. A train with a larger one is the ringing of a
+/// structure.
+const MOST_RESTITUTION: f64 = 0.99;
 
-/// Largest relative spread of the intervals of a train of impacts. Machines jitter, footsteps vary by a
-/// tenth, while intervals of bouncing spread by a half or more.
-const STEADY: f64 = 0.25;
+/// Largest relative spread of the intervals of a steady train of impacts. Those of footsteps vary by a
+/// tenth, those of bounces by a half or more.
+const MOST_INTERVAL_SPREAD: f64 = 0.25;
 
-/// Words in the names of channels with crank pulses.
-const TACHO: [&str; 4] = ["tach", "rpm", "crank", "drehzahl"];
+/// Parts of the names of tacho channels, in lower case.
+const TACHO_WORDS: [&str; 4] = ["tach", "rpm", "crank", "drehzahl"];
 
-/// Number of files from which a series may be a sweep.
-pub(super) const STEPS: usize = 5;
+/// Least number of files of a sweep: fewer points show no resonance curve.
+pub(super) const LEAST_SWEEP_FILES: usize = 5;
 
 /// Most values of a file that are analysed. Five minutes of eight channels at 51.2 kHz are 123 million:
 /// minutes of work and 80 bytes of memory each.
-const VALUES: usize = 1 << 27;
+const MOST_VALUES: usize = 1 << 27;
 
 impl From<Option<Finding>> for Refusal {
     fn from(found: Option<Finding>) -> Refusal {
-        let said = |name: &str| match found.as_ref().and_then(|found| found.fact(name)) {
-            Some(Fact::Name(said)) => said.clone(),
+        let fact = |name: &str| match found.as_ref().and_then(|found| found.fact(name)) {
+            Some(Fact::Name(text)) => text.clone(),
             _ => String::new(),
         };
-        let why = Some(said("why")).filter(|why| !why.is_empty()).unwrap_or_else(|| "no answer".to_owned());
-        Refusal { why, hint: said("hint"), code: said("refusal") }
+        let why = Some(fact("why")).filter(|why| !why.is_empty()).unwrap_or_else(|| "no answer".to_owned());
+        Refusal { why, hint: fact("hint"), code: fact("refusal") }
     }
 }
 
-/// Makes the table for a channel of a series.
-type Kind = fn(&FileSeries, usize, &str) -> Table;
+/// Makes the table of one kind of analysis for a channel of a series, by its index and a name for it.
+type MakeTable = fn(&FileSeries, usize, &str) -> Table;
 
 /// Tries analyses on records.
 #[derive(Clone, Copy)]
@@ -76,7 +88,8 @@ pub(super) struct Trial<'a> {
 }
 
 impl Trial<'_> {
-    /// The answers of tables, or the reason why there is none.
+    /// Runs the tables as a campaign, with placeholders for keys that are not stated. Gives their answers,
+    /// or the reason why there is none.
     fn answers(&self, tables: &[Table]) -> Result<Answer, Refusal> {
         let path = self.folder.root().join(Proposal::FILE);
         let text: String = tables.iter().map(|table| table.stated(self.reading).tried().toml(&[])).collect();
@@ -85,55 +98,59 @@ impl Trial<'_> {
         answered.map_err(|error| Refusal { why: short(&error), ..Refusal::default() })?.map_err(Refusal::from)
     }
 
-    /// The first table with a plausible answer and no doubt.
-    fn first(&self, tables: &[Table]) -> Option<Table> {
-        let sure = |table| Some((table, self.sensibly(from_ref(table))?));
-        let mut answering = tables.iter().filter_map(sure);
-        let (first, heard) = answering.next()?;
-        let other = if is_brief(&heard) || first.lacks() { answering.next() } else { None };
+    /// The first table with a plausible answer; the next answering one instead if the first is a decay that
+    /// fills little of the record, or a drop whose decay starts at once.
+    fn first_plausible(&self, tables: &[Table]) -> Option<Table> {
+        let with_answer = |table| Some((table, self.plausible_answer(from_ref(table))?));
+        let mut plausible = tables.iter().filter_map(with_answer);
+        let (first, answer) = plausible.next()?;
+        // Only the table of a drop with one rebound lacks a key, its height.
+        let is_drop = first.lacks();
+        let next = if is_brief_decay(&answer) || is_drop { plausible.next() } else { None };
         // A record at rest before its first impact is a drop; one that decays from its start is not.
-        let other =
-            other.filter(|(_, heard)| !first.lacks() || begins(heard).is_some_and(|part| part < AT_ONCE));
-        Some(other.map_or(first, |(table, _)| table).clone())
+        let starts_at_once = |answer: &Answer| lead_share(answer).is_some_and(|lead| lead < MOST_LEAD_SHARE);
+        let next = next.filter(|(_, answer)| !is_drop || starts_at_once(answer));
+        Some(next.map_or(first, |(table, _)| table).clone())
     }
 
-    /// A decay without a modal fit, such as one with friction.
-    fn unexplained(&self, tables: &[Table]) -> Option<Table> {
-        let friction = |table: &&Table| {
-            let doubts = |heard: &Answer| {
-                heard
-                    .findings
-                    .iter()
-                    .all(|(_, f)| f.severity < Severity::Doubt || FRICTION.contains(&&*f.code))
-            };
+    /// The first decay table whose only doubts are those of a friction-damped decay.
+    fn friction_decay(&self, tables: &[Table]) -> Option<Table> {
+        let only_friction_doubts = |answer: &Answer| {
+            let allowed = |f: &Finding| f.severity < Severity::Doubt || FRICTION_DOUBTS.contains(&&*f.code);
+            answer.findings.iter().all(|(_, finding)| allowed(finding))
+        };
+        let is_friction_decay = |table: &&Table| {
             table.section == "decay"
-                && self.answers(from_ref(*table)).is_ok_and(|h| doubts(&h) && !is_brief(&h))
+                && self
+                    .answers(from_ref(*table))
+                    .is_ok_and(|answer| only_friction_doubts(&answer) && !is_brief_decay(&answer))
         };
-        tables.iter().find(friction).cloned()
+        tables.iter().find(is_friction_decay).cloned()
     }
 
-    /// The answers of the tables, if they are plausible and without a doubt.
-    fn sensibly(&self, tables: &[Table]) -> Option<Answer> {
-        let sure = |heard: &Answer| {
-            heard.findings.iter().all(|(_, f)| f.severity < Severity::Doubt) && sensible(tables, heard)
+    /// The answers of the tables, if they are plausible and no finding has the severity [`Severity::Doubt`].
+    fn plausible_answer(&self, tables: &[Table]) -> Option<Answer> {
+        let is_plausible = |answer: &Answer| {
+            answer.findings.iter().all(|(_, f)| f.severity < Severity::Doubt) && fits_kind(tables, answer)
         };
-        self.answers(tables).ok().filter(sure)
+        self.answers(tables).ok().filter(is_plausible)
     }
 
-    /// The tables of a sweep, if a series is one; a few files decide whether all are read.
+    /// The tables of a sweep, if a series is one: the sweep and the modes of each response without jumps.
+    /// Of a long series, the `few` files are analysed first; all are analysed only if those form a sweep.
     pub fn sweep(&self, series: &FileSeries, few: &FileSeries) -> Option<FoundTables> {
-        let table = series.sweep().filter(|_| series.files.len() >= STEPS)?;
-        let answer = |table: &Table| self.answers(from_ref(table)).ok();
+        let table = series.sweep().filter(|_| series.files.len() >= LEAST_SWEEP_FILES)?;
+        let answer_of = |table: &Table| self.answers(from_ref(table)).ok();
         if few.files.len() < series.files.len() {
-            answer(&few.sweep()?).filter(|heard| settled(heard, 0.0))?;
+            answer_of(&few.sweep()?).filter(|answer| enough_steps_certain(answer, 0.0))?;
         }
-        let heard = answer(&table).filter(|heard| settled(heard, 0.5))?;
+        let answer = answer_of(&table).filter(|answer| enough_steps_certain(answer, 0.5))?;
         let (_, responses) = series.force_and_responses().unwrap_or_default();
         let name = |k: usize| match responses.len() {
             1 => series.name.clone(),
             _ => format!("{} {}", series.name, series.channel(k).to_string().trim_matches('"')),
         };
-        let jumps = |i: usize| matches!(heard.evidence.get(i), Some(Evidence::Sweep { jumps: true, .. }));
+        let jumps = |i: usize| matches!(answer.evidence.get(i), Some(Evidence::Sweep { jumps: true, .. }));
         // A response that jumps has no linear modes.
         let modes = responses.iter().enumerate().filter(|(i, _)| !jumps(*i)).map(|(_, k)| {
             let table = Table::new("frf", "its modes", &series.in_words()).found("sweep", name(*k));
@@ -142,31 +159,34 @@ impl Trial<'_> {
         Some(FoundTables { tables: [table].into_iter().chain(modes).collect(), ..FoundTables::default() })
     }
 
-    /// The tables of repeated drops, if a few files of a series are drops.
+    /// The tables of repeated drops of one body, if a few files of a series are drops that agree.
     pub fn drops(&self, series: &FileSeries, few: &FileSeries) -> Option<FoundTables> {
-        if series.files.len() < 2 || series.headers.len() != 1 || series.values() > VALUES {
+        if series.files.len() < 2 || series.headers.len() != 1 || series.values() > MOST_VALUES {
             return None;
         }
-        let drops = |series: &FileSeries, table: Kind| {
-            let one = |file: &String| {
+        let tables = |series: &FileSeries, table: MakeTable| {
+            let of_file = |file: &String| {
                 table(&FileSeries { files: vec![file.clone()], ..series.clone() }, 0, &series.name)
             };
             match series.pattern {
                 Some(_) => vec![table(series, 0, &series.name)],
-                None => series.files.iter().map(one).collect::<Vec<Table>>(),
+                None => series.files.iter().map(of_file).collect::<Vec<Table>>(),
             }
         };
-        // Repeated drops of one body agree. Where names do not group them, each must be a drop by itself.
-        let each = |heard: &Answer| {
-            let of = |evidence: &Evidence| matches!(evidence, Evidence::Drops { files, .. } if *files == few.files.len());
-            !few.alike || heard.evidence.first().is_some_and(of)
+        // `alike`: grouped by content, not by name; then every file must have given a drop.
+        let every_file_a_drop = |answer: &Answer| {
+            let all = |evidence: &Evidence| matches!(evidence, Evidence::Drops { files, .. } if *files == few.files.len());
+            !few.alike || answer.evidence.first().is_some_and(all)
         };
-        let agree = |kind: &Kind| self.sensibly(&drops(few, *kind)).as_ref().is_some_and(each);
-        let kind = [FileSeries::bounces as Kind, FileSeries::fall].into_iter().find(agree)?;
-        Some(FoundTables { tables: drops(series, kind), ..FoundTables::default() })
+        let agree = |table: &MakeTable| {
+            self.plausible_answer(&tables(few, *table)).as_ref().is_some_and(every_file_a_drop)
+        };
+        let table = [FileSeries::bounces as MakeTable, FileSeries::fall].into_iter().find(agree)?;
+        Some(FoundTables { tables: tables(series, table), ..FoundTables::default() })
     }
 
-    /// The tables of one file.
+    /// The tables of one file: of a frequency response, of force and responses, of a hammer drill, or else
+    /// one for each channel.
     pub fn file(&self, series: &FileSeries, name: &str) -> FoundTables {
         let file = &series.files[0];
         let mut found = FoundTables::default();
@@ -177,18 +197,18 @@ impl Trial<'_> {
                 return FoundTables::left(file, why);
             }
             let table = Table::new("frf", "a frequency response function", file);
-            return self.answering(table.found("name", name).found("file", file));
+            return self.with_answer(table.found("name", name).found("file", file));
         }
         if let Some((force, responses)) = series.force_and_responses() {
             for response in responses {
-                found.add(self.function(series, name, [force, response]));
+                found.add(self.frequency_response(series, name, [force, response]));
             }
             return found;
         }
         let (channels, values) = (series.headers.len().min(CHANNELS), series.values());
-        if values > VALUES {
+        if values > MOST_VALUES {
             let why = format!(
-                "{values} values, more than the {VALUES} that are tried; write its table by hand, as docs/campaign.md shows, or: vibro spectrum {file} --channel 1"
+                "{values} values, more than the {MOST_VALUES} that are tried; write its table by hand, as docs/campaign.md shows, or: vibro spectrum {file} --channel 1"
             );
             return FoundTables::left(file, why);
         }
@@ -196,82 +216,94 @@ impl Trial<'_> {
         if !drills.is_empty() {
             return FoundTables { tables: drills, ..found };
         }
-        let each = (0..channels).into_par_iter().with_min_len(share(values));
-        let each = each.map(|k| match series.components(k) {
-            Some(of) => {
-                let why = format!("{} is the magnitude of {of}, which are taken", series.channel(k));
+        let indices = (0..channels).into_par_iter().with_min_len(share(values));
+        let by_channel = indices.map(|k| match series.components(k) {
+            Some(components) => {
+                let why = format!("{} is the magnitude of {components}, which are taken", series.channel(k));
                 FoundTables::left(file, why)
             }
             None => self.channel(series, k, name),
         });
-        each.collect::<Vec<FoundTables>>().into_iter().for_each(|one| found.add(one));
+        by_channel.collect::<Vec<FoundTables>>().into_iter().for_each(|tables| found.add(tables));
         found
     }
 
-    /// The table of one channel.
+    /// The table of one channel: a pulse, a drop that needs more keys, another kind with a plausible
+    /// answer, or else a spectrum.
+    ///
+    /// An undecided drop yields to a decay or steady train that explains the whole record, because bounces
+    /// also look like decays and impacts.
     fn channel(&self, series: &FileSeries, k: usize, name: &str) -> FoundTables {
         let [pulse, others @ ..] = series.of_channel(k, name);
-        // A pulse is the only event of its record. A doubt about the filter or the contact law does not make
-        // it another kind.
-        let alone = |heard: Answer| {
-            let short =
+        // A pulse is the only event of its record. A doubt about the filter or the contact law does not
+        // make it another kind.
+        let single_pulse = |answer: Answer| {
+            let is_short =
                 |e: &Evidence| matches!(e, Evidence::Pulse { duration } if *duration < LONGEST_CONTACT);
-            heard.evidence.first().is_some_and(short)
-                && heard.findings.iter().all(|(_, finding)| finding.code != code::PULSE_NOT_ALONE)
+            answer.evidence.first().is_some_and(is_short)
+                && answer.findings.iter().all(|(_, finding)| finding.code != code::PULSE_NOT_ALONE)
         };
-        if self.answers(from_ref(&pulse)).is_ok_and(alone) {
+        if self.answers(from_ref(&pulse)).is_ok_and(single_pulse) {
             return FoundTables::table(pulse);
         }
-        let first = self.first(&others);
-        let untold = self.untold(series, k, name).filter(|_| !first.as_ref().is_some_and(|t| self.is_one(t)));
-        if let Some(table) = untold.or(first).or_else(|| self.unexplained(&others)) {
+        let plausible = self.first_plausible(&others);
+        let explained = plausible.as_ref().is_some_and(|table| self.explains_whole_record(table));
+        let undecided = self.undecided_drop(series, k, name).filter(|_| !explained);
+        if let Some(table) = undecided.or(plausible).or_else(|| self.friction_decay(&others)) {
             return FoundTables::table(table);
         }
         let table = series.channel_table(k, name, "spectrum", "a time record");
         let what = "sines to fit, strongest first; gives their true amplitudes";
-        self.answering(table.open("tones", "", what))
+        self.with_answer(table.open("tones", "", what))
     }
 
     /// Whether a table explains the record as one motion: a decay that fills most of it and that no other
-    /// event follows, or a steady train of impacts. Each bounce rings down, and bounces are impacts in a row.
-    fn is_one(&self, table: &Table) -> bool {
-        let one = |of: &Evidence| match of {
-            Evidence::Impacts { spread, .. } => *spread < STEADY,
+    /// event follows, or a steady train of impacts.
+    fn explains_whole_record(&self, table: &Table) -> bool {
+        let is_steady = |evidence: &Evidence| match evidence {
+            Evidence::Impacts { spread, .. } => *spread < MOST_INTERVAL_SPREAD,
             _ => true,
         };
-        let alone = |heard: &Answer| !heard.findings.iter().any(|(_, found)| found.code == code::DECAY_CUT);
-        self.answers(from_ref(table))
-            .is_ok_and(|heard| !is_brief(&heard) && alone(&heard) && heard.evidence.iter().all(one))
+        let is_cut = |answer: &Answer| answer.findings.iter().any(|(_, found)| found.code == code::DECAY_CUT);
+        self.answers(from_ref(table)).is_ok_and(|answer| {
+            !is_brief_decay(&answer) && !is_cut(&answer) && answer.evidence.iter().all(is_steady)
+        })
     }
 
-    /// The table of a drop whose bounces cannot be told from other sounds yet, with the reason and a hint.
-    fn untold(&self, series: &FileSeries, k: usize, name: &str) -> Option<Table> {
+    /// A drop table marked as refused, where the record has several possible series of bounces. Its height
+    /// is asked for, which can decide between them.
+    fn undecided_drop(&self, series: &FileSeries, k: usize, name: &str) -> Option<Table> {
         let refusal = self.answers(&[series.bounces(k, name)]).err().filter(|r| r.code == Train::UNTOLD)?;
         let table = series.bounces(k, name).missing("height", "0.5", HEIGHT);
         let rows = table.rows.into_iter().filter(|row| !matches!(row.known, KeyStatus::Open(_))).collect();
         Some(Table { rows, refused: Some(refusal), ..table })
     }
 
-    /// The table if it gives an answer, else the reason.
-    fn answering(&self, table: Table) -> FoundTables {
+    /// The table if its analysis gives an answer, else the reason why there is none.
+    fn with_answer(&self, table: Table) -> FoundTables {
         match self.answers(from_ref(&table)) {
             Ok(_) => FoundTables::table(table),
             Err(refusal) => FoundTables::left(table.files, refusal.why),
         }
     }
 
-    /// The frequency response between two channels: of noise, else of hammer blows.
-    fn function(&self, series: &FileSeries, name: &str, [force, response]: [usize; 2]) -> FoundTables {
+    /// The frequency response between two channels: under a lasting excitation, else of hammer blows.
+    fn frequency_response(
+        &self,
+        series: &FileSeries,
+        name: &str,
+        [force, response]: [usize; 2],
+    ) -> FoundTables {
         let file = &series.files[0];
-        let called = format!("{name} {}", series.headers[response].name);
+        let title = format!("{name} {}", series.headers[response].name);
         let table = |about| {
-            let table = Table::new("frf", about, file).found("name", &called).found("file", file);
+            let table = Table::new("frf", about, file).found("name", &title).found("file", file);
             let table = table.found("channel", series.channel(response));
             table.guessed("reference", series.channel(force), "the channel in N")
         };
         let steady = table("force and response");
-        let steady = match series.headers[response].n / AVERAGES {
-            few if few < LONG => steady.guessed(
+        let steady = match series.headers[response].n / LEAST_SEGMENTS {
+            few if few < LONG_SEGMENT => steady.guessed(
                 "segment",
                 1 << few.max(1).ilog2(),
                 "seven averages of half-overlapping segments",
@@ -279,13 +311,15 @@ impl Trial<'_> {
             _ => steady,
         };
         let blows = table("a hammer test").guessed("hammer", true, "the force is zero between blows");
-        match self.first(&[steady.clone(), blows]) {
+        match self.first_plausible(&[steady.clone(), blows]) {
             Some(table) => FoundTables::table(table),
-            None => self.answering(steady),
+            None => self.with_answer(steady),
         }
     }
 
-    /// A hammer drill: velocities beside a two-level channel, the pulses of its crank.
+    /// The tables of a hammer drill, one for each velocity: a channel beside them has two levels, as the
+    /// pulses of a crank. Where that channel is rather a contact circuit beside a sine, the table of its
+    /// impacts.
     fn drill(&self, series: &FileSeries, name: &str) -> Vec<Table> {
         let file = &series.files[0];
         let is_velocity = |h: &Header| h.quantity == "velocity" || h.unit == "V";
@@ -299,11 +333,12 @@ impl Trial<'_> {
             return Vec::new();
         };
         let shares: Vec<f64> = recording.records.iter().map(at_two_levels).collect();
-        let most = (0..shares.len()).max_by(|a, b| shares[*a].total_cmp(&shares[*b]));
-        let Some(pulses) = most.filter(|k| shares[*k] > 0.9) else { return Vec::new() };
-        // A two-level contact circuit beside the channel of its excitation.
-        let called = series.headers[pulses].name.to_lowercase();
-        if !TACHO.iter().any(|word| called.contains(word))
+        let largest = (0..shares.len()).max_by(|a, b| shares[*a].total_cmp(&shares[*b]));
+        let Some(pulses) = largest.filter(|k| shares[*k] > 0.9) else { return Vec::new() };
+        // A contact circuit has two levels, too. It is assumed where the only other channel is a sine, its
+        // excitation, and the name is not that of a tacho.
+        let pulses_name = series.headers[pulses].name.to_lowercase();
+        if !TACHO_WORDS.iter().any(|word| pulses_name.contains(word))
             && let [sine] = (0..series.headers.len()).filter(|k| *k != pulses).collect::<Vec<_>>()[..]
             && is_sine(&recording.records[sine])
         {
@@ -358,15 +393,16 @@ impl FileSeries {
         )
     }
 
+    /// A table of a section for a channel, with the keys that name it and its files.
     fn channel_table(&self, k: usize, name: &str, section: &'static str, about: &'static str) -> Table {
         let file = self.pattern.as_ref().filter(|_| self.files.len() > 1).unwrap_or(&self.files[0]);
         let several = self.headers.len() > 1;
-        let called = if several { format!("{name} {}", self.headers[k].name) } else { name.to_owned() };
+        let title = if several { format!("{name} {}", self.headers[k].name) } else { name.to_owned() };
         let table = Table::new(section, about, &self.in_words());
         let table = if self.alike {
-            table.guessed("name", called, "the columns and rate of the others, and agrees with them")
+            table.guessed("name", title, "the columns and rate of the others, and agrees with them")
         } else {
-            table.found("name", called)
+            table.found("name", title)
         };
         let table = table.found("file", file);
         if several { table.found("channel", self.channel(k)) } else { table }
@@ -388,52 +424,57 @@ impl FileSeries {
     }
 }
 
-/// Whether at least this share of the steps of each sweep, and one step, has an uncertainty: a clipped step
-/// does not make it another kind.
-fn settled(heard: &Answer, share: f64) -> bool {
-    let most = |of: &Evidence| match of {
+/// Whether the answer consists of sweeps with enough certain steps: in each, at least this share of the
+/// steps and at least one has an uncertainty. Steps without one, such as clipped ones, do not make it
+/// another kind.
+fn enough_steps_certain(answer: &Answer, share: f64) -> bool {
+    let is_certain = |evidence: &Evidence| match evidence {
         Evidence::Sweep { steps, sure, .. } => *sure as f64 >= share * *steps as f64 && *sure > 0,
         _ => false,
     };
-    !heard.evidence.is_empty() && heard.evidence.iter().all(most)
+    !answer.evidence.is_empty() && answer.evidence.iter().all(is_certain)
 }
 
-/// Share of the record before a decay begins; `None` if the answer is no decay.
-fn begins(heard: &Answer) -> Option<f64> {
-    let Some(Evidence::Decay { start, last, .. }) = heard.evidence.first() else { return None };
+/// Share of the record before the decay begins; `None` if the answer is no decay.
+fn lead_share(answer: &Answer) -> Option<f64> {
+    let Some(Evidence::Decay { start, last, .. }) = answer.evidence.first() else { return None };
     Some(start / last)
 }
 
-/// Whether the answer is a decay that takes a small part of its record, as the ringing of one of several
-/// impacts.
-fn is_brief(heard: &Answer) -> bool {
-    matches!(heard.evidence.first(), Some(Evidence::Decay { start, end, last }) if end - start < MOSTLY * (last - start))
+/// Whether the answer is a decay that takes a small part of the record after its start, as the ringing
+/// after one of several impacts.
+fn is_brief_decay(answer: &Answer) -> bool {
+    matches!(answer.evidence.first(), Some(Evidence::Decay { start, end, last }) if end - start < LEAST_DECAY_SHARE * (last - start))
 }
 
-/// Whether impacts are plausible for their tables: three or more in a row with few missed, or two in a drop
-/// with one rebound, and no rebound as fast as the approach.
-fn sensible(tables: &[Table], heard: &Answer) -> bool {
-    let rebound = tables.iter().any(Table::lacks);
-    match heard.evidence.first() {
+/// Whether an answer is plausible for the kind of its tables. Impacts: three or more, at most a quarter of
+/// them missed. Drops: no rebound as fast as the approach, and two impacts a file in the tables of a drop
+/// with one rebound.
+fn fits_kind(tables: &[Table], answer: &Answer) -> bool {
+    // Of the kinds with impacts, only a drop with one rebound lacks a key, its height.
+    let one_rebound = tables.iter().any(Table::lacks);
+    match answer.evidence.first() {
         Some(Evidence::Impacts { n, missed, .. }) => *n >= 3 && 4 * missed <= *n,
         Some(Evidence::Drops { restitution, one_interval_each, .. }) => {
-            *restitution <= LOSSLESS && (!rebound || *one_interval_each)
+            *restitution <= MOST_RESTITUTION && (!one_rebound || *one_interval_each)
         }
         _ => true,
     }
 }
 
-/// Whether the peak of a trace is that of a sine of the same power, noise included.
+/// Whether a trace may be a sine, by its squared crest factor: squared peak over mean square, both about
+/// the mean.
 fn is_sine(record: &Record) -> bool {
     let Record::Trace(trace) = record else { return false };
     let n = trace.values.len() as f64;
     let mean = trace.values.iter().sum::<f64>() / n;
-    let reach = trace.values.iter().map(|v| (v - mean).abs()).fold(0.0, f64::max);
+    let peak = trace.values.iter().map(|v| (v - mean).abs()).fold(0.0, f64::max);
     let power = trace.values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / n;
-    reach > 0.0 && SINE.contains(&(reach * reach / power))
+    peak > 0.0 && SINE_CREST_SQUARED.contains(&(peak * peak / power))
 }
 
-/// Share of values in the lowest and highest tenth of the range, if both have some.
+/// Share of the values in the lowest and highest tenth of the range; 0 unless each tenth has more than 0.5
+/// % of the values.
 fn at_two_levels(record: &Record) -> f64 {
     let Record::Trace(trace) = record else { return 0.0 };
     let ends = |(a, b): (f64, f64), v: &f64| (a.min(*v), b.max(*v));
@@ -441,6 +482,6 @@ fn at_two_levels(record: &Record) -> f64 {
     let tenth = 0.1 * (high - low);
     let count = |is: &dyn Fn(f64) -> bool| trace.values.iter().filter(|v| is(**v)).count();
     let (down, up) = (count(&|v| v < low + tenth), count(&|v| v > high - tenth));
-    let some = trace.values.len() / 200;
-    if down > some && up > some { (down + up) as f64 / trace.values.len() as f64 } else { 0.0 }
+    let least = trace.values.len() / 200;
+    if down > least && up > least { (down + up) as f64 / trace.values.len() as f64 } else { 0.0 }
 }

@@ -1,17 +1,18 @@
-//! How much of a file is analysed, and how much at once.
+//! Limits of the work on a folder: channels of a file, and values held in memory at once.
 
 use super::folder::FileSeries;
 
-/// Channels of a file that are analysed.
+/// Most channels of a file that are analysed; further ones are ignored.
 pub(super) const CHANNELS: usize = 8;
 
 /// Most values analysed in parallel, at 80 bytes of memory each; larger files are analysed one after the
 /// other.
-const TOGETHER: usize = 1 << 25;
+const PARALLEL_VALUES: usize = 1 << 25;
 
-/// Files of this many values that one core analyses before another core starts.
+/// Number of files of `values` values each that one core takes as a share of the work: 1 where all cores
+/// can work at once, all files where their memory would not suffice.
 pub(super) fn share(values: usize) -> usize {
-    if values.saturating_mul(rayon::current_num_threads()) > TOGETHER { usize::MAX } else { 1 }
+    if values.saturating_mul(rayon::current_num_threads()) > PARALLEL_VALUES { usize::MAX } else { 1 }
 }
 
 impl FileSeries {

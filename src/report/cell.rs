@@ -47,6 +47,7 @@ impl<T: Into<Cell>> From<Option<T>> for Cell {
 }
 
 impl Cell {
+    /// The number, if there is one and it is not NaN.
     pub(super) fn value(&self) -> Option<f64> {
         match self {
             Cell::Number(value) | Cell::Estimate { value, .. } if !value.is_nan() => Some(*value),

@@ -23,28 +23,32 @@ pub(super) struct Formatted {
     pub numeric: bool,
 }
 
-/// The power of ten that divides all numbers of a column.
+/// The power of ten that divides all numbers of a column, by the largest of `cells`.
 pub(super) fn power(column: &Column, cells: &[&Cell]) -> i32 {
     let values = cells.iter().filter_map(|c| c.value()).filter(|v| v.is_finite());
     let largest = values.map(f64::abs).fold(0.0, f64::max);
     // Angles and percentages are not scaled. Counts and other numbers without a unit are not either, since
     // the head has no unit to show the scale; such a number keeps its own power of ten.
-    let bare = matches!(column.unit.as_str(), "°" | "rad" | "%" | "" | "1");
-    if bare { 0 } else { engineering(largest) }
+    let unscaled = matches!(column.unit.as_str(), "°" | "rad" | "%" | "" | "1");
+    if unscaled { 0 } else { engineering(largest) }
 }
 
 impl Formatted {
+    /// Writes the cells of a column, divided by 10^`power`: estimates with two digits of their uncertainty;
+    /// the others with common decimals, numbers to five significant digits and measured values without an
+    /// uncertainty to three to five.
     pub fn new(column: &Column, cells: &[&Cell], power: i32) -> Formatted {
         let scale = 10f64.powi(-power);
-        let of = |kind: fn(&Cell) -> bool| -> Vec<f64> {
-            let bare = cells.iter().filter(|c| c.std().is_none() && kind(c)).filter_map(|c| c.value());
-            bare.filter(|v| v.is_finite()).map(|v| v * scale).collect()
+        let without_std = |kind: fn(&Cell) -> bool| -> Vec<f64> {
+            let values = cells.iter().filter(|c| c.std().is_none() && kind(c)).filter_map(|c| c.value());
+            values.filter(|v| v.is_finite()).map(|v| v * scale).collect()
         };
-        let numbers = of(|cell| matches!(cell, Cell::Number(_)));
-        let unsure = of(|cell| matches!(cell, Cell::Estimate { .. }));
-        let known = (5, common_decimals(&numbers, 5));
-        let few = told_apart(&unsure);
-        let unsure = (few, common_decimals(&unsure, few));
+        let numbers = without_std(|cell| matches!(cell, Cell::Number(_)));
+        let measured = without_std(|cell| matches!(cell, Cell::Estimate { .. }));
+        // Significant digits and decimals of each kind.
+        let number_format = (5, common_decimals(&numbers, 5));
+        let digits = distinguishing_digits(&measured);
+        let measured_format = (digits, common_decimals(&measured, digits));
         let written = |cell: &&Cell| match (cell, cell.value()) {
             (Cell::Text(text), _) => text.clone(),
             (_, None) => "–".to_owned(),
@@ -52,10 +56,12 @@ impl Formatted {
                 uncertain(value * scale, std * scale)
             }
             (_, Some(value)) if column.unit == "%" => percentage(value),
-            (_, Some(value)) => match if matches!(cell, Cell::Number(_)) { known } else { unsure } {
-                (_, Some(decimals)) if value.is_finite() => fixed(value * scale, decimals),
-                (digits, _) => significant(value * scale, digits),
-            },
+            (_, Some(value)) => {
+                match if matches!(cell, Cell::Number(_)) { number_format } else { measured_format } {
+                    (_, Some(decimals)) if value.is_finite() => fixed(value * scale, decimals),
+                    (digits, _) => significant(value * scale, digits),
+                }
+            }
         };
         Formatted {
             head: labelled(&column.name, &scaled_unit(&column.unit, power)),
@@ -84,9 +90,9 @@ impl Formatted {
 
 /// Significant digits of measured values without an uncertainty: three, or up to five where that
 /// distinguishes them.
-fn told_apart(values: &[f64]) -> usize {
-    let different = |digits| values.iter().map(|v| significant(*v, digits)).collect::<BTreeSet<_>>().len();
-    (3..5).find(|digits| different(*digits) == different(5)).unwrap_or(5)
+fn distinguishing_digits(values: &[f64]) -> usize {
+    let distinct = |digits| values.iter().map(|v| significant(*v, digits)).collect::<BTreeSet<_>>().len();
+    (3..5).find(|digits| distinct(*digits) == distinct(5)).unwrap_or(5)
 }
 
 /// Decimals that show the largest value with `digits` significant digits, fewer where all values are round.

@@ -34,7 +34,7 @@ impl Picture {
     }
 }
 
-/// Draws figures in parallel and writes each as `NAME.svg` and `NAME.png`. Gives the pictures in order.
+/// Draws figures in parallel and writes each as `NAME.svg` and `NAME.png`. Returns the pictures in order.
 ///
 /// # Errors
 /// Those of drawing; if a file cannot be written.
@@ -82,14 +82,14 @@ pub type Files = Vec<(String, Vec<u8>)>;
 /// # Errors
 /// If there is nothing to write, or it cannot be written.
 pub fn records(name: &str, records: &[Record]) -> Result<(Files, Option<Finding>)> {
-    let text = |target: Target, storage: Storage| -> Result<Vec<u8>> {
+    let content = |target: Target, storage: Storage| -> Result<Vec<u8>> {
         let mut bytes = Vec::new();
         target.write(records, storage, &mut bytes)?;
         Ok(bytes)
     };
-    let mut files = vec![(format!("{name}.csv"), text(Target::Csv, Storage::default())?)];
+    let mut files = vec![(format!("{name}.csv"), content(Target::Csv, Storage::default())?)];
     let binary = Storage { binary: true, ..Storage::default() };
-    match text(Target::Uff, Storage::default()).or_else(|_| text(Target::Uff, binary)) {
+    match content(Target::Uff, Storage::default()).or_else(|_| content(Target::Uff, binary)) {
         Ok(bytes) => files.push((format!("{name}.uff"), bytes)),
         Err(error) => {
             let Some(why) = error.refusal() else { return Err(error) };
@@ -115,9 +115,10 @@ impl Names {
     pub fn has(&self, file: &str) -> bool {
         let Some((name, ending)) = file.rsplit_once('.') else { return false };
         let (Names::Numbered(stems) | Names::Named(stems)) = self;
-        let marks = |mark: &str| matches!(self, Names::Named(_)) || mark.bytes().all(|c| c.is_ascii_digit());
+        let is_mark =
+            |mark: &str| matches!(self, Names::Named(_)) || mark.bytes().all(|c| c.is_ascii_digit());
         let is_of = |stem: &&str| match name.strip_prefix(*stem) {
-            Some(rest) => rest.is_empty() || rest.strip_prefix('_').is_some_and(marks),
+            Some(rest) => rest.is_empty() || rest.strip_prefix('_').is_some_and(is_mark),
             None => false,
         };
         ENDINGS.contains(&ending) && stems.iter().any(is_of)

@@ -27,14 +27,18 @@ use vibro_figure::{Figure, Matrices, escaped};
 pub struct Page {
     title: String,
     headings: Vec<String>,
+    /// The elements so far, as HTML.
     body: String,
+    /// Data of the figures, for the script.
     figures: Vec<Value>,
+    /// Matrices to which the figures refer.
     matrices: Matrices,
+    /// Start of the sliders, if the page has them.
     whatif: Option<Value>,
 }
 
 /// Number of rows above which a table is collapsed.
-const LONG: usize = 12;
+const MOST_SHOWN_ROWS: usize = 12;
 
 impl Page {
     /// A page without content.
@@ -62,16 +66,17 @@ impl Page {
 
     /// Adds findings: doubts are visible, others collapsed.
     pub fn findings(self, all: &[(Severity, String)]) -> Page {
-        let list = |of: &dyn Fn(Severity) -> bool| {
-            let said = all.iter().filter(|(severity, _)| of(*severity));
-            said.fold(String::new(), |mut out, (severity, sentence)| {
+        let list = |with: &dyn Fn(Severity) -> bool| {
+            let listed = all.iter().filter(|(severity, _)| with(*severity));
+            listed.fold(String::new(), |mut out, (severity, sentence)| {
                 let name = severity.name();
                 let _ = writeln!(out, "<li class=\"{name}\"><b>{name}</b> {}</li>", code(&escaped(sentence)));
                 out
             })
         };
         let (doubts, others) = (list(&|s| s == Severity::Doubt), list(&|s| s != Severity::Doubt));
-        let count = |of: Severity| (all.iter().filter(|(severity, _)| *severity == of).count(), of.name());
+        let count =
+            |grade: Severity| (all.iter().filter(|(severity, _)| *severity == grade).count(), grade.name());
         let folded = [Severity::Caution, Severity::Note].map(count).into_iter().filter(|(n, _)| *n > 0);
         let folded: Vec<String> = folded.map(|(n, name)| counted(n, name)).collect();
         let mut page = self;
@@ -90,7 +95,7 @@ impl Page {
     /// Adds a table; a long one is collapsed.
     pub fn table(self, table: &Table) -> Page {
         let html = table.html();
-        if table.rows.len() <= LONG {
+        if table.rows.len() <= MOST_SHOWN_ROWS {
             return self.element(html.trim_end());
         }
         let (title, n) = (escaped(&table.title), table.rows.len());
@@ -181,6 +186,7 @@ impl Page {
         out
     }
 
+    /// Adds an element, as HTML.
     fn element(mut self, html: &str) -> Page {
         self.body.push_str(html);
         self.body.push('\n');
@@ -194,6 +200,7 @@ fn packed(out: &mut String, id: &str, bytes: &[u8]) {
         writeln!(out, "<script type=\"application/gzip\" id=\"{id}\">{}</script>", STANDARD.encode(bytes));
 }
 
+/// The bytes packed by gzip.
 fn gzip(bytes: &[u8]) -> Vec<u8> {
     let mut encoder = GzEncoder::new(Vec::new(), Compression::best());
     // Writing to a vector cannot fail.
@@ -204,6 +211,7 @@ fn gzip(bytes: &[u8]) -> Vec<u8> {
 /// The model in WebAssembly, made by `crates/vibro-whatif/build.sh`.
 const MODEL: &[u8] = include_bytes!("assets/page/whatif.wasm.gz");
 
+/// Styles of the page, and of its plots.
 const STYLE: &str = include_str!("assets/page.css");
 const PLOTS: &str = include_str!("assets/page/uplot.css");
 

@@ -10,7 +10,7 @@ pub fn headed(title: impl Into<String>, columns: &[(&str, &str)]) -> Table {
     columns.iter().fold(Table::new(title), |table, (name, unit)| table.column(*name, *unit))
 }
 
-/// A table with one row per item.
+/// A table with one row for each item.
 pub fn table<T>(
     title: impl Into<String>,
     items: impl IntoIterator<Item = T>,

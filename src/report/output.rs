@@ -21,11 +21,12 @@ use std::path::{Component, Path, PathBuf};
 pub struct Output {
     /// Medium of the figures.
     pub medium: Medium,
-    /// Hint where an existing file is in the way.
+    /// Advice for the error about an existing file that must not be replaced: where to write instead.
     pub elsewhere: String,
     folder: Folder,
     owner: Owner,
     replace: bool,
+    /// Files written so far, under temporary names.
     files: Vec<StagedFile>,
     /// Digest of the earlier content of a file that is extended.
     extended: Option<Digest>,
@@ -98,11 +99,12 @@ impl Output {
         Ok(self.at(name))
     }
 
+    /// The path of a file of the folder, unchecked.
     fn at(&self, name: &str) -> PathBuf {
         self.folder.root().join(name)
     }
 
-    /// Names of the files written, in order, each once.
+    /// Names of the files written, in order, each once. They have their names only after [`Output::commit`].
     pub fn written(&self) -> impl Iterator<Item = &str> {
         self.files.iter().map(|file| file.name.as_str())
     }
@@ -114,8 +116,9 @@ impl Output {
     /// If a file must not be replaced.
     pub fn expect(&self, may: impl Fn(&str) -> bool) -> Result<()> {
         let manifest = Manifest::of(&self.folder);
-        let mut names = self.folder.names().into_iter().filter(|name| OWN.contains(&&**name) || may(name));
-        names.try_for_each(|name| self.present(&manifest, &name, None).map(drop))
+        let mut names =
+            self.folder.names().into_iter().filter(|name| BOOKKEEPING.contains(&&**name) || may(name));
+        names.try_for_each(|name| self.check_writable(&manifest, &name, None).map(drop))
     }
 
     /// As [`Output::expect`], for one file with known bytes: an existing file with the same bytes is no
@@ -124,7 +127,7 @@ impl Output {
     /// # Errors
     /// As for [`Output::expect`].
     pub fn expect_bytes(&self, name: &str, bytes: &[u8]) -> Result<()> {
-        self.present(&Manifest::of(&self.folder), name, Some(&Sha256::digest(bytes).into())).map(drop)
+        self.check_writable(&Manifest::of(&self.folder), name, Some(&Sha256::digest(bytes).into())).map(drop)
     }
 
     /// Writes a file; a second call with the same name replaces the first.
@@ -154,7 +157,7 @@ impl Output {
     /// As [`Output::write`]; if the file changed meanwhile.
     pub fn extend(&mut self, name: &str, before: &str, addition: &str) -> Result<()> {
         self.extended = Some(Sha256::digest(before).into());
-        self.present(&Manifest::default(), name, None)?;
+        self.check_writable(&Manifest::default(), name, None)?;
         self.write(name, before.to_owned() + addition)
     }
 
@@ -168,11 +171,11 @@ impl Output {
         }
     }
 
-    /// Whether the file under a name may be replaced.
+    /// Checks that `name` may be written: `Same` if its bytes already have the digest `new`.
     ///
     /// # Errors
-    /// If it must not be replaced by a file with the digest `new`, or by any file.
-    fn present(&self, manifest: &Manifest, name: &str, new: Option<&Digest>) -> Result<Present> {
+    /// If a file there is not vibro's, is an input, or is protected.
+    fn check_writable(&self, manifest: &Manifest, name: &str, new: Option<&Digest>) -> Result<Present> {
         let path = self.at(name);
         let in_the_way = |what: &str| {
             let found = format!("{} {what}, so vibro does not replace it", shown(&path));
@@ -198,13 +201,13 @@ impl Output {
         if new == Some(&digest) {
             return Ok(Present::Same);
         }
-        let own = match name {
+        let is_of_vibro = match name {
             Output::KEPT => true,
             Manifest::FILE => Manifest::is_of(&self.folder),
             Output::INCOMPLETE => MARKS.iter().any(|text| digest == Digest::from(Sha256::digest(text))),
             _ => self.extended == Some(digest) || manifest.knows(self.owner, name, &digest),
         };
-        if !own {
+        if !is_of_vibro {
             return Err(foreign("was made by somebody else, or changed since vibro wrote it"));
         }
         if self.folder.is_protected(&path) {
@@ -220,20 +223,21 @@ impl Output {
     /// If an existing file must not be replaced: then nothing is changed. If the system refuses: then the
     /// folder is marked as incomplete.
     pub fn commit(mut self) -> Result<Vec<String>> {
-        let names: Vec<String> = self.written().map(str::to_owned).collect();
-        if names.is_empty() {
-            return Ok(names);
+        let staged_names: Vec<String> = self.written().map(str::to_owned).collect();
+        if staged_names.is_empty() {
+            return Ok(staged_names);
         }
         self.expect(|_| false)?;
         let before = Manifest::of(&self.folder);
         let stale = self.stale(&before);
-        // If the program is killed here, old and new files are mixed; the manifest lists both as vibro's.
+        // The manifest `meanwhile` lists old and new files as vibro's, so that a program killed while
+        // renaming leaves no file that the next run takes for a person's.
         let (mut meanwhile, mut after, mut changed) = (before.clone(), before.clone(), Vec::new());
         for name in &stale {
             after.forget(name);
         }
         for StagedFile { name, digest, staged } in std::mem::take(&mut self.files) {
-            if self.present(&before, &name, Some(&digest))? == Present::Replaceable {
+            if self.check_writable(&before, &name, Some(&digest))? == Present::Replaceable {
                 meanwhile.add(self.owner, &name, digest);
                 changed.push(staged);
             } else if !before.knows(self.owner, &name, &digest) {
@@ -243,35 +247,36 @@ impl Output {
             after.forget(&name);
             after.add(self.owner, name, digest);
         }
-        self.remember(&before, &meanwhile)?;
+        self.write_manifest(&before, &meanwhile)?;
         let (mark, path) = (MARKS[usize::from(self.owner == Owner::Run)], self.at(Output::INCOMPLETE));
         if changed.len() + stale.len() > 1 && !self.folder.is_file(&path) {
             self.folder.stage(&path, mark.as_bytes())?.place()?;
         }
         changed.into_iter().try_for_each(Staged::place)?;
         stale.iter().try_for_each(|name| self.folder.remove(&self.at(name)))?;
-        self.remember(&meanwhile, &after)?;
+        self.write_manifest(&meanwhile, &after)?;
         // A marker left by another kind of command stays.
         if self.folder.own_file(Output::INCOMPLETE).is_some_and(|held| held == mark.as_bytes()) {
             self.folder.remove(&path)?;
         }
-        Ok(names)
+        Ok(staged_names)
     }
 
     /// Files that an earlier run of a campaign wrote, that nobody changed, and that this run does not write.
     fn stale(&self, manifest: &Manifest) -> Vec<String> {
-        let as_left = |(name, known): &(&str, &Digest)| {
+        let is_unchanged_leftover = |(name, recorded): &(&str, &Digest)| {
             let path = self.at(name);
             self.owner == Owner::Run
-                && !self.written().any(|written| written == *name)
+                && !self.written().any(|staged| staged == *name)
                 && self.folder.occupant(&path) == Occupant::File
                 && !self.folder.opened(&path)
-                && self.folder.digest(&path).is_ok_and(|digest| digest == **known)
+                && self.folder.digest(&path).is_ok_and(|digest| digest == **recorded)
         };
-        manifest.owned(Owner::Run).filter(as_left).map(|(name, _)| name.to_owned()).collect()
+        manifest.owned(Owner::Run).filter(is_unchanged_leftover).map(|(name, _)| name.to_owned()).collect()
     }
 
-    fn remember(&self, before: &Manifest, after: &Manifest) -> Result<()> {
+    /// Writes the manifest if it changed.
+    fn write_manifest(&self, before: &Manifest, after: &Manifest) -> Result<()> {
         if before == after {
             return Ok(());
         }
@@ -279,8 +284,8 @@ impl Output {
     }
 }
 
-/// Files for the bookkeeping of a folder of results.
-const OWN: [&str; 2] = [Output::INCOMPLETE, Manifest::FILE];
+/// Files that vibro keeps for itself in a folder of results.
+const BOOKKEEPING: [&str; 2] = [Output::INCOMPLETE, Manifest::FILE];
 
 /// Text of the marker file, for a command and for a campaign.
 const MARKS: [&str; 2] = [
@@ -288,6 +293,7 @@ const MARKS: [&str; 2] = [
     "Old and new results of a campaign stand side by side here: run it again.\n",
 ];
 
+/// Error for an output name that cannot be used.
 fn unusable(name: &str, why: &str) -> Error {
     Error::usage(format!("the output name \"{name}\" {why}"), "a name such as response.svg")
 }

@@ -106,7 +106,7 @@ impl Table {
         self.lines(&columns, ",").map(|line| line + "\n").collect()
     }
 
-    /// Head and rows of these columns, one line each.
+    /// Head and rows of these columns, each joined to one line.
     fn lines(&self, columns: &[Vec<String>], between: &str) -> impl Iterator<Item = String> {
         (0..=self.rows.len()).map(move |line| {
             let cells: Vec<&str> = columns.iter().filter_map(|c| c.get(line).map(String::as_str)).collect();
@@ -147,10 +147,12 @@ impl Table {
         out
     }
 
+    /// Cells of a column, missing where a row is too short.
     fn cells(&self, column: usize) -> impl Iterator<Item = &Cell> {
         self.rows.iter().map(move |row| row.get(column).unwrap_or(&Cell::Missing))
     }
 
+    /// The columns with values as text.
     fn formatted(&self) -> Vec<Formatted> {
         let mut columns: Vec<(&Column, Vec<&Cell>)> =
             self.columns.iter().enumerate().map(|(i, c)| (c, self.cells(i).collect())).collect();
@@ -159,11 +161,13 @@ impl Table {
             |cell: &&Cell| matches!(cell, Cell::Text(text) if !text.is_empty()) || cell.value().is_some();
         columns.retain(|(_, cells)| cells.is_empty() || cells.iter().any(filled));
         let shown = |(column, cells): &(&Column, Vec<&Cell>)| {
-            // A limit (`< x`) takes the unit and scale of its column.
-            let limited =
+            // Upper limits take the power of ten of the first column of their unit, whose missing values
+            // they stand for.
+            let limited_column =
                 |c: &&(&Column, Vec<&Cell>)| c.0.unit == column.unit && column.name == "upper limit";
-            let (of, values) = columns.iter().find(limited).map_or((*column, cells), |(c, v)| (*c, v));
-            Formatted::new(column, cells, power(of, values))
+            let (scale_of, values) =
+                columns.iter().find(limited_column).map_or((*column, cells), |(c, v)| (*c, v));
+            Formatted::new(column, cells, power(scale_of, values))
         };
         columns.iter().map(shown).collect()
     }
@@ -178,6 +182,8 @@ fn exact(value: f64) -> String {
     }
 }
 
+/// A field of CSV: quoted where its characters need it, with an apostrophe before what a spreadsheet takes
+/// for a formula.
 fn quoted(text: &str) -> String {
     let text = if begins_formula(text) { format!("'{text}") } else { text.to_owned() };
     if text.contains(['"', ',', '\n', '\r']) { format!("\"{}\"", text.replace('"', "\"\"")) } else { text }

@@ -99,18 +99,22 @@ pub fn graded(findings: &[About], voice: Voice) -> Vec<(Severity, String)> {
     }
     let mut all = Vec::new();
     for severity in [Severity::Doubt, Severity::Caution, Severity::Note] {
-        let mut said: Vec<Sentence<'_>> = Vec::new();
+        let mut joined: Vec<Sentence<'_>> = Vec::new();
         for (finding, records) in groups.iter().filter(|g| g.0.severity == severity) {
-            let new =
-                Sentence { finding, text: sentence(finding, voice), of: records.clone(), like: Vec::new() };
-            match said.iter_mut().find(|known| known.takes(&new)) {
-                Some(known) if known.text == new.text => known.of.extend(new.of),
-                Some(known) => known.like.push((new.finding, new.of)),
-                None => said.push(new),
+            let new = Sentence {
+                finding,
+                text: sentence(finding, voice),
+                records: records.clone(),
+                others: Vec::new(),
+            };
+            match joined.iter_mut().find(|known| known.joins(&new)) {
+                Some(known) if known.text == new.text => known.records.extend(new.records),
+                Some(known) => known.others.push((new.finding, new.records)),
+                None => joined.push(new),
             }
         }
-        said.sort_by(|a, b| b.share().total_cmp(&a.share()));
-        all.extend(said.iter().map(|said| (severity, said.whole())));
+        joined.sort_by(|a, b| b.share().total_cmp(&a.share()));
+        all.extend(joined.iter().map(|sentence| (severity, sentence.in_full())));
     }
     all
 }
@@ -130,40 +134,46 @@ pub fn foremost(findings: &[(Severity, String)]) -> usize {
 struct Sentence<'a> {
     finding: &'a Finding,
     text: String,
-    of: Vec<&'a str>,
-    like: Vec<(&'a Finding, Vec<&'a str>)>,
+    /// The records about which it is said; empty for all.
+    records: Vec<&'a str>,
+    /// Findings that differ from it in numbers only, with their records.
+    others: Vec<(&'a Finding, Vec<&'a str>)>,
 }
 
 impl Sentence<'_> {
     /// Whether another sentence of the same code is joined to this one: it is the same, or it differs only
     /// in numbers and is about other records. Doubts with other numbers stay separate.
-    fn takes(&self, other: &Sentence<'_>) -> bool {
+    fn joins(&self, other: &Sentence<'_>) -> bool {
         let (a, b) = (self.finding, other.finding);
-        let about = |record: &&str| record.is_empty() || self.of.contains(record);
-        let name = |(_, fact): &&(Cow<'_, str>, Fact)| matches!(fact, Fact::Name(_));
-        let alike = a.subject == b.subject && a.facts.iter().filter(name).eq(b.facts.iter().filter(name));
-        let apart = a.severity < Severity::Doubt && !self.of.contains(&"") && !other.of.iter().any(about);
-        a.code == b.code && (self.text == other.text || alike && apart)
+        let is_shared = |record: &&str| record.is_empty() || self.records.contains(record);
+        let is_name = |(_, fact): &&(Cow<'_, str>, Fact)| matches!(fact, Fact::Name(_));
+        let same_names =
+            a.subject == b.subject && a.facts.iter().filter(is_name).eq(b.facts.iter().filter(is_name));
+        let other_records = a.severity < Severity::Doubt
+            && !self.records.contains(&"")
+            && !other.records.iter().any(is_shared);
+        a.code == b.code && (self.text == other.text || same_names && other_records)
     }
 
     /// Largest ratio that it shows as a percentage, 0 without any.
     fn share(&self) -> f64 {
-        let all = std::iter::once(self.finding).chain(self.like.iter().map(|(finding, _)| *finding));
+        let all = std::iter::once(self.finding).chain(self.others.iter().map(|(finding, _)| *finding));
         all.flat_map(shares).fold(0.0, f64::max)
     }
 
-    fn whole(&self) -> String {
+    /// The sentence after the names of its records, then the other records with their numbers.
+    fn in_full(&self) -> String {
         let also = |(finding, records): &(&Finding, Vec<&str>)| {
             let numbers = differing(self.finding, finding).join(", ");
             let numbers = if numbers.is_empty() { numbers } else { format!(" ({numbers})") };
             format!("{}{numbers}", names(records))
         };
-        let like: Vec<String> = self.like.iter().map(also).collect();
-        let like = if like.is_empty() { String::new() } else { format!(" Also: {}.", like.join("; ")) };
-        if self.of.contains(&"") {
+        let others: Vec<String> = self.others.iter().map(also).collect();
+        let others = if others.is_empty() { String::new() } else { format!(" Also: {}.", others.join("; ")) };
+        if self.records.contains(&"") {
             self.text.clone()
         } else {
-            format!("{}: {}{like}", names(&self.of), self.text)
+            format!("{}: {}{others}", names(&self.records), self.text)
         }
     }
 }
@@ -177,10 +187,10 @@ fn names(records: &[&str]) -> String {
 }
 
 /// The numbers in which a finding differs from another one of its code, as the sentence shows them.
-fn differing(from: &Finding, finding: &Finding) -> Vec<String> {
+fn differing(first: &Finding, finding: &Finding) -> Vec<String> {
     let shown = places(finding).filter(|place| !place.contains('?')).filter_map(|place| {
-        let (own, other) = (shown(place, finding)?, shown(place, from));
-        (Some(&own) != other.as_ref()).then_some(own)
+        let (number, other) = (shown(place, finding)?, shown(place, first));
+        (Some(&number) != other.as_ref()).then_some(number)
     });
     shown.collect()
 }
@@ -245,21 +255,21 @@ fn filled(template: &str, finding: &Finding, voice: Voice) -> String {
 /// Text for a number that could not be computed (NaN), and for a missing fact.
 const UNKNOWN: &str = "unknown";
 
-/// Text that replaces a pair of braces; `None` where the fact is missing or no number.
+/// Text that replaces a pair of braces with this content; `None` where the fact is missing or NaN.
 fn shown(inside: &str, finding: &Finding) -> Option<String> {
-    let (name, how) = inside.split_at(inside.find([' ', '.', ':', '?']).unwrap_or(inside.len()));
+    let (name, format) = inside.split_at(inside.find([' ', '.', ':', '?']).unwrap_or(inside.len()));
     if name == "subject" {
         return finding.subject.clone();
     }
-    if let Some(std) = how.strip_prefix(" ± ") {
+    if let Some(std) = format.strip_prefix(" ± ") {
         return Some(estimate(finding.get(name).filter(|value| !value.is_nan())?, finding.get(std)));
     }
-    let (digits, how) = match how.strip_prefix('.') {
+    let (digits, format) = match format.strip_prefix('.') {
         Some(rest) => {
-            let (digits, how) = rest.split_at(rest.find(' ').unwrap_or(rest.len()));
-            (digits.parse().ok()?, how)
+            let (digits, format) = rest.split_at(rest.find(' ').unwrap_or(rest.len()));
+            (digits.parse().ok()?, format)
         }
-        None => (3, how),
+        None => (3, format),
     };
     let all = match finding.fact(name)? {
         Fact::Name(text) => return Some(text.clone()),
@@ -269,20 +279,20 @@ fn shown(inside: &str, finding: &Finding) -> Option<String> {
     if !all.is_empty() && all.iter().all(|value| value.is_nan()) {
         return None;
     }
-    let one = all.first() == Some(&1.0);
-    if let Some(nouns) = how.strip_prefix(':') {
+    let is_one = all.first() == Some(&1.0);
+    if let Some(nouns) = format.strip_prefix(':') {
         let (singular, plural) =
             nouns.split_once('/').map_or((nouns, format!("{nouns}s")), |(s, p)| (s, p.to_owned()));
-        return Some(format!("{} {}", all.first()?, if one { singular } else { &plural }));
+        return Some(format!("{} {}", all.first()?, if is_one { singular } else { &plural }));
     }
-    if let Some((singular, plural)) = how.strip_prefix('?').and_then(|words| words.split_once('/')) {
-        return Some(if one { singular } else { plural }.to_owned());
+    if let Some((singular, plural)) = format.strip_prefix('?').and_then(|words| words.split_once('/')) {
+        return Some(if is_one { singular } else { plural }.to_owned());
     }
-    let how = how.trim_start();
-    let unit = match how.strip_prefix('@').map(|name| finding.fact(name)) {
+    let format = format.trim_start();
+    let unit = match format.strip_prefix('@').map(|name| finding.fact(name)) {
         Some(Some(Fact::Name(unit))) => unit,
         Some(_) => "",
-        None => how,
+        None => format,
     };
     let show = |v: &f64| match unit {
         _ if v.is_nan() => UNKNOWN.to_owned(),
@@ -294,7 +304,8 @@ fn shown(inside: &str, finding: &Finding) -> Option<String> {
     Some(all.iter().map(show).collect::<Vec<String>>().join(", "))
 }
 
-/// The number without trailing zeros of its decimals: its uncertainty is given elsewhere.
+/// A number without trailing zeros of its decimals: they would suggest a precision that the sentence does
+/// not state.
 fn trimmed(number: &str) -> String {
     let end = number.find([' ', '×']).unwrap_or(number.len());
     let (value, rest) = number.split_at(end);

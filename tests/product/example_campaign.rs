@@ -7,7 +7,7 @@ mod analyser;
 mod campaign;
 
 use crate::drill::noise;
-use campaign::{Direction, list, measure, truth_header};
+use campaign::{Direction, list, simulate, truth_header};
 use rayon::prelude::*;
 use std::path::Path;
 
@@ -27,7 +27,7 @@ fn the_upward_sweep_comes_out_again() {
     let shown = [1, 11, 22, 35, 36];
     let truth = committed("TRUTH.csv");
     let (mut number, mut compared) = (0, 0);
-    measure(Direction::Up, usize::MAX, |point| {
+    simulate(Direction::Up, usize::MAX, |point| {
         number += 1;
         let row = point.truth();
         // An irregular motion doubles a difference in the last digit of a sine every few cycles: it need not
@@ -141,7 +141,7 @@ fn fitted_again(draws: std::ops::RangeInclusive<u64>) -> Vec<Fit> {
                 std::fs::write(own(draw).join(name), text).unwrap();
             }
         }
-        measure(direction, usize::MAX, |point| {
+        simulate(direction, usize::MAX, |point| {
             draws.clone().into_par_iter().for_each(|draw| {
                 for (name, text) in point.files(draw) {
                     std::fs::write(own(draw).join("data").join(name), text).unwrap();

@@ -11,7 +11,7 @@ mod analyser;
 mod campaign;
 
 use super::{Sink, noise};
-use campaign::{Direction, list, measure, truth_header};
+use campaign::{Direction, list, simulate, truth_header};
 use vibro_record::Result;
 
 /// Writes all files.
@@ -22,7 +22,7 @@ pub fn recordings(sink: &mut Sink<'_>) -> Result<()> {
             let (name, text) = list(direction, mass);
             sink(&name, text.as_bytes())?;
         }
-        measure(direction, usize::MAX, |point| {
+        simulate(direction, usize::MAX, |point| {
             truth.push_str(&point.truth());
             point.files(0).iter().try_for_each(|(name, text)| sink(&format!("data/{name}"), text.as_bytes()))
         })?;

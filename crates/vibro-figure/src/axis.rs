@@ -89,6 +89,7 @@ pub(super) struct Extent {
 }
 
 impl Extent {
+    /// The empty range.
     pub(super) const NONE: Extent = Extent { lo: f64::INFINITY, hi: f64::NEG_INFINITY };
 
     /// Range of these values on a scale.
@@ -112,6 +113,7 @@ impl Extent {
         Extent { lo: self.lo.min(other.lo), hi: self.hi.max(other.hi) }
     }
 
+    /// Whether it contains no value.
     pub(super) fn is_empty(self) -> bool {
         self.lo > self.hi
     }
@@ -144,7 +146,7 @@ pub(super) struct Axis {
 }
 
 /// Range in dB of a level axis with limits from the data: lower levels are noise or an exact zero.
-const LEVELS: f64 = 100.0;
+const LEVEL_RANGE: f64 = 100.0;
 
 impl Axis {
     /// Axis with limits, as specified or from the data; `None` where a limit has neither.
@@ -154,7 +156,7 @@ impl Axis {
             (u.abs() <= 1e300).then_some(u)
         };
         let (low, high) = spec.limits.map_or((None, None), |(a, b)| (given(a), given(b)));
-        let found = (!data.is_empty()).then(|| roomy(spec.scale, data, room));
+        let found = (!data.is_empty()).then(|| with_room(spec.scale, data, room));
         let (a, b) = (low.or(found.map(|f| f.0))?, high.or(found.map(|f| f.1))?);
         let (lo, hi) = widened(spec.scale, a.min(b), a.max(b));
         let degrees = spec.unit == "°";
@@ -196,11 +198,11 @@ impl Axis {
     }
 }
 
-/// Limits that leave room beyond the data.
-fn roomy(scale: Scale, data: Extent, room: Room) -> (f64, f64) {
+/// Limits from the data, with the room beyond them.
+fn with_room(scale: Scale, data: Extent, room: Room) -> (f64, f64) {
     let Extent { mut lo, hi } = data;
     if matches!(scale, Scale::Db { .. }) {
-        lo = lo.max(hi - if room == Room::Floor { 60.0 } else { LEVELS });
+        lo = lo.max(hi - if room == Room::Floor { 60.0 } else { LEVEL_RANGE });
     }
     let (linear, span) = (scale == Scale::Linear, hi - lo);
     match room {

@@ -20,12 +20,13 @@ pub(crate) struct Pen {
 }
 
 impl Pen {
+    /// A pen without dashes.
     pub const fn solid(colour: Rgb, width: f64) -> Pen {
         Pen { colour, width, dashes: &[] }
     }
 }
 
-/// The point of a text that lies at its place.
+/// Which point of a text's baseline lies at its place.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Anchor {
     Start,
@@ -33,11 +34,11 @@ pub(crate) enum Anchor {
     End,
 }
 
-/// A text and how it stands.
+/// A text with its place and look.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Text {
     pub words: String,
-    /// End of the baseline, or its middle.
+    /// Place of the anchor.
     pub at: Point,
     pub size: f64,
     pub anchor: Anchor,
@@ -111,6 +112,7 @@ impl Canvas {
         self.shape(data, Some(fill), outline);
     }
 
+    /// Adds a path, unless it is empty.
     fn shape(&mut self, data: String, fill: Option<Rgb>, pen: Option<Pen>) {
         if !data.is_empty() {
             self.elements.push(Element::Shape { data, fill, pen });
@@ -142,17 +144,18 @@ impl Canvas {
     }
 }
 
-/// How the texts of a document stand in it.
+/// How the texts of a document are stored in it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Lettering {
-    /// As words in the fonts of who looks at them.
+    /// As words, shown in a font of the viewer.
     Words,
     /// As outlines of the bundled font.
     Outlines,
 }
 
 impl Element {
-    fn written(&self, lettering: Lettering) -> String {
+    /// The element as SVG.
+    fn to_svg(&self, lettering: Lettering) -> String {
         match (self, lettering) {
             (Element::Shape { data, fill, pen }, _) => shape(data, *fill, *pen),
             (Element::Text(text), Lettering::Words) => text.words(),
@@ -161,7 +164,8 @@ impl Element {
     }
 }
 
-/// A path. Thin lines have plain corners: no rounding would be seen, and long noisy lines have many.
+/// A path as SVG. Thin lines have bevelled corners: on them rounding would not be seen, and long noisy
+/// lines have many.
 fn shape(data: &str, fill: Option<Rgb>, pen: Option<Pen>) -> String {
     let mut look = fill.map(|fill| format!(" fill=\"{fill}\"")).unwrap_or_default();
     if let Some(Pen { colour, width, dashes }) = pen {
@@ -179,6 +183,7 @@ fn shape(data: &str, fill: Option<Rgb>, pen: Option<Pen>) -> String {
 const HALO: f64 = 2.0;
 
 impl Text {
+    /// The text as a `text` element.
     fn words(&self) -> String {
         let (x, y) = (decimal(self.at.0), decimal(self.at.1));
         let place = match self.turn {
@@ -199,7 +204,7 @@ impl Text {
         format!("<text {place} font-size=\"{size}\"{anchor} fill=\"{colour}\"{halo}>{words}</text>\n")
     }
 
-    /// The text as one path in em, moved, turned and enlarged to its place.
+    /// The text as one path in em; the element moves, turns and enlarges it to its place.
     fn outlines(&self) -> String {
         let before = match self.anchor {
             Anchor::Start => 0.0,
@@ -228,6 +233,7 @@ pub(super) fn document(
     images: &[Image],
     (elements, lettering): (&[Element], Lettering),
 ) -> String {
+    /// Points in a mm.
     const POINTS: f64 = 72.0 / 25.4;
     let [across, down, w, h] = [width * scale, height * scale, width * POINTS, height * POINTS].map(decimal);
     let mut svg = format!(
@@ -245,7 +251,7 @@ pub(super) fn document(
         );
     }
     let family = font::FAMILY;
-    let body: String = elements.iter().map(|element| element.written(lettering)).collect();
+    let body: String = elements.iter().map(|element| element.to_svg(lettering)).collect();
     let _ = writeln!(
         svg,
         "<g fill=\"none\" stroke-linejoin=\"round\" font-family=\"{family}\">\n{body}</g>\n</svg>"
@@ -294,10 +300,12 @@ fn path(parts: &[Vec<Point>], closed: bool) -> String {
     data
 }
 
+/// A value in whole hundredths.
 fn hundredths(value: f64) -> i64 {
     (value * 100.0).round() as i64
 }
 
+/// Adds two counts of hundredths, with a blank between where a sign does not separate them.
 fn pair(out: &mut String, x: i64, y: i64) {
     number(out, x);
     if y >= 0 {

@@ -60,6 +60,7 @@ impl std::fmt::Display for Rgb {
     }
 }
 
+/// A channel between two colours, at a fraction from 0 to 1.
 fn mixed(from: u8, to: u8, fraction: f64) -> u8 {
     let (from, to) = (f64::from(from), f64::from(to));
     (from + (to - from) * fraction.clamp(0.0, 1.0)).round() as u8

@@ -3,14 +3,14 @@
 use crate::canvas::Lettering;
 use crate::{Canvas, Extent, Figure, Insets, Panel, Rect, Sheet, canvas, plot};
 
-/// A drawn figure, at its size in print.
+/// A drawn figure.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Drawing {
     /// The figure's title.
     pub name: String,
-    /// Width and height in mm.
+    /// Width and height in mm before the enlargement by `scale`.
     pub size: (f64, f64),
-    /// Factor by which it is enlarged in print.
+    /// Enlargement of the output: 1, or 1.6 on a slide.
     pub(super) scale: f64,
     pub(super) canvas: Canvas,
 }
@@ -39,12 +39,14 @@ impl Figure {
         let mut canvas = Canvas::default();
         let columns = self.columns.clamp(1, self.panels.len().max(1));
         let mut sheets = sheets(self, columns);
-        // A legend without a free place inside makes its frame smaller, which can take away another legend's
-        // place.
+        // Repeats until no legend moves: a legend moved out shrinks the frames, so another one may no
+        // longer fit inside.
         let layout = loop {
             let layout = Layout::new(&sheets, columns, page);
             let plots = sheets.iter_mut().enumerate().filter_map(|(i, sheet)| Some((i, sheet.as_mut()?)));
-            if plots.filter_map(|(i, sheet)| sheet.make_room(layout.frame(i)).then_some(())).count() == 0 {
+            if plots.filter_map(|(i, sheet)| sheet.move_legend_out(layout.frame(i)).then_some(())).count()
+                == 0
+            {
                 break layout;
             }
         };
@@ -62,7 +64,7 @@ impl Figure {
 
 /// All plots with their axes; plots of one column share their abscissa where the figure asks for it.
 fn sheets<'a>(figure: &'a Figure, columns: usize) -> Vec<Option<Sheet<'a>>> {
-    let across = |panel: &Panel| match panel {
+    let x_extent = |panel: &Panel| match panel {
         Panel::Plot(plot) => plot::extents(plot).0,
         Panel::Waterfall(_) | Panel::Grid(_) => Extent::NONE,
     };
@@ -70,15 +72,15 @@ fn sheets<'a>(figure: &'a Figure, columns: usize) -> Vec<Option<Sheet<'a>>> {
     let sheet = |(i, panel): (usize, &'a Panel)| {
         let Panel::Plot(plot) = panel else { return None };
         let column = figure.panels.iter().skip(i % columns).step_by(columns);
-        let shared = column.map(across).fold(Extent::NONE, Extent::joined);
-        let (x, named) = if figure.shared_x { (shared, i >= last_row) } else { (across(panel), true) };
-        Some(Sheet::new(plot, x, named))
+        let shared = column.map(x_extent).fold(Extent::NONE, Extent::joined);
+        let (x, named_x) = if figure.shared_x { (shared, i >= last_row) } else { (x_extent(panel), true) };
+        Some(Sheet::new(plot, x, named_x))
     };
     figure.panels.iter().enumerate().map(sheet).collect()
 }
 
-/// Frames in rows and columns, all of one size. Each row and column has the space that its panel with the
-/// largest need takes.
+/// Frames in rows and columns, all of one size. The margin of a row or column is the largest that one of
+/// its panels needs.
 struct Layout {
     page: Rect,
     columns: Vec<Insets>,
@@ -91,14 +93,15 @@ impl Layout {
     /// Distance between neighbouring panels in points.
     const BETWEEN: f64 = 9.0;
 
+    /// The layout of these sheets on a page.
     fn new(sheets: &[Option<Sheet<'_>>], columns: usize, page: Rect) -> Layout {
         let rows = sheets.len().div_ceil(columns).max(1);
-        let bare = |n: usize| vec![Insets::default(); n];
-        let mut layout = Layout::filling(page, bare(columns), bare(rows));
-        // Ticks, and the space for their numbers and for a legend, depend on the size of the frame: three
-        // rounds are enough.
+        let no_margins = |n: usize| vec![Insets::default(); n];
+        let mut layout = Layout::filling(page, no_margins(columns), no_margins(rows));
+        // The margins depend on the size of the frames, by their ticks and legends, and the frames on the
+        // margins. Three rounds settle both.
         for _ in 0..3 {
-            let (mut across, mut down) = (bare(columns), bare(rows));
+            let (mut across, mut down) = (no_margins(columns), no_margins(rows));
             for (i, sheet) in sheets.iter().enumerate() {
                 let insets = sheet.as_ref().map_or_else(Insets::default, |sheet| sheet.insets(layout.size));
                 across[i % columns] = across[i % columns].wider(insets);
@@ -111,15 +114,15 @@ impl Layout {
 
     /// Gives the frames the largest size that fits the page.
     fn filling(page: Rect, columns: Vec<Insets>, rows: Vec<Insets>) -> Layout {
-        let share = |whole: f64, taken: f64, n: usize| {
-            ((whole - taken - Layout::BETWEEN * (n - 1) as f64) / n as f64).max(10.0)
+        let frame_length = |whole: f64, margins: f64, n: usize| {
+            ((whole - margins - Layout::BETWEEN * (n - 1) as f64) / n as f64).max(10.0)
         };
-        let w = share(page.w, columns.iter().map(|c| c.left + c.right).sum(), columns.len());
-        let h = share(page.h, rows.iter().map(|r| r.top + r.bottom).sum(), rows.len());
+        let w = frame_length(page.w, columns.iter().map(|c| c.left + c.right).sum(), columns.len());
+        let h = frame_length(page.h, rows.iter().map(|r| r.top + r.bottom).sum(), rows.len());
         Layout { page, columns, rows, size: (w, h) }
     }
 
-    /// Frame with the space around it.
+    /// The frame of a panel with the margins around it.
     fn cell(&self, index: usize) -> Rect {
         let Layout { page, columns, rows, size: (w, h) } = self;
         let (column, row) = (index % columns.len(), index / columns.len());
@@ -133,6 +136,7 @@ impl Layout {
         }
     }
 
+    /// The frame of a panel.
     fn frame(&self, index: usize) -> Rect {
         let (cell, (w, h)) = (self.cell(index), self.size);
         let (column, row) = (index % self.columns.len(), index / self.columns.len());

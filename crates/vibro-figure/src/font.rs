@@ -20,7 +20,7 @@ pub(super) fn width(text: &str, size: f64) -> f64 {
     size * advances(text).map(|(_, advance)| advance).sum::<f64>()
 }
 
-/// The text, cut with an ellipsis where it is wider than `room`.
+/// The text; where it is wider than `room`, cut and ended by an ellipsis.
 pub(super) fn fit(text: &str, size: f64, room: f64) -> String {
     if width(text, size) <= room {
         return text.to_owned();
@@ -58,6 +58,7 @@ pub(super) fn outlines(text: &str) -> String {
     path.data
 }
 
+/// The parsed font.
 fn face() -> Option<Face<'static>> {
     Face::parse(BYTES, 0).ok()
 }
@@ -72,6 +73,7 @@ struct Outline {
 }
 
 impl Outline {
+    /// Adds a command of a path with its points.
     fn step(&mut self, letter: char, points: &[(f32, f32)]) {
         self.data.push(letter);
         for (x, y) in points {

@@ -1,4 +1,4 @@
-//! Series as shapes on the page.
+//! Series as drawing primitives on the page.
 
 use crate::style::{MARKER, OUTLINE, SMALL, SeriesLook};
 use crate::{
@@ -6,15 +6,18 @@ use crate::{
     thinned,
 };
 
-/// A part of a series, ready to be drawn.
+/// A drawing primitive: a part of a series, with all coordinates on the page in points.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Form {
+    /// Open lines with one pen.
     Lines(Vec<Vec<Point>>, Pen),
+    /// Closed areas with a fill and an outline.
     Areas(Vec<Vec<Point>>, Rgb, Option<Pen>),
+    /// Markers of one shape, half width in points and colour.
     Markers(Vec<Point>, Marker, f64, Rgb),
 }
 
-/// The forms of a series, the lowest first.
+/// The drawing primitives of a series, the lowest first.
 pub(super) fn forms(series: &Series, look: SeriesLook, place: &Place<'_>) -> Vec<Form> {
     let frame = place.frame;
     let line = |from: Point, to: Point| vec![Form::Lines(clipped(&[from, to], frame), look.pen)];
@@ -50,6 +53,7 @@ pub(super) fn forms(series: &Series, look: SeriesLook, place: &Place<'_>) -> Vec
 const EDGE: f64 = 0.01;
 
 impl Form {
+    /// Draws the primitive.
     pub fn draw(&self, canvas: &mut Canvas) {
         match self {
             Form::Lines(parts, pen) => canvas.lines(parts, *pen),
@@ -58,17 +62,17 @@ impl Form {
         }
     }
 
-    /// Adds the lines and boxes of the form, which texts must not cover.
-    pub fn enter(&self, clutter: &mut Clutter) {
+    /// Adds the lines and boxes of the primitive, which texts must not cover.
+    pub fn add_to(&self, clutter: &mut Clutter) {
         match self {
             Form::Lines(parts, _) => clutter.add_lines(parts),
             Form::Areas(parts, ..) => {
                 for part in parts {
                     clutter.add_lines(std::slice::from_ref(part));
-                    // Lines across an area stand in for its inside.
+                    // Chords across the area make texts avoid its inside, too.
                     let half = part.len() / 2;
-                    let across = part.iter().take(half).zip(part.iter().rev()).map(|(a, b)| vec![*a, *b]);
-                    clutter.add_lines(&across.collect::<Vec<_>>());
+                    let chords = part.iter().take(half).zip(part.iter().rev()).map(|(a, b)| vec![*a, *b]);
+                    clutter.add_lines(&chords.collect::<Vec<_>>());
                 }
             }
             Form::Markers(points, _, size, _) => {
@@ -85,10 +89,10 @@ pub(super) fn is_open(marker: Marker) -> bool {
     matches!(marker, Marker::OpenCircle | Marker::Square | Marker::Diamond | Marker::Limit)
 }
 
-/// Size of open circles and squares over that of filled ones: at the same place both are seen.
+/// Size of open circles and squares over that of filled ones, so that both are seen at the same place.
 const OPEN: f64 = 1.3;
 
-/// Draws markers of one form, half width in points and colour. Open ones are white inside.
+/// Draws markers of one shape, half width in points and colour. Open ones are white inside.
 pub(super) fn markers(canvas: &mut Canvas, points: &[Point], marker: Marker, size: f64, colour: Rgb) {
     let size = if matches!(marker, Marker::OpenCircle | Marker::Square) { OPEN * size } else { size };
     let polygon = |corners: &[Point]| -> Vec<Vec<Point>> {
@@ -98,8 +102,8 @@ pub(super) fn markers(canvas: &mut Canvas, points: &[Point], marker: Marker, siz
     let pen = Pen::solid(colour, OUTLINE);
     let (fill, outline) = if is_open(marker) { (WHITE, Some(pen)) } else { (colour, None) };
     let square = [(-0.9, -0.9), (0.9, -0.9), (0.9, 0.9), (-0.9, 0.9)];
-    let upright = [[(-1.2, 0.0), (1.2, 0.0)], [(0.0, -1.2), (0.0, 1.2)]];
-    let slanting = [[square[0], square[2]], [square[3], square[1]]];
+    let plus = [[(-1.2, 0.0), (1.2, 0.0)], [(0.0, -1.2), (0.0, 1.2)]];
+    let saltire = [[square[0], square[2]], [square[3], square[1]]];
     let corners: &[Point] = match marker {
         Marker::Circle | Marker::OpenCircle => return canvas.circles(points, size, fill, outline),
         Marker::Square | Marker::FilledSquare => &square,
@@ -107,7 +111,7 @@ pub(super) fn markers(canvas: &mut Canvas, points: &[Point], marker: Marker, siz
         Marker::Limit => &[(0.0, 1.3), (1.2, -0.85), (-1.2, -0.85)],
         Marker::Diamond => &[(0.0, -1.3), (1.2, 0.0), (0.0, 1.3), (-1.2, 0.0)],
         Marker::Cross | Marker::Saltire | Marker::Star => {
-            let strokes = [upright, slanting].concat();
+            let strokes = [plus, saltire].concat();
             let drawn = match marker {
                 Marker::Cross => &strokes[..2],
                 Marker::Saltire => &strokes[2..],
@@ -132,14 +136,16 @@ fn curve(series: &Series, place: &Place<'_>) -> Vec<Vec<Point>> {
     clipped(&points, place.frame).iter().map(|part| thinned(part, 0.015)).collect()
 }
 
-/// Places on the page of the two curves of a band, or of the ends of error bars.
+/// Lower and upper end on the page of each error bar, or of a band at each abscissa.
 fn ends(series: &Series, place: &Place<'_>) -> Vec<[Point; 2]> {
     let ends = series.x.iter().zip(series.low.iter().zip(&series.high));
     ends.map(|(x, (low, high))| [(place.at(*x, *low).0, place.up(place.y.at_low(*low))), place.at(*x, *high)])
         .collect()
 }
 
+/// Error bars with caps as lines, for the points inside the frame.
 fn error_bars(series: &Series, place: &Place<'_>) -> Vec<Vec<Point>> {
+    /// Half the width of a cap in points.
     const CAP: f64 = 1.8;
     let inside = place.frame.grown(EDGE);
     let mut lines = Vec::new();
@@ -155,11 +161,12 @@ fn error_bars(series: &Series, place: &Place<'_>) -> Vec<Vec<Point>> {
     lines
 }
 
+/// Whether all points have a place on the page.
 fn finite(points: &[Point]) -> bool {
     points.iter().all(|p| p.0.is_finite() && p.1.is_finite())
 }
 
-/// Areas between two curves, one for each run without missing values.
+/// Areas of a band, one for each run without missing values.
 fn band(series: &Series, place: &Place<'_>) -> Vec<Vec<Point>> {
     let runs = ends(series, place);
     let edge = |run: &[[Point; 2]], end: usize| -> Vec<Point> {

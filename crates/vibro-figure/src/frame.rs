@@ -33,7 +33,7 @@ pub(super) struct Place<'a> {
 }
 
 impl Place<'_> {
-    /// Place on the page of a pair of values; not finite where a value has none on its axis.
+    /// Place on the page of a pair of values; not finite where a value has no place on its axis.
     pub fn at(&self, x: f64, y: f64) -> Point {
         (self.across(self.x.at(x)), self.up(self.y.at(y)))
     }
@@ -59,6 +59,8 @@ pub(super) fn upward(axis: &Axis, length: f64) -> Ticks {
     spread(axis, length, length / 17.0, 2.0, |_| SMALL)
 }
 
+/// The most ticks, two to eight and at most `most`, whose numbers do not touch. `size` is the extent of a
+/// number along the axis, and `gap` the least distance between two, in points.
 fn spread(axis: &Axis, length: f64, most: f64, gap: f64, size: impl Fn(&str) -> f64) -> Ticks {
     let most = (most as usize).clamp(2, 8);
     let touch = |ticks: &Ticks| {
@@ -84,10 +86,11 @@ pub(super) fn widest(ticks: &Ticks) -> f64 {
 /// Space that axes need around a frame of about this size, in points.
 pub(super) fn insets(x: &Axis, y: &Axis, size: (f64, f64), named_x: bool) -> Insets {
     let (tx, ty) = (across(x, size.0), upward(y, size.1));
-    let half = |at: Option<&crate::ticks::Tick>, end: f64, axis: &Axis| {
+    // By how much the number of an outer tick of the abscissa extends beyond the end of the axis.
+    let overhang = |at: Option<&crate::ticks::Tick>, end: f64, axis: &Axis| {
         at.map_or(0.0, |t| font::width(&t.label, SMALL) / 2.0 - (axis.at_scaled(t.at) - end).abs() * size.0)
     };
-    let (first, last) = (half(tx.major.first(), 0.0, x), half(tx.major.last(), 1.0, x));
+    let (first, last) = (overhang(tx.major.first(), 0.0, x), overhang(tx.major.last(), 1.0, x));
     let name = if y.title.is_empty() { 0.0 } else { LARGE + DESCENT + GAP };
     let bottom = match (named_x, x.title.is_empty()) {
         (false, _) => SMALL / 2.0,
@@ -119,6 +122,7 @@ pub(super) enum Side {
 }
 
 impl Ruler<'_> {
+    /// Place on the page of a value on the axis' scale.
     fn at(&self, u: f64) -> Point {
         let t = self.axis.at_scaled(u);
         (self.from.0 + t * (self.to.0 - self.from.0), self.from.1 + t * (self.to.1 - self.from.1))
@@ -183,6 +187,7 @@ pub(super) fn draw(canvas: &mut Canvas, place: &Place<'_>, named_x: bool, outsid
 /// A name that reads upwards, with its baseline at `x`, beside the middle of `frame`. It extends at most from
 /// 4 points above the frame to `below` points under its lower edge.
 pub(super) fn along(canvas: &mut Canvas, name: &str, x: f64, frame: Rect, below: f64) {
+    /// How far the name may extend above the frame, in points.
     const ABOVE: f64 = 4.0;
     let (name, size) = fitted(name, LARGE, frame.h + ABOVE + below);
     let half = font::width(&name, size) / 2.0;

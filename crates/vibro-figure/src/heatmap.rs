@@ -20,12 +20,12 @@ pub struct Heatmap {
 }
 
 /// Distance of a colour bar from the frame, and its width, in points.
-const AWAY: f64 = 7.0;
-const WIDTH: f64 = 8.0;
+const BAR_DISTANCE: f64 = 7.0;
+const BAR_WIDTH: f64 = 8.0;
 /// Cells of a map per point (1/72 inch): print shows no more than 300 dots per inch.
-const CELLS: f64 = 300.0 / 72.0;
+const CELLS_PER_POINT: f64 = 300.0 / 72.0;
 
-/// What the colours mean.
+/// Meaning of the colours.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(super) enum Key {
     /// A quantity, on a colour bar.
@@ -52,6 +52,7 @@ impl Heatmap {
         Heatmap::of(x, y, values, Key::Classes(names.iter().map(|&n| n.to_owned()).collect()))
     }
 
+    /// A map with this key, after a check of its shape and positions.
     fn of(x: &[f64], y: &[f64], values: &ArrayRef2<f64>, key: Key) -> Result<Heatmap> {
         fits("a map", values, y, x)?;
         ascending(x, "column positions of a map")?;
@@ -105,7 +106,7 @@ impl Heatmap {
 
     /// Draws the cells that fill the frame.
     pub(super) fn draw(&self, canvas: &mut Canvas, place: &Place<'_>) {
-        let count = |points: f64| (points * CELLS).ceil().max(1.0) as usize;
+        let count = |points: f64| (points * CELLS_PER_POINT).ceil().max(1.0) as usize;
         let cells = self.cells(place.x, place.y, count(place.frame.w), count(place.frame.h));
         canvas.image(place.frame, &cells);
     }
@@ -115,12 +116,12 @@ impl Heatmap {
 pub(super) fn bar_room(bar: &Axis, height: f64) -> f64 {
     let numbers = frame::widest(&frame::upward(bar, height));
     let name = if bar.title.is_empty() { 0.0 } else { GAP + 1.15 * LARGE };
-    AWAY + WIDTH + TICK + 2.0 + numbers + name
+    BAR_DISTANCE + BAR_WIDTH + TICK + 2.0 + numbers + name
 }
 
 /// Draws the colour bar beside the frame.
 pub(super) fn draw_bar(canvas: &mut Canvas, bar: &Axis, frame: Rect) {
-    let place = Rect { x: frame.right() + AWAY, w: WIDTH, ..frame };
+    let place = Rect { x: frame.right() + BAR_DISTANCE, w: BAR_WIDTH, ..frame };
     let shades = Array2::from_shape_fn((256, 1), |(i, _)| Some(colour::viridis(1.0 - i as f64 / 255.0)));
     canvas.image(place, &shades);
     let ticks = frame::upward(bar, frame.h);
@@ -133,8 +134,10 @@ pub(super) fn draw_bar(canvas: &mut Canvas, bar: &Axis, frame: Rect) {
     frame::along(canvas, &bar.title, x, frame, 2.0 * LEADING);
 }
 
+/// Checks that there is one value for each row and column; `what` names the figure.
+///
 /// # Errors
-/// If there is not one value for each row and column.
+/// If there is not.
 pub(super) fn fits(what: &str, values: &ArrayRef2<f64>, rows: &[f64], columns: &[f64]) -> Result<()> {
     let ((down, across), expected) = (values.dim(), (rows.len(), columns.len()));
     if (down, across) == expected {
@@ -144,8 +147,10 @@ pub(super) fn fits(what: &str, values: &ArrayRef2<f64>, rows: &[f64], columns: &
     Err(Error::usage(format!("{what} of {down} × {across} values"), expected))
 }
 
+/// Checks that positions ascend; `of` names them.
+///
 /// # Errors
-/// If positions do not ascend.
+/// If they do not.
 pub(super) fn ascending(positions: &[f64], of: &str) -> Result<()> {
     match positions.windows(2).find(|w| w[0] >= w[1] || w[0].is_nan() || w[1].is_nan()) {
         Some(w) => Err(Error::usage(format!("{of}: {} and {}", w[0], w[1]), "an ascending order")),

@@ -1,4 +1,4 @@
-//! Figures as data, for a page that draws them itself.
+//! Figures as JSON, for a report page that draws them itself.
 
 use crate::style::{SeriesLook, looks};
 use crate::{Axis, Figure, Heatmap, Key, Panel, Plot, Scale, Shape, Sheet, Waterfall};
@@ -13,15 +13,15 @@ impl Figure {
     /// those of the page; the figure refers to them by number. A panel that repeats an earlier one is left
     /// out. `None` where a page cannot draw a panel, such as a grid of classes.
     pub fn data(&self, matrices: &mut Matrices) -> Option<Value> {
-        let again = |panel: &&Panel| matches!(panel, Panel::Plot(plot) if plot.again);
-        let (known, shown) = (matrices.len(), self.panels.iter().filter(|panel| !again(panel)));
+        let repeats = |panel: &&Panel| matches!(panel, Panel::Plot(plot) if plot.again);
+        let (before, shown) = (matrices.len(), self.panels.iter().filter(|panel| !repeats(panel)));
         let Some(panels) = shown.map(|panel| panel.data(matrices)).collect::<Option<Vec<Value>>>() else {
-            matrices.0.truncate(known);
+            matrices.0.truncate(before);
             return None;
         };
-        let grows = if self.width > 0.0 { self.height / self.width } else { 0.6 };
+        let aspect = if self.width > 0.0 { self.height / self.width } else { 0.6 };
         Some(
-            json!({ "title": self.title, "columns": self.columns.max(1), "aspect": grows, "panels": panels }),
+            json!({ "title": self.title, "columns": self.columns.max(1), "aspect": aspect, "panels": panels }),
         )
     }
 
@@ -31,8 +31,10 @@ impl Figure {
     }
 }
 
-/// The matrices of a page, each stored once: a waterfall and a map may show the same one. Base64 of 16-bit
-/// levels between `low` and `high` of the panel that shows it, logarithmic for magnitudes; 0 is a gap.
+/// The matrices of a page, each stored once: a waterfall and a map may show the same one.
+///
+/// A matrix is base64. Each value is a 16-bit level, linear from `low` (1) to `high` (65535) of the panel
+/// that shows it; for non-negative quantities of log₁₀ of the value. 0 means missing.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct Matrices(Vec<String>);
 
@@ -43,7 +45,7 @@ impl Matrices {
         self.0.len()
     }
 
-    /// The number of a matrix; a new one is added.
+    /// The number of a matrix; it is added if the page does not have it yet.
     fn number(&mut self, levels: String) -> usize {
         self.0.iter().position(|known| *known == levels).unwrap_or_else(|| {
             self.0.push(levels);
@@ -53,6 +55,7 @@ impl Matrices {
 }
 
 impl Panel {
+    /// The panel as data; `None` for a grid of classes, or without anything to show.
     fn data(&self, matrices: &mut Matrices) -> Option<Value> {
         match self {
             Panel::Plot(plot) => plot.data(matrices),
@@ -63,8 +66,9 @@ impl Panel {
 }
 
 impl Axis {
-    /// A value in the unit of the axis; NaN where it has no place on the axis.
-    fn shown(&self, value: f64) -> f64 {
+    /// A value in the unit of the axis. On a logarithmic axis the value itself: the page leaves out values
+    /// that are not above 0.
+    fn in_unit(&self, value: f64) -> f64 {
         match self.scale {
             Scale::Linear => value / 10f64.powi(self.power),
             Scale::Log => value,
@@ -72,6 +76,7 @@ impl Axis {
         }
     }
 
+    /// The axis as data: title, limits, and how a matrix value becomes a value on it.
     fn data(&self) -> Value {
         let log = self.scale == Scale::Log;
         let end = |u: f64| match self.scale {
@@ -80,19 +85,21 @@ impl Axis {
             Scale::Db { .. } => u,
         };
         let reference = if let Scale::Db { reference } = self.scale { Some(reference) } else { None };
-        // A matrix holds amplitudes. This factor gives the values shown; on a decibel axis the reference
-        // does.
-        let factor = if self.scale == Scale::Linear { self.shown(1.0) } else { 1.0 };
+        // Matrix value × `factor` = value in the axis' unit. On a decibel axis the page computes it from
+        // `reference`.
+        let factor = if self.scale == Scale::Linear { self.in_unit(1.0) } else { 1.0 };
         let (low, high) = (end(self.lo), end(self.hi));
         json!({ "title": self.title, "log": log, "low": low, "high": high, "reference": reference, "factor": factor })
     }
 
+    /// Values in the unit of the axis, as base64 of 32-bit floats.
     fn list(&self, values: &[f64]) -> Value {
-        floats(values.iter().map(|v| self.shown(*v)))
+        floats(values.iter().map(|v| self.in_unit(*v)))
     }
 }
 
 impl Plot {
+    /// The plot as data; `None` without anything to show.
     fn data(&self, matrices: &mut Matrices) -> Option<Value> {
         let (x, y) = Sheet::new(self, crate::plot::extents(self).0, true).axes?;
         let series: Vec<Value> = self
@@ -100,6 +107,7 @@ impl Plot {
             .iter()
             .zip(looks(&self.series))
             .map(|(series, look)| {
+                // Whether a line joins the points.
                 let joined =
                     series.shape == Shape::Line || series.shape == Shape::Points && series.stroke.is_some();
                 json!({
@@ -109,14 +117,14 @@ impl Plot {
                     "y": y.list(&series.y),
                     "low": y.list(&series.low),
                     "high": y.list(&series.high),
-                    "std": floats(series.high.iter().zip(&series.y).map(|(high, value)| y.shown(*high) - y.shown(*value))),
+                    "std": floats(series.high.iter().zip(&series.y).map(|(high, value)| y.in_unit(*high) - y.in_unit(*value))),
                     "joined": joined,
                     "look": look.data(),
                 })
             })
             .collect();
         let note =
-            |note: &crate::Note| json!({ "text": note.text, "x": x.shown(note.x), "y": y.shown(note.y) });
+            |note: &crate::Note| json!({ "text": note.text, "x": x.in_unit(note.x), "y": y.in_unit(note.y) });
         Some(json!({
             "kind": "plot",
             "title": self.title,
@@ -130,6 +138,7 @@ impl Plot {
 }
 
 impl Heatmap {
+    /// The map as data: positions, matrix, and the meaning of the colours.
     fn data(&self, x: &Axis, y: &Axis, matrices: &mut Matrices) -> Option<Value> {
         let key = match &self.key {
             Key::Quantity(_) => self.colour_axis()?.data(),
@@ -149,6 +158,7 @@ impl Heatmap {
 }
 
 impl Waterfall {
+    /// The waterfall as data: axes, frequencies, excitations and matrix.
     fn data(&self, matrices: &mut Matrices) -> Option<Value> {
         let [x, depth, up] = self.axes()?;
         Some(json!({
@@ -165,6 +175,7 @@ impl Waterfall {
 }
 
 impl SeriesLook {
+    /// The look as data.
     fn data(&self) -> Value {
         json!({
             "colour": self.colour.to_string(),
@@ -184,8 +195,9 @@ fn floats(values: impl Iterator<Item = f64>) -> Value {
 /// Decades below the largest magnitude that levels cover.
 const DECADES: f64 = 8.0;
 
-/// 16-bit levels from 1 to 65535 between `low` and `high`. Where all values are magnitudes, of their log₁₀,
-/// over at most 8 decades in steps of 0.03 %; smaller values get the lowest level.
+/// A matrix as 16-bit levels. Each value is a level, linear from `low` (1) to `high` (65535); where all
+/// values of a quantity are non-negative, of log₁₀ of the value, over at most 8 decades in steps of 0.03 %,
+/// and smaller values get the lowest level. 0 means missing.
 fn levels(values: impl Iterator<Item = f64> + Clone, quantity: bool, matrices: &mut Matrices) -> Value {
     let finite = values.clone().filter(|v| v.is_finite());
     let magnitudes = quantity && finite.clone().all(|v| v >= 0.0) && finite.clone().any(|v| v > 0.0);

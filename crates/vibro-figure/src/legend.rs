@@ -11,12 +11,13 @@ const BESIDE: f64 = 4.0;
 const BETWEEN: f64 = 12.0;
 const INSET: f64 = 6.0;
 
-/// Names of series with samples of their look.
+/// Entries of a legend: names of series with samples of their look.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(super) struct KeyList {
     entries: Vec<LegendEntry>,
 }
 
+/// A line of a legend.
 #[derive(Debug, Clone, PartialEq)]
 struct LegendEntry {
     name: String,
@@ -35,9 +36,9 @@ impl KeyList {
             let Series { name, shape, stroke, .. } = series;
             let lined = *shape == Shape::Line || *shape == Shape::Points && stroke.is_some();
             let entry = LegendEntry { name: name.clone(), shape: *shape, lined, look: *look };
-            let along = matches!(shape, Shape::Vertical | Shape::Horizontal);
+            let is_reference = matches!(shape, Shape::Vertical | Shape::Horizontal);
             // A branch in several pieces gets one entry.
-            if !name.is_empty() && !along && !entries.contains(&entry) {
+            if !name.is_empty() && !is_reference && !entries.contains(&entry) {
                 entries.push(entry);
             }
         }
@@ -52,6 +53,7 @@ impl KeyList {
         KeyList { entries }
     }
 
+    /// Whether there are no entries.
     pub fn is_empty(&self) -> bool {
         self.entries.is_empty()
     }
@@ -76,10 +78,10 @@ impl KeyList {
             return None;
         }
         // Fractions of the free width and height: upper and lower edge first, then the sides.
-        let level = [0.0, 1.0].map(|y| [1.0, 0.0, 0.5, 0.25, 0.75].map(|x| (x, y)));
-        let upright = [1.0, 0.0].map(|x| [0.5, 0.25, 0.75].map(|y| (x, y)));
+        let along_edges = [0.0, 1.0].map(|y| [1.0, 0.0, 0.5, 0.25, 0.75].map(|x| (x, y)));
+        let along_sides = [1.0, 0.0].map(|x| [0.5, 0.25, 0.75].map(|y| (x, y)));
         let at = |(x, y)| Rect { x: room.x + x * (room.w - w), y: room.y + y * (room.h - h), w, h };
-        let places = level.into_iter().flatten().chain(upright.into_iter().flatten()).map(at);
+        let places = along_edges.into_iter().flatten().chain(along_sides.into_iter().flatten()).map(at);
         places.into_iter().find(|place| clutter.under(place.grown(INSET / 2.0)) == 0.0)
     }
 
@@ -96,12 +98,13 @@ impl KeyList {
         if self.entries.iter().any(|e| e.lined) { SAMPLE } else { SHORT }
     }
 
+    /// Width of an entry in points.
     fn width(&self, entry: &LegendEntry) -> f64 {
         let before = if entry.shape == Shape::Heading { 0.0 } else { self.sample() + BESIDE };
         before + font::width(&entry.name, SMALL)
     }
 
-    /// Abscissa and row of each entry.
+    /// Abscissa in points and row of each entry, in rows of the width `room`.
     fn flow(&self, room: f64) -> Vec<(f64, usize)> {
         let (mut x, mut row) = (0.0, 0);
         let step = |entry: &LegendEntry| {
@@ -118,6 +121,8 @@ impl KeyList {
 }
 
 impl LegendEntry {
+    /// Draws sample and name from `(x, y)`, the left end of their middle line. `sample` is the length of
+    /// the sample, `room` that of the whole entry.
     fn draw(&self, canvas: &mut Canvas, (x, y): Point, sample: f64, room: f64) {
         let SeriesLook { colour, fill, pen, marker } = self.look;
         let middle = (x + sample / 2.0, y);

@@ -5,7 +5,7 @@ use crate::colour::{Rgb, SERIES};
 use crate::{Drawing, Figure, Heatmap};
 use resvg::tiny_skia::PremultipliedColorU8;
 
-/// Where a figure is to stand.
+/// Where a figure is shown.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Medium {
     /// A report or a screen: as wide as the figure asks, in colour.
@@ -13,7 +13,7 @@ pub enum Medium {
     Report,
     /// A column of a journal: 86 mm wide, one panel over the other, in grey.
     Paper,
-    /// A projected slide: all larger, the text with it.
+    /// A projected slide: as in a report, enlarged with its text.
     Slide,
 }
 
@@ -43,16 +43,17 @@ impl Figure {
             return self.clone();
         }
         let (columns, panels) = (self.columns.clamp(1, self.panels.len().max(1)), self.panels.len().max(1));
-        let own = (self.height / panels.div_ceil(columns) as f64) / (self.width / columns as f64);
-        let height = panels as f64 * COLUMN * own.clamp(0.75, 1.1);
+        let ratio = (self.height / panels.div_ceil(columns) as f64) / (self.width / columns as f64);
+        let height = panels as f64 * COLUMN * ratio.clamp(0.75, 1.1);
         Figure { width: COLUMN, height, columns: 1, ..self.clone() }
     }
 }
 
 impl Drawing {
-    /// The drawing in grey. The greys of maps follow their values; series and classes have distinct levels.
+    /// The drawing in grey. In maps of a quantity the grey follows the brightness of the colours; series
+    /// and classes have distinct levels.
     fn grey(mut self) -> Drawing {
-        let of = |colour: &mut Rgb| {
+        let to_grey = |colour: &mut Rgb| {
             let level = grey([colour.0, colour.1, colour.2]);
             *colour = Rgb(level, level, level);
         };
@@ -60,13 +61,13 @@ impl Drawing {
             match element {
                 Element::Shape { fill, pen, .. } => {
                     if let Some(fill) = fill {
-                        of(fill);
+                        to_grey(fill);
                     }
                     if let Some(pen) = pen {
-                        of(&mut pen.colour);
+                        to_grey(&mut pen.colour);
                     }
                 }
-                Element::Text(text) => of(&mut text.colour),
+                Element::Text(text) => to_grey(&mut text.colour),
             }
         }
         for image in &mut self.canvas.images {
@@ -83,7 +84,8 @@ impl Drawing {
 /// Grey levels for the colours of series: neighbours differ widely, and the last stays black.
 const LEVELS: [u8; 7] = [50, 135, 95, 170, 200, 225, 0];
 
-/// The grey level of a colour: that of its place among series or classes, else its luma (ITU-R BT.601).
+/// The grey level of a colour, 0 to 255: a colour of a series or class has the level of its number, others
+/// their luma (ITU-R BT.601).
 fn grey([r, g, b]: [u8; 3]) -> u8 {
     let places = SERIES.into_iter().zip(LEVELS).chain((0..).map(Heatmap::class_colour).zip(LEVELS));
     if let Some((_, level)) = places.into_iter().find(|(colour, _)| *colour == Rgb(r, g, b)) {

@@ -1,20 +1,30 @@
-//! Texts among the data: labels of points with leaders, and names of reference lines.
+//! Texts among the data: notes beside their points, with leaders (lines from text to point), and names of
+//! reference lines.
 
 use crate::style::{LEADER, MARKER, SMALL, TICK};
 use crate::{Anchor, BLACK, Canvas, Form, GREY, Note, Place, Point, Rect, Rgb, Series, Shape, Text, font};
 
-/// Height of the baseline above the lower edge of its box, over the height of small text.
+/// Height of a text's baseline above the lower edge of its box, over the height of small text.
 const DESCENT: f64 = 0.16;
 
-/// A possible place of a text.
+/// Cost of a place outside the frame: above all others, so that it is never chosen.
+const OUTSIDE: f64 = 1e5;
+
+/// Cost of a leader that crosses a box: more than that of the longest leader, 50 points.
+const CROSSING: f64 = 60.0;
+
+/// Cost in points of leader per point of covered line: a note rather moves away than covers data.
+const COVERING: f64 = 3.0;
+
+/// A candidate place of a text.
 #[derive(Debug, Clone, Copy)]
 struct Spot {
     area: Rect,
     /// Whether the text reads upwards.
-    upright: bool,
+    vertical: bool,
     /// Start and end of the leader; `None` where the text needs none.
     leader: Option<(Point, Point)>,
-    /// Measure of the lines and boxes covered there, with small costs for distance.
+    /// Cost of the lines and boxes that the text would cover there, and of its distance.
     cost: f64,
 }
 
@@ -22,7 +32,7 @@ struct Spot {
 pub(super) fn name_lines(canvas: &mut Canvas, series: &[Series], place: &Place<'_>, clutter: &mut Clutter) {
     let frame = place.frame;
     for series in series.iter().filter(|s| !s.name.is_empty()) {
-        let (upright, at) = match (series.shape, &series.x[..], &series.y[..]) {
+        let (vertical, at) = match (series.shape, &series.x[..], &series.y[..]) {
             (Shape::Vertical, [at, ..], _) => (true, (place.across(place.x.at(*at)), frame.y)),
             (Shape::Horizontal, _, [at, ..]) => (false, (frame.x, place.up(place.y.at(*at)))),
             _ => continue,
@@ -30,14 +40,15 @@ pub(super) fn name_lines(canvas: &mut Canvas, series: &[Series], place: &Place<'
         if !frame.contains(at) {
             continue;
         }
-        let along = beside(&series.name, if upright { at.0 } else { at.1 }, upright, frame, clutter);
-        let aside = || {
-            let (right, down) = if upright { (0.0, frame.h) } else { (frame.w, 0.0) };
+        let on_line = along_line(&series.name, if vertical { at.0 } else { at.1 }, vertical, frame, clutter);
+        let with_leader = || {
+            let (right, down) = if vertical { (0.0, frame.h) } else { (frame.w, 0.0) };
             let parts = (0..20).map(|i| 0.05 + 0.045 * f64::from(i));
             let places = parts.map(|part| (at.0 + part * right, at.1 + part * down));
-            best(places.filter_map(|at| around(&series.name, at, 0.0, frame, clutter)))
+            best(places.filter_map(|at| around_point(&series.name, at, 0.0, frame, clutter)))
         };
-        let spot = along.filter(|spot| spot.cost < 1.0).or_else(aside);
+        // Below a cost of 1 nothing is covered: a touched line costs 1.
+        let spot = on_line.filter(|spot| spot.cost < 1.0).or_else(with_leader);
         write(canvas, &series.name, spot, GREY, clutter);
     }
 }
@@ -52,19 +63,19 @@ pub(super) fn write_notes(canvas: &mut Canvas, notes: &[Note], place: &Place<'_>
         clutter.add_box(Rect::around(*at, MARKER));
     }
     for (note, at) in points {
-        let spot = around(&note.text, at, MARKER, place.frame, clutter);
+        let spot = around_point(&note.text, at, MARKER, place.frame, clutter);
         write(canvas, &note.text, spot, BLACK, clutter);
     }
 }
 
 /// Writes a text at its place, if it has one.
 fn write(canvas: &mut Canvas, text: &str, spot: Option<Spot>, colour: Rgb, clutter: &mut Clutter) {
-    let Some(Spot { area, upright, leader, .. }) = spot else { return };
+    let Some(Spot { area, vertical, leader, .. }) = spot else { return };
     clutter.add_box(area);
     if let Some((from, to)) = leader {
         canvas.line(from, to, LEADER);
     }
-    let (at, turn) = if upright {
+    let (at, turn) = if vertical {
         ((area.right() - DESCENT * SMALL, area.bottom()), 90.0)
     } else {
         ((area.x, area.bottom() - DESCENT * SMALL), 0.0)
@@ -80,30 +91,33 @@ fn write(canvas: &mut Canvas, text: &str, spot: Option<Spot>, colour: Rgb, clutt
     });
 }
 
-/// The best place for a name along a line, on either side of it.
-fn beside(name: &str, line: f64, upright: bool, frame: Rect, clutter: &Clutter) -> Option<Spot> {
+/// The best place for a name along a line, on either side of it. `line` is the place of the line on the page.
+fn along_line(name: &str, line: f64, vertical: bool, frame: Rect, clutter: &Clutter) -> Option<Spot> {
     let length = font::width(name, SMALL);
-    let (start, end) = if upright { (frame.y, frame.bottom()) } else { (frame.x, frame.right()) };
+    let (start, end) = if vertical { (frame.y, frame.bottom()) } else { (frame.x, frame.right()) };
+    // Length along which the name can be shifted, with 5 points to either end.
     let way = end - start - length - 10.0;
     let steps = (0..=12).flat_map(|i| [(i, true), (i, false)]);
     best(steps.filter(|_| way >= 0.0).map(|(i, first)| {
-        // Preferred: the upper end of a vertical line, the right end of a horizontal one.
+        // Preferred: the upper end of a vertical line, the right end of a horizontal one. The cost below
+        // puts the other end second and the middle last.
         let part = f64::from(i) / 12.0;
-        let along = start + 5.0 + way * if upright { part } else { 1.0 - part };
+        let along = start + 5.0 + way * if vertical { part } else { 1.0 - part };
+        // Among equal places the one left of or above the line wins.
         let side = if first { line - 1.5 - SMALL } else { line + 1.5 };
-        let area = if upright {
+        let area = if vertical {
             Rect { x: side, y: along, w: SMALL, h: length }
         } else {
             Rect { x: along, y: side, w: length, h: SMALL }
         };
-        let outside = if frame.holds(area) { 0.0 } else { 1e5 };
+        let outside = if frame.holds(area) { 0.0 } else { OUTSIDE };
         let cost = outside + clutter.under(area.grown(0.7)) + 0.1 * part.min(1.1 - part);
-        Spot { area, upright, leader: None, cost }
+        Spot { area, vertical, leader: None, cost }
     }))
 }
 
-/// The best place around a point; a marker of half width `taken` covers the point.
-fn around(text: &str, at: Point, taken: f64, frame: Rect, clutter: &Clutter) -> Option<Spot> {
+/// The best place for a text around a point, on which there is a marker of half width `taken`.
+fn around_point(text: &str, at: Point, taken: f64, frame: Rect, clutter: &Clutter) -> Option<Spot> {
     let (w, h) = (font::width(text, SMALL), SMALL);
     let frame = frame.grown(-TICK);
     let rays = (0..24).flat_map(|i| {
@@ -126,17 +140,18 @@ fn around(text: &str, at: Point, taken: f64, frame: Rect, clutter: &Clutter) -> 
         let near = (end.0.clamp(area.x, area.right()), end.1.clamp(area.y, area.bottom()));
         let leader = (distance > 6.0).then(|| (from(if taken > 0.0 { taken + 1.0 } else { 0.0 }), near));
         let crossed = leader.map_or(0, |_| clutter.crossed(from(taken + 1.8), near));
-        let outside = if frame.holds(area) { 0.0 } else { 1e5 };
-        let cost = outside + 3.0 * clutter.under(area.grown(1.0)) + 60.0 * crossed as f64 + distance;
-        Spot { area, upright: false, leader, cost }
+        let outside = if frame.holds(area) { 0.0 } else { OUTSIDE };
+        let cost = outside + COVERING * clutter.under(area.grown(1.0)) + CROSSING * crossed as f64 + distance;
+        Spot { area, vertical: false, leader, cost }
     }))
 }
 
+/// The place of least cost; `None` where all are outside the frame.
 fn best(spots: impl Iterator<Item = Spot>) -> Option<Spot> {
-    spots.min_by(|a, b| a.cost.total_cmp(&b.cost)).filter(|spot| spot.cost < 1e5)
+    spots.min_by(|a, b| a.cost.total_cmp(&b.cost)).filter(|spot| spot.cost < OUTSIDE)
 }
 
-/// Lines and boxes that words must not cover.
+/// Lines and boxes on the page that texts shall not cover.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Clutter {
     segments: Vec<(Point, Point)>,
@@ -144,30 +159,33 @@ pub(super) struct Clutter {
 }
 
 impl Clutter {
-    /// The lines and boxes of these forms.
+    /// The lines and boxes of these drawing primitives.
     pub fn of(forms: &[Form]) -> Clutter {
         let mut clutter = Clutter::default();
         for form in forms {
-            form.enter(&mut clutter);
+            form.add_to(&mut clutter);
         }
         clutter
     }
 
+    /// Adds lines, each as its segments.
     pub fn add_lines(&mut self, parts: &[Vec<Point>]) {
         self.segments.extend(parts.iter().flat_map(|p| p.windows(2).map(|w| (w[0], w[1]))));
     }
 
+    /// Adds a box.
     pub fn add_box(&mut self, rect: Rect) {
         self.boxes.push(rect);
     }
 
-    /// Measure of the lines and boxes that a box there would cover; 0 for none.
+    /// Cost of covering lines and boxes by `rect`; 0 if it covers none. A line costs 1 and its covered
+    /// length in points, a box four times the covered area in square points.
     pub fn under(&self, rect: Rect) -> f64 {
         let lines: f64 = self
             .segments
             .iter()
             .filter_map(|&(a, b)| rect.cut(a, b))
-            // A line that only touches the box counts, too.
+            // The 1 counts a line that only touches the box, too.
             .map(|(a, b)| 1.0 + (a.0 - b.0).hypot(a.1 - b.1))
             .sum();
         lines + self.boxes.iter().map(|b| 4.0 * rect.overlap(*b)).sum::<f64>()
@@ -196,7 +214,7 @@ mod tests {
             }
             let mut areas: Vec<Rect> = Vec::new();
             for at in points {
-                let spot = around("a note of words", at, MARKER, FRAME, &clutter).unwrap();
+                let spot = around_point("a note of words", at, MARKER, FRAME, &clutter).unwrap();
                 prop_assert!(FRAME.holds(spot.area), "{spot:?}");
                 prop_assert!(areas.iter().all(|a| a.overlap(spot.area) == 0.0), "{areas:?} {spot:?}");
                 clutter.add_box(spot.area);
@@ -207,7 +225,7 @@ mod tests {
 
     #[test]
     fn a_note_without_neighbours_stands_right_above_its_point() {
-        let spot = around("peak", (150.0, 100.0), MARKER, FRAME, &Clutter::default()).unwrap();
+        let spot = around_point("peak", (150.0, 100.0), MARKER, FRAME, &Clutter::default()).unwrap();
         assert!(spot.leader.is_none());
         assert!((spot.area.middle().0 - 150.0).abs() < 1e-9 && spot.area.bottom() < 100.0 - MARKER);
     }
@@ -215,16 +233,16 @@ mod tests {
     #[test]
     fn a_note_that_cannot_stand_inside_is_left_out() {
         let narrow = Rect { w: 12.0, ..FRAME };
-        assert!(around("a note of words", (6.0, 100.0), MARKER, narrow, &Clutter::default()).is_none());
+        assert!(around_point("a note of words", (6.0, 100.0), MARKER, narrow, &Clutter::default()).is_none());
     }
 
     #[test]
     fn a_line_is_named_along_its_free_end() {
         let mut clutter = Clutter::default();
         clutter.add_box(Rect { x: 100.0, y: 0.0, w: 200.0, h: 200.0 });
-        let spot = beside("mean", 100.0, false, FRAME, &clutter).unwrap();
+        let spot = along_line("mean", 100.0, false, FRAME, &clutter).unwrap();
         assert!(spot.cost < 1.0 && spot.area.right() < 100.0, "{spot:?}");
-        let spot = beside("mean", 100.0, true, FRAME, &clutter).unwrap();
+        let spot = along_line("mean", 100.0, true, FRAME, &clutter).unwrap();
         assert!(spot.cost < 1.0 && spot.area.right() < 100.0 && spot.area.y < 20.0, "{spot:?}");
     }
 

@@ -25,6 +25,7 @@ impl Rect {
         (self.x + self.w / 2.0, self.y + self.h / 2.0)
     }
 
+    /// A square around a point, with half its side.
     pub fn around((x, y): Point, half: f64) -> Rect {
         Rect { x: x - half, y: y - half, w: 2.0 * half, h: 2.0 * half }
     }
@@ -45,10 +46,12 @@ impl Rect {
         (x.clamp(self.x, self.right()), y.clamp(self.y, self.bottom()))
     }
 
+    /// Whether a point is inside or on the border.
     pub fn contains(self, (x, y): Point) -> bool {
         (self.x..=self.right()).contains(&x) && (self.y..=self.bottom()).contains(&y)
     }
 
+    /// Whether the other rectangle is inside.
     pub fn holds(self, other: Rect) -> bool {
         self.contains((other.x, other.y)) && self.contains((other.right(), other.bottom()))
     }
@@ -111,8 +114,8 @@ pub(super) fn thinned(line: &[Point], tolerance: f64) -> Vec<Point> {
     kept[last] = true;
     let mut open = vec![(0, last)];
     while let Some((from, to)) = open.pop() {
-        let far = (from + 1..to).map(|i| (i, distance(line[i], line[from], line[to])));
-        if let Some((i, d)) = far.max_by(|a, b| a.1.total_cmp(&b.1))
+        let distances = (from + 1..to).map(|i| (i, distance(line[i], line[from], line[to])));
+        if let Some((i, d)) = distances.max_by(|a, b| a.1.total_cmp(&b.1))
             && d > tolerance
         {
             kept[i] = true;
@@ -123,6 +126,8 @@ pub(super) fn thinned(line: &[Point], tolerance: f64) -> Vec<Point> {
     line.iter().zip(kept).filter(|(_, kept)| *kept).map(|(p, _)| *p).collect()
 }
 
+/// A line whose points ascend in x, with at most four points in each column of this width: the first,
+/// lowest, highest and last. Lines with few points a column stay unchanged.
 fn by_columns(line: &[Point], width: f64) -> Vec<Point> {
     let ascending = line.windows(2).all(|w| w[0].0 <= w[1].0);
     let (Some(first), Some(last)) = (line.first(), line.last()) else { return Vec::new() };

@@ -20,7 +20,7 @@ impl Drawing {
         let pixels = |mm: f64| (mm / 25.4 * dpi).round().max(1.0) as u32;
         let (across, down) = (pixels(width), pixels(height));
         let mut pixmap = Some((across, down))
-            .filter(|(w, h)| u64::from(*w) * u64::from(*h) <= MOST)
+            .filter(|(w, h)| u64::from(*w) * u64::from(*h) <= MOST_PIXELS)
             .and_then(|(w, h)| Pixmap::new(w, h))
             .ok_or_else(|| {
                 refused(format!("would have {across} × {down} pixels at {dpi} dots per inch"))
@@ -48,6 +48,6 @@ impl Drawing {
     }
 }
 
-/// Pixels of the largest picture: four times those of a square of a double column's width at 1200 dots per
-/// inch, 1.1 GB in memory.
-const MOST: u64 = 280_000_000;
+/// Most pixels of a picture: four times those of a square of a double column's width at 1200 dots per inch,
+/// 1.1 GB in memory.
+const MOST_PIXELS: u64 = 280_000_000;

@@ -7,19 +7,29 @@ use crate::{
 };
 use vibro_record::units::notation::labelled;
 
-/// Largest width of a legend beside the frame, over the frame's width.
-const BESIDE: f64 = 0.55;
-/// A plot with everything fixed except its place.
+/// Largest width of a legend beside the frame, over the frame's width; longer names are cut.
+const WIDEST_BESIDE: f64 = 0.55;
+/// Least width in points that a frame keeps with the legend beside it: narrower ones, such as all in one
+/// column of a journal, get the legend above.
+const LEAST_FRAME: f64 = 220.0;
+/// Space in points for the name of an axis without ticks, to the left of and below a frame without data.
+const NAME_ROOM: f64 = 2.5 * LARGE;
+
+/// A laid-out plot: axes, styles and legend are decided, the frame's rectangle is not yet.
 #[derive(Debug)]
 pub(super) struct Sheet<'a> {
     plot: &'a Plot,
     /// The axes; `None` where there is nothing to show.
     pub axes: Option<(Axis, Axis)>,
+    /// Axis of the colour bar of a map.
     bar: Option<Axis>,
+    /// Colour, pen and marker of each series.
     looks: Vec<SeriesLook>,
+    /// Entries of the legend.
     keys: KeyList,
-    /// Place of the legend; inside the frame where automatic.
-    names: Legend,
+    /// Place of the legend; inside the frame while automatic.
+    legend: Legend,
+    /// Whether the abscissa has numbers and a name; without them, the panel below has.
     named_x: bool,
 }
 
@@ -45,33 +55,35 @@ impl<'a> Sheet<'a> {
     /// Fixes axes and looks; `shared` is the range of the abscissa, which panels may share.
     pub fn new(plot: &'a Plot, shared: Extent, named_x: bool) -> Sheet<'a> {
         let has = |shapes: [Shape; 2]| plot.series.iter().any(|s| shapes.contains(&s.shape));
-        let stand = has([Shape::Points, Shape::Bars]) && !has([Shape::Line, Shape::Band]);
+        // Only points or bars, no curve: these get a margin left and right.
+        let needs_margin = has([Shape::Points, Shape::Bars]) && !has([Shape::Line, Shape::Band]);
         // More space above data with notes, which mostly label peaks.
         let above = Room::Above(if plot.notes.is_empty() { 0.06 } else { 0.2 });
-        let (x_room, y_room) = match (&plot.heatmap, stand) {
+        let (x_room, y_room) = match (&plot.heatmap, needs_margin) {
             (Some(_), _) => (Room::Tight, Room::Tight),
             (None, true) => (Room::Margin, above),
             (None, false) => (Room::Tight, above),
         };
         let (x, y) = extents(plot);
         let axes = Axis::new(&plot.x, shared, x_room).zip(Axis::new(&plot.y, y, y_room));
-        // Limits without data make no plot.
+        // Stated limits alone make no plot: without data there are no axes.
         let axes = axes.filter(|_| !x.is_empty() && !y.is_empty());
         let looks = style::looks(&plot.series);
         let keys = KeyList::new(&plot.series, &looks, plot.heatmap.as_ref());
-        let names = match plot.legend {
+        let legend = match plot.legend {
             _ if keys.is_empty() || axes.is_none() => Legend::Hidden,
             Legend::Auto if plot.heatmap.is_some() => Legend::Above,
             stated => stated,
         };
         let bar = plot.heatmap.as_ref().and_then(Heatmap::colour_axis);
-        Sheet { plot, axes, bar, looks, keys, names, named_x }
+        Sheet { plot, axes, bar, looks, keys, legend, named_x }
     }
 
     /// Space around a frame of about this size, in points.
     pub fn insets(&self, size: (f64, f64)) -> Insets {
-        let bare = Insets { left: 2.5 * LARGE, bottom: 2.5 * LARGE, top: SMALL, right: GAP };
-        let mut insets = self.axes.as_ref().map_or(bare, |(x, y)| frame::insets(x, y, size, self.named_x));
+        let without_axes = Insets { left: NAME_ROOM, bottom: NAME_ROOM, top: SMALL, right: GAP };
+        let mut insets =
+            self.axes.as_ref().map_or(without_axes, |(x, y)| frame::insets(x, y, size, self.named_x));
         if let Some(bar) = &self.bar {
             insets.right = insets.right.max(heatmap::bar_room(bar, size.1));
         }
@@ -79,8 +91,8 @@ impl<'a> Sheet<'a> {
             insets.left += TICK;
             insets.bottom += TICK;
         }
-        match self.names {
-            Legend::Right => insets.right += GAP + LEADING + self.keys.column(BESIDE * size.0).0,
+        match self.legend {
+            Legend::Right => insets.right += GAP + LEADING + self.keys.column(WIDEST_BESIDE * size.0).0,
             Legend::Above => insets.top += self.keys.rows(size.0) + 2.0,
             Legend::Auto | Legend::Hidden => {}
         }
@@ -90,17 +102,19 @@ impl<'a> Sheet<'a> {
         insets
     }
 
-    /// Moves a legend without a free place in this frame out of it; returns whether it did.
-    pub fn make_room(&mut self, frame: Rect) -> bool {
-        let Some(place) = self.place(frame).filter(|_| self.names == Legend::Auto) else { return false };
+    /// If no free place for the legend exists inside the frame, puts it beside or above; returns whether it
+    /// did.
+    pub fn move_legend_out(&mut self, frame: Rect) -> bool {
+        let Some(place) = self.place(frame).filter(|_| self.legend == Legend::Auto) else { return false };
         if self.free_place(&place, &Clutter::of(&self.forms(&place))).is_some() {
             return false;
         }
         let beside = self.keys.column(f64::INFINITY).0 + GAP + LEADING;
-        self.names = if frame.w - beside >= 220.0 { Legend::Right } else { Legend::Above };
+        self.legend = if frame.w - beside >= LEAST_FRAME { Legend::Right } else { Legend::Above };
         true
     }
 
+    /// Draws the plot with this frame.
     pub fn draw(&self, canvas: &mut Canvas, frame: Rect) {
         self.draw_title(canvas, frame);
         let Some(place) = self.place(frame) else { return self.draw_nothing(canvas, frame) };
@@ -116,11 +130,11 @@ impl<'a> Sheet<'a> {
             heatmap::draw_bar(canvas, bar, frame);
         }
         let mut clutter = Clutter::of(&forms);
-        // Place of the legend, and the width of its rows; 0 for a single column.
-        let names = match self.names {
+        // Area of the legend, and the width of its rows; 0 for a single column.
+        let legend_area = match self.legend {
             Legend::Auto => self.free_place(&place, &clutter).map(|free| (free, 0.0)),
             Legend::Right => {
-                let (w, h) = self.keys.column(BESIDE * frame.w);
+                let (w, h) = self.keys.column(WIDEST_BESIDE * frame.w);
                 Some((Rect { x: frame.right() + LEADING, y: frame.y, w, h }, 0.0))
             }
             Legend::Above => {
@@ -129,7 +143,7 @@ impl<'a> Sheet<'a> {
             }
             Legend::Hidden => None,
         };
-        if let Some((area, row)) = names {
+        if let Some((area, row)) = legend_area {
             self.keys.draw(canvas, area, row);
             clutter.add_box(area);
         }
@@ -137,12 +151,13 @@ impl<'a> Sheet<'a> {
         notes::write_notes(canvas, &self.plot.notes, &place, &mut clutter);
     }
 
+    /// The axes in this frame; `None` without data.
     fn place(&self, frame: Rect) -> Option<Place<'_>> {
         self.axes.as_ref().map(|(x, y)| Place { x, y, frame })
     }
 
-    /// All series as forms: areas below lines below markers, open markers below filled ones, which are
-    /// smaller.
+    /// All series as drawing primitives in the order of drawing: areas, reference lines, curves, markers.
+    /// Filled markers come last, since they are smaller than open ones.
     fn forms(&self, place: &Place<'_>) -> Vec<Form> {
         let layer = |shape: Shape, look: &SeriesLook| match shape {
             Shape::Band => 0,
@@ -166,10 +181,11 @@ impl<'a> Sheet<'a> {
         self.keys.free_place(place.frame, &clutter)
     }
 
+    /// Draws the title over the frame and the legend.
     fn draw_title(&self, canvas: &mut Canvas, frame: Rect) {
-        let names = if self.names == Legend::Above { self.keys.rows(frame.w) + 2.0 } else { 0.0 };
+        let legend_height = if self.legend == Legend::Above { self.keys.rows(frame.w) + 2.0 } else { 0.0 };
         let (title, size) = fitted(&self.plot.title, LARGE, frame.w);
-        canvas.label(&title, (frame.x, frame.y - names - 0.45 * LARGE), size, Anchor::Start);
+        canvas.label(&title, (frame.x, frame.y - legend_height - 0.45 * LARGE), size, Anchor::Start);
     }
 
     /// An empty frame with the words "no data".

@@ -170,7 +170,7 @@ impl Series {
     /// Histogram of the finite values, in bars whose width is that of Freedman and Diaconis (1981), twice the
     /// interquartile range over the cube root of the count; 5 to 60 bars, and one where all values are equal.
     pub fn histogram(name: impl Into<String>, values: &[f64]) -> Series {
-        let (edges, heights) = counted(values);
+        let (edges, heights) = histogram_of(values);
         Series::new(name, Shape::Bars, edges, heights)
     }
 
@@ -208,8 +208,8 @@ impl Series {
     }
 }
 
-/// Edges and counts of a histogram.
-fn counted(values: &[f64]) -> (Vec<f64>, Vec<f64>) {
+/// Edges of the bars of a histogram, and the number of values in each.
+fn histogram_of(values: &[f64]) -> (Vec<f64>, Vec<f64>) {
     let mut sorted: Vec<f64> = values.iter().copied().filter(|v| v.abs() <= 1e300).collect();
     sorted.sort_by(f64::total_cmp);
     let (Some(&first), Some(&last)) = (sorted.first(), sorted.last()) else {
@@ -240,7 +240,7 @@ mod tests {
     proptest! {
         #[test]
         fn a_histogram_counts_every_finite_value_once(values in prop::collection::vec(any::<f64>(), 0..200)) {
-            let (edges, heights) = counted(&values);
+            let (edges, heights) = histogram_of(&values);
             let finite = values.iter().filter(|v| v.abs() <= 1e300).count();
             prop_assert_eq!(heights.iter().sum::<f64>() as usize, finite);
             prop_assert!(edges.windows(2).all(|w| w[0] < w[1]), "{:?}", edges);
@@ -257,7 +257,7 @@ mod tests {
 
     #[test]
     fn equal_values_make_one_bar() {
-        assert_eq!(counted(&[2.0; 7]).1, [7.0]);
-        assert_eq!(counted(&[0.0; 3]).0, [-0.5, 0.5]);
+        assert_eq!(histogram_of(&[2.0; 7]).1, [7.0]);
+        assert_eq!(histogram_of(&[0.0; 3]).0, [-0.5, 0.5]);
     }
 }

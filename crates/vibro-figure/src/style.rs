@@ -15,6 +15,7 @@ pub(super) const GAP: f64 = 3.0;
 /// Depth of letters such as g, and of brackets, below the baseline of a large text.
 pub(super) const DESCENT: f64 = 2.2;
 
+/// Pens of frames, ticks, leaders of notes, and the floor of a waterfall.
 pub(super) const FRAME: Pen = Pen::solid(BLACK, 0.75);
 pub(super) const TICKS: Pen = Pen::solid(BLACK, 0.6);
 pub(super) const LEADER: Pen = Pen::solid(GREY, 0.5);
@@ -41,35 +42,37 @@ pub(super) struct SeriesLook {
 /// marker.
 pub(super) fn looks(series: &[Series]) -> Vec<SeriesLook> {
     use Marker::{Circle, Cross, Diamond, FilledSquare, OpenCircle, Square, Triangle};
+    // Line styles and markers by the number of the series' colour, so that series differ without colour, too.
     const STROKES: [Stroke; 4] = [Stroke::Solid, Stroke::Dashed, Stroke::DashDot, Stroke::Dotted];
     const MARKERS: [Marker; 7] = [Circle, Square, Triangle, Diamond, OpenCircle, FilledSquare, Cross];
     let mut next = 0;
     let look = |series: &Series| {
-        let nth = |n: usize| (n, colour::SERIES[n % colour::SERIES.len()]);
-        let (turn, colour) = match series.ink {
-            Ink::Auto => nth(next),
-            Ink::Nth(n) => nth(n),
+        let palette = |n: usize| (n, colour::SERIES[n % colour::SERIES.len()]);
+        let (number, colour) = match series.ink {
+            Ink::Auto => palette(next),
+            Ink::Nth(n) => palette(n),
             Ink::Grey => (0, GREY),
             Ink::Black => (0, BLACK),
             Ink::White => (0, WHITE),
         };
         next += usize::from(series.ink == Ink::Auto);
-        let (stroke, white) = match series.shape {
-            Shape::Line => (STROKES[turn % STROKES.len()], 0.0),
+        let (stroke, tint) = match series.shape {
+            Shape::Line => (STROKES[number % STROKES.len()], 0.0),
             Shape::Points | Shape::Vertical | Shape::Horizontal | Shape::Heading => (Stroke::Thin, 0.0),
             Shape::Band => (Stroke::Solid, 0.72),
             Shape::Bars => (Stroke::Solid, 0.6),
         };
         SeriesLook {
             colour,
-            fill: colour.tint(white),
+            fill: colour.tint(tint),
             pen: pen(colour, series.stroke.unwrap_or(stroke)),
-            marker: series.marker.unwrap_or(MARKERS[turn % MARKERS.len()]),
+            marker: series.marker.unwrap_or(MARKERS[number % MARKERS.len()]),
         }
     };
     series.iter().map(look).collect()
 }
 
+/// The pen of a stroke in a colour.
 fn pen(colour: Rgb, stroke: Stroke) -> Pen {
     let dashes: &[f64] = match stroke {
         Stroke::Solid | Stroke::Thin => &[],

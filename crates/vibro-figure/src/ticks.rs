@@ -16,7 +16,7 @@ pub(super) struct Ticks {
     pub minor: Vec<f64>,
 }
 
-/// A step of `mantissa`·10^`exponent`, divided into `parts` by minor ticks.
+/// A distance between major ticks, `mantissa`·10^`exponent`, divided into `parts` by minor ticks.
 #[derive(Debug, Clone, Copy)]
 struct TickStep {
     mantissa: i32,
@@ -49,6 +49,7 @@ impl TickStep {
         (0..count.min(200)).map(|i| first + i as f64).collect()
     }
 
+    /// The step of the minor ticks.
     fn minor(self) -> TickStep {
         // Every division by `parts` is exact one decade lower: 10/5, 20/4, 50/5, 150/3, …
         TickStep { mantissa: self.mantissa * 10 / self.parts, exponent: self.exponent - 1, parts: 1 }
@@ -59,16 +60,16 @@ impl TickStep {
 const SLACK: f64 = 1e-9;
 
 /// Ticks of a linear axis at multiples of 1, 2 or 5 times a power of ten (of 15°, 30°, 45°, … where
-/// `degrees`): at most `most`, and at least two where `most` allows. Labels are the values divided by
-/// 10^`power`.
+/// `degrees`): at least two; at most `most`, or up to five where no step has between two and `most`. Labels
+/// are the values divided by 10^`power`.
 pub(super) fn linear(lo: f64, hi: f64, most: usize, power: i32, degrees: bool) -> Ticks {
     let span = hi - lo;
     if !(span > 0.0 && span.is_finite()) {
         return Ticks::default();
     }
     let most = most.clamp(2, 10);
-    let steps = |exponent: i32, of: &[(i32, i32)]| -> Vec<TickStep> {
-        of.iter().map(|&(mantissa, parts)| TickStep { mantissa, exponent, parts }).collect()
+    let steps = |exponent: i32, mantissas: &[(i32, i32)]| -> Vec<TickStep> {
+        mantissas.iter().map(|&(mantissa, parts)| TickStep { mantissa, exponent, parts }).collect()
     };
     let decade = (span / most as f64).log10().floor() as i32;
     let candidates = if degrees && span > 20.0 && span < 3600.0 {
@@ -77,29 +78,33 @@ pub(super) fn linear(lo: f64, hi: f64, most: usize, power: i32, degrees: bool) -
         (decade - 1..=decade + 3).flat_map(|exponent| steps(exponent, &DECIMAL)).collect()
     };
     let count = |i: usize| candidates[i].within(lo, hi).len();
-    let fits = (0..candidates.len()).find(|&i| count(i) <= most).unwrap_or(candidates.len() - 1);
-    // The coarsest step that fits may leave a single tick; the next finer one then has two to five.
-    let step = candidates[if count(fits) < 2 { fits.saturating_sub(1) } else { fits }];
+    let finest = (0..candidates.len()).find(|&i| count(i) <= most).unwrap_or(candidates.len() - 1);
+    // The finest step with at most `most` ticks may leave a single one; then the next finer step is taken,
+    // which may exceed `most`.
+    let step = candidates[if count(finest) < 2 { finest.saturating_sub(1) } else { finest }];
     let decimals = usize::try_from(power - step.exponent).unwrap_or(0);
     let shown = TickStep { exponent: step.exponent - power, ..step };
-    let (named, small) = (step.within(lo, hi), step.minor());
+    let (major, minor_step) = (step.within(lo, hi), step.minor());
     let label = |k: f64| Tick { at: step.times(k).clamp(lo, hi), label: fixed(shown.times(k), decimals) };
-    let between = small.within(lo, hi).into_iter().filter(|k| k.rem_euclid(f64::from(step.parts)) != 0.0);
+    let between =
+        minor_step.within(lo, hi).into_iter().filter(|k| k.rem_euclid(f64::from(step.parts)) != 0.0);
     Ticks {
-        minor: between.map(|k| small.times(k).clamp(lo, hi)).collect(),
-        major: named.into_iter().map(label).collect(),
+        minor: between.map(|k| minor_step.times(k).clamp(lo, hi)).collect(),
+        major: major.into_iter().map(label).collect(),
     }
 }
 
-/// Ticks of a logarithmic axis between the decades `lo` and `hi` (log₁₀ of its limits): powers of ten, with 2
-/// and 5 between them on a short axis. An axis that contains fewer than two of these has round numbers.
+/// Ticks of a logarithmic axis from `lo` to `hi` (log₁₀ of its limits). With two powers of ten or more on
+/// the axis these are labelled; with fewer, the multiples of powers of ten by 1, 2 and 5, if there are two
+/// of them up to `most`; else round values.
 pub(super) fn logarithmic(lo: f64, hi: f64, most: usize) -> Ticks {
     if !(hi > lo && (hi - lo).is_finite()) {
         return Ticks::default();
     }
     let most = most.clamp(2, 10);
-    let (powers, short) = (multiples(lo, hi, &[1]), multiples(lo, hi, &[1, 2, 5]));
-    let (named, between) = if let [first, .., last] = powers[..] {
+    let (powers, with_2_and_5) = (multiples(lo, hi, &[1]), multiples(lo, hi, &[1, 2, 5]));
+    let (major, between) = if let [first, .., last] = powers[..] {
+        // The powers whose exponents are multiples of the stride.
         let every = |stride: i32| powers.iter().filter(|(e, _)| e % stride == 0).copied().collect::<Vec<_>>();
         let stride = (1..=600).find(|s| every(*s).len() <= most).unwrap_or(1);
         let digits: &[i32] = match stride {
@@ -108,10 +113,10 @@ pub(super) fn logarithmic(lo: f64, hi: f64, most: usize) -> Ticks {
             _ => &[],
         };
         // A stride may skip all but one decade: then the first and the last are labelled.
-        let named = every(stride);
-        (if named.len() < 2 { vec![first, last] } else { named }, multiples(lo, hi, digits))
-    } else if (2..=most).contains(&short.len()) {
-        (short, multiples(lo, hi, &[2, 3, 4, 5, 6, 7, 8, 9]))
+        let major = every(stride);
+        (if major.len() < 2 { vec![first, last] } else { major }, multiples(lo, hi, digits))
+    } else if (2..=most).contains(&with_2_and_5.len()) {
+        (with_2_and_5, multiples(lo, hi, &[2, 3, 4, 5, 6, 7, 8, 9]))
     } else {
         return of_values(lo, hi, most);
     };
@@ -125,16 +130,16 @@ pub(super) fn logarithmic(lo: f64, hi: f64, most: usize) -> Ticks {
         1 => power_of_ten(decade),
         _ => format!("{digit}×{}", power_of_ten(decade)),
     };
-    let minor = between.iter().filter(|at| !named.contains(at)).map(|at| place(*at).clamp(lo, hi)).collect();
-    let major = named.iter().map(|at| Tick { at: place(*at).clamp(lo, hi), label: label(at) }).collect();
+    let minor = between.iter().filter(|at| !major.contains(at)).map(|at| place(*at).clamp(lo, hi)).collect();
+    let major = major.iter().map(|at| Tick { at: place(*at).clamp(lo, hi), label: label(at) }).collect();
     Ticks { major, minor }
 }
 
 /// Ticks at round values on less than half a decade, placed at their logarithms.
 fn of_values(lo: f64, hi: f64, most: usize) -> Ticks {
-    let ten = |u: f64| 10f64.powf(u.clamp(-300.0, 300.0));
-    let power = engineering(ten(hi));
-    let mut ticks = linear(ten(lo), ten(hi), most, power, false);
+    let value = |u: f64| 10f64.powf(u.clamp(-300.0, 300.0));
+    let power = engineering(value(hi));
+    let mut ticks = linear(value(lo), value(hi), most, power, false);
     for tick in &mut ticks.major {
         if power != 0 {
             tick.label = format!("{}×{}", tick.label, power_of_ten(power));

@@ -118,7 +118,8 @@ impl Waterfall {
             canvas.rect(rough, None, Some(FRAME));
             return canvas.label("no data", rough.middle(), LARGE, Anchor::Middle);
         };
-        // Drawn with the space that the numbers and names need, now that their widths are known.
+        // A first layout gives the lengths of the axes, and so the widths of their numbers; the second
+        // leaves room for these.
         let sheet = Sheet::new(&cube, rough);
         let numbers = |axis: &Axis, length: f64| TICK + 2.0 + frame::widest(&frame::upward(axis, length));
         let left = numbers(&cube.up, sheet.rise) + GAP + DESCENT + LARGE;
@@ -129,7 +130,7 @@ impl Waterfall {
     }
 }
 
-/// A cube with its place on the page, in points.
+/// A cube in oblique projection on the page, with its lengths in points.
 struct Sheet<'a> {
     cube: &'a Cube,
     frame: Rect,
@@ -152,6 +153,7 @@ impl<'a> Sheet<'a> {
         Sheet { cube, frame, along: 0.78 * w, back, rise: 0.42 * h * stretch }
     }
 
+    /// Place on the page of a point of the unit cube.
     fn at(&self, x: f64, depth: f64, up: f64) -> Point {
         let right = x * self.along + depth * self.back.0;
         (self.frame.x + right, self.frame.bottom() - depth * self.back.1 - up * self.rise)
@@ -177,6 +179,7 @@ impl<'a> Sheet<'a> {
         }
     }
 
+    /// Draws the three axes with their ticks, numbers and names.
     fn draw_axes(&self, canvas: &mut Canvas) {
         let Cube { x, depth, up, .. } = self.cube;
         let (tx, ty) = (frame::across(x, self.along), frame::upward(up, self.rise));

@@ -1,4 +1,8 @@
 //! Periodic motions with one impact a period, in closed form.
+//!
+//! A solution of the impact conditions is a motion of the rig only if it is physically possible: it exists
+//! (J > 0), and it is admissible (the masses do not pass through each other between the impacts). If it is
+//! stable, too, it can be measured: [`Validity::real`].
 
 mod conditions;
 mod course;
@@ -55,10 +59,10 @@ pub struct Orbit {
     pub peak_to_peak: [f64; 2],
     /// Floquet multipliers, largest first; `None` where the motion does not exist or grazes.
     pub multipliers: Option<[Complex64; 4]>,
-    /// Verdicts on whether the orbit is real.
+    /// Verdicts on whether the motion is physically possible and stable.
     pub validity: Validity,
-    /// Whether it lies on the side of the fold on which a larger impulse would take more energy than the
-    /// force provides.
+    /// Whether it is the larger-impulse branch above the fold. On it a larger impulse would take more
+    /// energy than the force provides.
     pub(crate) upper: bool,
     rig: Rig,
     excitation: Option<Excitation>,
@@ -67,7 +71,7 @@ pub struct Orbit {
 
 impl Serialize for Orbit {
     fn serialize<S: Serializer>(&self, serializer: S) -> std::result::Result<S::Ok, S::Error> {
-        let mut told = json!({
+        let mut fields = json!({
             "frequency": self.frequency,
             "cycles": self.cycles,
             "impulse": self.impulse,
@@ -82,9 +86,9 @@ impl Serialize for Orbit {
             "fundamental_phase": self.fundamental.map(Complex64::arg),
         });
         for (key, verdict) in self.validity.keys() {
-            told[key] = verdict;
+            fields[key] = verdict;
         }
-        told.serialize(serializer)
+        fields.serialize(serializer)
     }
 }
 
@@ -124,21 +128,23 @@ impl Orbit {
     /// at a nearby frequency (or contact). It is on the same side of the fold, and within a sixth of a cycle
     /// in timing.
     pub fn continued<'a>(&self, others: &'a [Orbit]) -> Option<&'a Orbit> {
-        let same = others.iter().filter(|other| other.upper == self.upper);
+        let same_side = others.iter().filter(|other| other.upper == self.upper);
         if self.timing_unit() == "rad" {
             // Under a sine force there is one orbit on each side of the fold.
-            return same.min_by(|a, b| a.impulse.total_cmp(&b.impulse));
+            return same_side.min_by(|a, b| a.impulse.total_cmp(&b.impulse));
         }
-        let apart = |other: &Orbit| {
-            let way = (other.force_phase - self.force_phase).rem_euclid(TAU);
-            way.min(TAU - way)
+        let phase_distance = |other: &Orbit| {
+            let difference = (other.force_phase - self.force_phase).rem_euclid(TAU);
+            difference.min(TAU - difference)
         };
-        same.filter(|other| apart(other) < TAU / 6.0).min_by(|a, b| apart(a).total_cmp(&apart(b)))
+        same_side
+            .filter(|other| phase_distance(other) < TAU / 6.0)
+            .min_by(|a, b| phase_distance(a).total_cmp(&phase_distance(b)))
     }
 
-    /// Whether the motion is real, and stays real where the gap differs by up to `gap_uncertainty` (m): its
-    /// [`Validity::grazing_distance`] is larger, and orbits solved with the gap at both ends of the
-    /// uncertainty and half-way to them are real.
+    /// Whether the motion can be measured ([`Validity::real`]), and still can where the gap differs by up
+    /// to `gap_uncertainty` (m): its [`Validity::grazing_distance`] is larger, and so say the verdicts on
+    /// the orbits with the gap at both ends of the uncertainty and half-way to them.
     pub fn robust(&self, gap_uncertainty: f64) -> bool {
         if !self.validity.real() || self.validity.grazing_distance <= gap_uncertainty {
             return false;
@@ -169,7 +175,8 @@ impl Orbit {
 /// All motions at one frequency.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Orbits {
-    /// One for each real root, in the order of [`orbits_of`]; its verdicts tell whether it is real.
+    /// One for each real root of the impact conditions, in the order of [`orbits_of`]; its verdicts tell
+    /// whether the motion can be measured.
     pub orbits: Vec<Orbit>,
     /// The motion without impacts.
     pub no_impact: NoImpact,
@@ -207,13 +214,14 @@ pub fn no_impact(rig: &Rig, excitation: &Excitation) -> Result<NoImpact> {
     }
 }
 
-/// As [`orbits_of`], with the impact `delay` (s) after the first touch.
+/// As [`orbits_of`], with the impact `delay` (s) after the first touch: for a soft contact, whose
+/// equivalent rigid impact lies at the centroid of its force.
 fn solve(rig: &Rig, excitation: &Excitation, cycles: u32, delay: f64) -> Result<Orbits> {
     scales::check(rig, excitation)?;
     let conditions = || Conditions::new(rig, excitation.frequency(), cycles, delay);
     if let Excitation::Sine(sine) = excitation {
         let steady = Steady::new(rig, sine)?;
-        driven(sine.force)?;
+        check_not_zero(sine.force)?;
         let orbits = sine::orbits(&conditions()?, &steady, sine);
         return Ok(Orbits { orbits, no_impact: NoImpact::new(&steady, rig.gap) });
     }
@@ -224,7 +232,7 @@ fn solve(rig: &Rig, excitation: &Excitation, cycles: u32, delay: f64) -> Result<
 
 /// Response of mass 1 alone to a train of impulses or pulses.
 fn train(rig: &Rig, excitation: &Excitation) -> Result<PulseResponse> {
-    driven(excitation.size())?;
+    check_not_zero(excitation.size())?;
     let (m, oscillator, cycle) = (rig.masses()[0], rig.oscillators()[0], 1.0 / excitation.frequency());
     match *excitation {
         Excitation::Impulse(train) => PulseResponse::impulse(m, oscillator, cycle, train.impulse),
@@ -237,7 +245,7 @@ fn train(rig: &Rig, excitation: &Excitation) -> Result<PulseResponse> {
 }
 
 /// Checks that the size of an excitation is not 0.
-pub(super) fn driven(size: f64) -> Result<()> {
+pub(super) fn check_not_zero(size: f64) -> Result<()> {
     if size == 0.0 {
         let expected = "a value other than 0: nothing moves the masses";
         return Err(Error::usage("a force or impulse of 0", expected).setting("force").setting("impulse"));

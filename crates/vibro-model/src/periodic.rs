@@ -54,7 +54,7 @@ pub struct PeriodicOrbit {
     /// Floquet multipliers over the whole period, largest first; `None` where an impact grazes or does not
     /// exist.
     pub multipliers: Option<[Complex64; 4]>,
-    /// Verdicts on whether the motion is real; each covers all impacts and all flights.
+    /// Verdicts on whether the motion is physically possible and stable; each covers all impacts and flights.
     pub validity: Validity,
     /// Monodromy matrix over the period that starts just before the first impact.
     pub(super) monodromy: Option<Matrix4<f64>>,

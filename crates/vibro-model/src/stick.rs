@@ -9,16 +9,18 @@ use vibro_math::root::{Bounded, first_fall};
 
 /// Motion of both masses in contact, in closed form; time counts from its start.
 ///
-/// One oscillator of m₁ + m₂, c₁ + c₂ and K = k₁ + k₂: x₁ = (P + k₂Δ)/K + Σ Re(Ye^{iωt}) + free motion under
-/// a constant force P and sine forces, x₂ = x₁ − Δ. The contact force on mass 2 is N = m₂ẍ₂ + c₂ẋ₂ + k₂x₂;
-/// the masses part where it vanishes.
+/// The masses move as one oscillator of m₁ + m₂, c₁ + c₂ and K = k₁ + k₂ under a constant force P (N) and
+/// sine forces of complex amplitudes F (N): x₁ = (P + k₂Δ)/K + Σ Re(Ye^{iωt}) + free motion, and x₂ = x₁ −
+/// Δ, with the complex amplitudes Y (m) of the forced motion and the gap Δ (m). The contact force on mass 2
+/// is N = m₂ẍ₂ + c₂ẋ₂ + k₂x₂; the masses part where it vanishes.
 ///
 /// Against a wall (m₂ infinite) mass 1 stays at x₁ = Δ, and the contact force is N = P + Σ Re(Fe^{iωt}) −
 /// k₁Δ.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pair {
-    /// Forced motion in m, or the sine forces in N on a wall.
+    /// Forced motion Y in m; against a wall the sine forces F in N.
     waves: Waves,
+    /// Gap Δ in m.
     gap: f64,
     course: PairMotion,
 }
@@ -80,11 +82,14 @@ impl Pair {
                 Bounded { value: sines + force - stiffness * self.gap, slope, curvature }
             }
             PairMotion::Moving { rest, free, passive } => {
-                let ([x, v, a, jerk, ..], [bend, third, fourth]) = self.series(*rest, free, t);
+                let ([x, v, a, jerk, ..], [acceleration_bound, jerk_bound, snap_bound]) =
+                    self.series(*rest, free, t);
                 Bounded {
                     value: passive.mass * a + passive.damping * v + passive.stiffness * (x - self.gap),
                     slope: passive.mass * jerk + passive.damping * a + passive.stiffness * v,
-                    curvature: passive.mass * fourth + passive.damping * third + passive.stiffness * bend,
+                    curvature: passive.mass * snap_bound
+                        + passive.damping * jerk_bound
+                        + passive.stiffness * acceleration_bound,
                 }
             }
         }
@@ -97,8 +102,9 @@ impl Pair {
                 self.waves.amplitude + force.abs() + stiffness * self.gap.abs()
             }
             PairMotion::Moving { rest, free, passive } => {
-                let ([x, ..], [bend, ..]) = self.series(*rest, free, 0.0);
-                passive.mass * bend + passive.stiffness * (x.abs() + rest.abs() + self.gap.abs())
+                let ([x, ..], [acceleration_bound, ..]) = self.series(*rest, free, 0.0);
+                passive.mass * acceleration_bound
+                    + passive.stiffness * (x.abs() + rest.abs() + self.gap.abs())
             }
         };
         8.0 * f64::EPSILON * size
@@ -136,19 +142,19 @@ impl Pair {
     }
 }
 
-/// How the masses are pressed together at the start of a flight from contact.
+/// The relative motion at the start of a flight from contact, which presses the masses together again.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Press {
-    /// Acceleration a in m/s² with which free motion presses the masses together.
+    /// Relative acceleration a in m/s² that drives the masses back together after a separation.
     pub acceleration: f64,
-    /// Rate of the gap's acceleration in m/s³.
+    /// Rate j of the gap's acceleration in m/s³.
     jerk: f64,
     /// Rounding error of the gap in m.
     noise: f64,
 }
 
 impl Press {
-    /// The pressing at the start of `flight`.
+    /// That at the start of `flight`.
     pub fn of(flight: &Flight) -> Press {
         let [[_, _, a1, j1, ..], [_, _, a2, j2, ..]] = flight.series(0.0);
         Press { acceleration: a1 - a2, jerk: j2 - j1, noise: flight.noise() }
@@ -159,22 +165,26 @@ impl Press {
         w * w <= 8.0 * self.acceleration * self.noise
     }
 
-    /// Time in s in which the impacts after a separation with speed `w` (m/s) accumulate; `None` where the
-    /// series below is not accurate enough.
+    /// Time T in s in which the impacts after a separation with speed `w` (m/s) accumulate; `None` where
+    /// the series below is not accurate enough.
     ///
-    /// With a flight of 2w/a + 4jw²/3a³, an approach at w − 2jw²/3a², and a pressing acceleration that
-    /// changes by −2jw/a over the flight and by κ(1 + R) times the approach at the impact, where κ =
-    /// 2M(b₁/m₁ + b₂/m₂), the sum over all flights is T = 2w/(a(1 − R)) + [4j/3a³ − 2Rκ/a²] w²/(1 − R)² +
-    /// O(w³), with the rate j of the gap's acceleration. The second term must be below a ten thousandth of
-    /// the first, and the first below a ten thousandth of the rig's time scale; then the truncation is below
-    /// 1e-8 T.
+    /// Symbols: restitution R; acceleration a (m/s²) and rate j (m/s³) of this type; reduced mass M (kg);
+    /// decay rates b₁, b₂ (1/s) of masses m₁, m₂ (kg); κ = 2M(b₁/m₁ + b₂/m₂) (1/s). To the order of w², in
+    /// each bounce:
+    /// - the flight lasts 2w/a + 4jw²/3a³;
+    /// - the masses meet again at the speed w − 2jw²/3a²;
+    /// - a changes by −2jw/a over the flight, and by κ(1 + R) times the approach speed at the impact.
+    ///
+    /// The sum over all flights is T = 2w/(a(1 − R)) + [4j/3a³ − 2Rκ/a²] w²/(1 − R)² + O(w³). The second
+    /// term must be below a ten thousandth of the first, and the first below a ten thousandth of the rig's
+    /// time scale; then the truncation is below 1e-8 T.
     pub(crate) fn accumulation(&self, rig: &Rig, w: f64) -> Option<f64> {
         let (a, r) = (self.acceleration, rig.restitution);
-        let lost = 1.0 - r;
+        let loss = 1.0 - r;
         let ([first, second], [m1, m2]) = (rig.oscillators(), rig.masses());
         let kappa = 2.0 * rig.reduced_mass() * (first.decay() / m1 + second.decay() / m2);
-        let leading = 2.0 * w / (a * lost);
-        let correction = (4.0 / 3.0 * self.jerk / a - 2.0 * r * kappa) / (a * a) * (w / lost) * (w / lost);
+        let leading = 2.0 * w / (a * loss);
+        let correction = (4.0 / 3.0 * self.jerk / a - 2.0 * r * kappa) / (a * a) * (w / loss) * (w / loss);
         let scale = first.omega2().sqrt() + second.omega2().sqrt() + first.decay() + second.decay();
         let close = correction.abs() <= 1e-4 * leading && leading * scale <= 1e-4;
         if w == 0.0 { Some(0.0) } else { close.then_some(leading + correction) }

@@ -42,6 +42,7 @@ pub fn failures(quick: bool) -> FailureMap {
     FailureMap::answered(Family::Estimators, questions(quick))
 }
 
+/// All questions of the map.
 fn questions(quick: bool) -> Vec<BorderQuestion> {
     let parts: [fn(bool) -> Vec<BorderQuestion>; 5] =
         [sine::borders, integration::borders, damping::borders, impacts::borders, pulse::borders];
@@ -53,19 +54,23 @@ fn scene(texts: [&str; 4], bound: f64, methods: Vec<MeasuredMethod>) -> Benchmar
     BenchmarkScene { bound: Some(bound), methods, ..BenchmarkScene::new(Family::Estimators, texts) }
 }
 
-/// Cramér–Rao bounds: standard deviations of unbiased estimates of the parameters `p` from the values of
-/// `model` with independent normal noise of standard deviation `noise`: roots of the diagonal of the inverse
-/// of Fisher's information (Kay 1993, eq. 3.33), whose slopes are central differences of `steps`. NaN where
-/// the information is singular.
+/// Cramér–Rao bounds: the least standard deviations of unbiased estimates of the parameters `p`, from
+/// values of `model` with independent normal noise of standard deviation `noise`. They are the roots of the
+/// diagonal of the inverse of Fisher's information (Kay 1993, eq. 3.33), with slopes by central differences
+/// of `steps`. NaN where the information is singular.
 fn bounds(p: &[f64], steps: &[f64], noise: f64, model: impl Fn(&[f64]) -> Vec<f64>) -> Vec<f64> {
     let slopes: Vec<Vec<f64>> = (0..p.len())
         .map(|i| {
-            let at = |by: f64| {
-                let mut moved = p.to_vec();
-                moved[i] += by;
-                model(&moved)
+            let shifted_model = |by: f64| {
+                let mut shifted = p.to_vec();
+                shifted[i] += by;
+                model(&shifted)
             };
-            at(steps[i]).iter().zip(at(-steps[i])).map(|(a, b)| (a - b) / (2.0 * steps[i] * noise)).collect()
+            shifted_model(steps[i])
+                .iter()
+                .zip(shifted_model(-steps[i]))
+                .map(|(a, b)| (a - b) / (2.0 * steps[i] * noise))
+                .collect()
         })
         .collect();
     let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();

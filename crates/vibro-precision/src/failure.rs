@@ -1,4 +1,4 @@
-//! The behaviour of methods at the borders of what they can do.
+//! Failure maps: the outcome of each method at the borders of its domain, such as grazing or no damping.
 
 use super::Family;
 use rayon::prelude::*;
@@ -64,22 +64,24 @@ pub struct FailureMap {
     pub cells: Vec<BorderCell>,
 }
 
-/// Outcome of a question.
+/// Outcome of a question, with its reason.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Found {
     pub outcome: Outcome,
     pub why: String,
+    /// As [`BorderCell::stated`].
     pub stated: [usize; 2],
 }
 
 impl Found {
+    /// An outcome with its reason.
     pub fn new(outcome: Outcome, why: impl Into<String>) -> Found {
         Found { outcome, why: why.into(), stated: [0; 2] }
     }
 
-    /// Right if `kept`, else wrong.
-    pub fn right_if(kept: bool, why: String) -> Found {
-        Found::new(if kept { Outcome::Right } else { Outcome::Wrong }, why)
+    /// Right if the check `passed`, else wrong.
+    pub fn right_if(passed: bool, why: String) -> Found {
+        Found::new(if passed { Outcome::Right } else { Outcome::Wrong }, why)
     }
 }
 
@@ -101,6 +103,7 @@ pub(crate) struct BorderQuestion {
     pub ours: bool,
     pub border: &'static str,
     pub scene: String,
+    /// Runs the method and judges its answer.
     pub answer: Box<dyn FnOnce() -> Found + Send>,
 }
 
@@ -143,8 +146,8 @@ impl FailureMap {
 
     /// Names of the methods, in the order of their first cells.
     pub fn methods(&self) -> Vec<&str> {
-        let mut known = HashSet::new();
-        self.cells.iter().map(|c| c.method.as_str()).filter(|name| known.insert(*name)).collect()
+        let mut seen = HashSet::new();
+        self.cells.iter().map(|c| c.method.as_str()).filter(|name| seen.insert(*name)).collect()
     }
 
     /// The cells of this library's methods with a forbidden outcome: wrong, stalled or crashed.

@@ -86,8 +86,9 @@ impl Results {
         let lines: Vec<AddedMeasurement> =
             read(path, "a list of lines, each with scene, method, error and time_ns")?;
         let ours = |m: &MeasuredMethod| m.ours.then(|| m.method.clone());
-        let own: Vec<String> = self.scenes.iter().flat_map(|s| s.methods.iter().filter_map(ours)).collect();
-        let mut left = Vec::new();
+        let our_methods: Vec<String> =
+            self.scenes.iter().flat_map(|s| s.methods.iter().filter_map(ours)).collect();
+        let mut unknown_scenes = Vec::new();
         for AddedMeasurement { scene, method, setting, error, time_ns, why } in lines {
             let answer = error.ok_or_else(|| why.unwrap_or_else(|| "no answer".to_owned()));
             let line = MeasuredMethod {
@@ -95,17 +96,17 @@ impl Results {
                 ..MeasuredMethod::new((&method, false), setting, time_ns, answer)
             };
             check(path, &scene, &line)?;
-            if own.contains(&method) {
+            if our_methods.contains(&method) {
                 let found = format!("{}: {scene}, {method}: a method of this library", path.display());
                 return Err(Error::usage(found, "the name of the other program"));
             }
             match self.scenes.iter_mut().find(|s| s.name == scene) {
                 Some(scene) => scene.methods.push(line),
-                None => left.push(scene),
+                None => unknown_scenes.push(scene),
             }
         }
         self.scenes.iter_mut().for_each(BenchmarkScene::mark_front);
-        Ok(left)
+        Ok(unknown_scenes)
     }
 
     /// Keeps the wanted families only.
@@ -115,6 +116,7 @@ impl Results {
     }
 }
 
+/// The content of a JSON file.
 fn read<T: DeserializeOwned>(path: &Path, expected: &str) -> Result<T> {
     let text = std::fs::read_to_string(path).map_err(|e| Error::io("read", path, e))?;
     serde_json::from_str(&text).map_err(|e| Error::usage(format!("{}: {e}", path.display()), expected))

@@ -7,13 +7,13 @@ use crate::report::{AxisSpec, Figure, Ink, Marker, Plot, Series, Stroke};
 use crate::units::notation::significant;
 
 /// Most points of a line: more are not visible in print.
-const POINTS: usize = 4000;
+const MOST_POINTS: usize = 4000;
 
 /// Turns averaged for a point of the speed, where each turn is a whole number of samples.
-const TOGETHER: usize = 10;
+const AVERAGED_TURNS: usize = 10;
 
 /// Most markers over a line: more hide it.
-const MARKERS: usize = 20;
+const MOST_MARKERS: usize = 20;
 
 /// Colour and marker of the velocities before and after the impacts of each group.
 const FORMS: [[(Ink, Marker); 2]; 2] = [
@@ -28,10 +28,11 @@ pub fn drill(name: &str, drill: &Drill) -> Vec<(String, Figure)> {
         ("drill_trace".to_owned(), trace(name, drill)),
         ("drill_speed".to_owned(), speed(name, drill)),
     ];
-    figures.extend(floor(name, drill).map(|f| ("drill_noise".to_owned(), f)));
+    figures.extend(noise_floor(name, drill).map(|f| ("drill_noise".to_owned(), f)));
     figures
 }
 
+/// The average turn: velocity with its scatter and the impacts, and displacement.
 fn average(name: &str, drill: &Drill) -> Figure {
     let a = &drill.average;
     // The curve is closed, since the turn ends where it begins.
@@ -80,25 +81,28 @@ fn marks(
 ) -> (Plot, usize) {
     let mut marked = 0;
     for (number, forms) in FORMS.iter().enumerate() {
-        let own: Vec<Impact> =
+        let of_group: Vec<Impact> =
             drill.impacts.iter().filter(|i| i.group == number && shown(i)).copied().collect();
-        let own = thin(&own, MARKERS);
-        let of = if drill.groups.len() > 1 { format!(", group {number}") } else { String::new() };
+        let of_group = thin(&of_group, MOST_MARKERS);
+        let group_name = if drill.groups.len() > 1 { format!(", group {number}") } else { String::new() };
         // Refused velocities are not drawn.
         let refused = drill.groups.get(number).is_some_and(|group| group.before.value.is_nan());
-        if own.is_empty() || refused {
+        if of_group.is_empty() || refused {
             continue;
         }
-        marked += own.len();
+        marked += of_group.len();
         for (side, (ink, marker)) in ["before", "after"].into_iter().zip(*forms) {
-            let x: Vec<f64> = own.iter().map(&x).collect();
-            let y: Vec<f64> = own.iter().map(|i| if side == "before" { i.before } else { i.after }).collect();
-            plot = plot.with(Series::points(format!("{side} impact{of}"), x, y).ink(ink).marker(marker));
+            let x: Vec<f64> = of_group.iter().map(&x).collect();
+            let y: Vec<f64> =
+                of_group.iter().map(|i| if side == "before" { i.before } else { i.after }).collect();
+            plot =
+                plot.with(Series::points(format!("{side} impact{group_name}"), x, y).ink(ink).marker(marker));
         }
     }
     (plot, marked)
 }
 
+/// A few turns as measured, with the reference where there is one.
 fn trace(name: &str, drill: &Drill) -> Figure {
     let (start, step) = drill.excerpt_time;
     let time = |n: usize| -> Vec<f64> { (0..n).map(|k| start + k as f64 * step).collect() };
@@ -123,17 +127,19 @@ fn trace(name: &str, drill: &Drill) -> Figure {
     lettered(figure.height(110.0).shared_x().panel(above).panel(below)).caption(caption)
 }
 
+/// Rotational speed over time.
 fn speed(name: &str, drill: &Drill) -> Figure {
     let plot = Plot::new(AxisSpec::new("Time", "s"), AxisSpec::new("Speed", "Hz"));
     let sharp = drill.findings.iter().any(|found| found.code == code::DRILL_EDGES_SHARP);
     // Each turn is then a whole number of samples: single turns would only show steps of one sample.
-    let (name_of, turns) = if sharp && drill.speeds.len() > TOGETHER * TOGETHER {
-        (format!("mean of {TOGETHER} turns"), TOGETHER)
+    let (name_of, turns) = if sharp && drill.speeds.len() > AVERAGED_TURNS * AVERAGED_TURNS {
+        (format!("mean of {AVERAGED_TURNS} turns"), AVERAGED_TURNS)
     } else {
         ("each turn".to_owned(), 1)
     };
     let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
-    let over = |values: &[f64]| thin(&values.chunks_exact(turns).map(mean).collect::<Vec<f64>>(), POINTS);
+    let over =
+        |values: &[f64]| thin(&values.chunks_exact(turns).map(mean).collect::<Vec<f64>>(), MOST_POINTS);
     let plot = plot.with(Series::line(name_of, over(&drill.times), over(&drill.speeds)).stroke(Stroke::Thin));
     let plot = plot.with(Series::horizontal("mean", drill.speed.value));
     let step = significant(drill.speed.value.powi(2) * drill.excerpt_time.1, 2);
@@ -143,7 +149,8 @@ fn speed(name: &str, drill: &Drill) -> Figure {
     Figure::double(format!("Speed, {name}")).height(70.0).panel(plot).caption(caption)
 }
 
-fn floor(name: &str, drill: &Drill) -> Option<Figure> {
+/// Spectra of motion and noise; `None` without a record of the noise.
+fn noise_floor(name: &str, drill: &Drill) -> Option<Figure> {
     let floor = drill.noise_floor.as_ref()?;
     let lowest = floor.noise.iter().copied().fold(f64::INFINITY, f64::min).max(-400.0);
     let highest = floor.motion.iter().copied().fold(f64::NEG_INFINITY, f64::max);

@@ -1,4 +1,4 @@
-//! Channels of a file.
+//! Reads the channels of a hammer drill from its file.
 
 use crate::analysis::progress::Progress;
 use std::path::Path;
@@ -8,7 +8,9 @@ use vibro_record::{Error, Finding, Meta, Result, Trace};
 
 /// Channels of one file, by name or number from 1.
 pub(super) struct Channels {
+    /// Sampling rate in Hz.
     pub rate: f64,
+    /// Samples of each channel, in the order of the names.
     pub values: Vec<Vec<f64>>,
     metas: Vec<Meta>,
     /// Findings on the file. Missing sensitivities are no finding, since they are stated.

@@ -16,10 +16,10 @@ pub fn drill(name: &str, d: &Drill) -> Table {
     let minute = Cell::Estimate { value: 60.0 * d.speed.value, std: d.speed.std.map(|std| 60.0 * std) };
     row("speed", minute, "rpm", d.speed.n);
     for (number, group) in d.groups.iter().enumerate() {
-        let of = if d.groups.len() > 1 { format!("group {number}: ") } else { String::new() };
+        let group_name = if d.groups.len() > 1 { format!("group {number}: ") } else { String::new() };
         for (what, e) in means(group) {
             let unit = if e.unit == "1" && what.starts_with("phase") { "turn" } else { e.unit };
-            row(&format!("{of}{what}"), Cell::from(e), unit, e.n);
+            row(&format!("{group_name}{what}"), Cell::from(e), unit, e.n);
         }
     }
     let (x, b) = (&d.displacement, &d.bandwidth);
@@ -54,6 +54,7 @@ pub fn drill(name: &str, d: &Drill) -> Table {
     table
 }
 
+/// Means of a group of impacts, by their names.
 fn means(group: &Group) -> impl Iterator<Item = (&'static str, &Estimate)> {
     let all = [
         ("velocity before impact", Some(&group.before)),

@@ -6,8 +6,8 @@ use crate::record::Trace;
 use crate::report::layout::lettered;
 use crate::report::{AxisSpec, Figure, Ink, Legend, Marker, Plot, Series, Stroke};
 
-/// Samples of a line: more than print can show.
-const SHOWN: usize = 4000;
+/// Most samples of a drawn line: print cannot show more.
+const MOST_SAMPLES: usize = 4000;
 
 /// Trace, histogram of intervals and return map.
 pub fn impacts(title: &str, trace: &Trace, found: &Impacts) -> Figure {
@@ -29,13 +29,13 @@ pub fn impacts(title: &str, trace: &Trace, found: &Impacts) -> Figure {
         trace.axis.start() + trace.axis.step().unwrap_or(1.0) * trace.values.len() as f64,
     );
     let middle = found.times.get(found.times.len() / 2).copied().unwrap_or(all.0);
-    let reach = 5.5 * found.median_interval;
-    let near = ((middle - reach).max(all.0), (middle + reach).min(all.1));
+    let half_span = 5.5 * found.median_interval;
+    let near = ((middle - half_span).max(all.0), (middle + half_span).min(all.1));
     let figure = Figure::double(format!("Impacts, {title}"))
         .height(130.0)
         .columns(2)
-        .panel(marked(trace, &found.times, all).title("whole record"))
-        .panel(marked(trace, &found.times, near).title("about ten intervals"))
+        .panel(trace_with_impacts(trace, &found.times, all).title("whole record"))
+        .panel(trace_with_impacts(trace, &found.times, near).title("about ten intervals"))
         .panel(histogram.title("intervals"))
         .panel(map.title("each interval over the one before"))
         .caption("Triangles: impacts found. (c) Vertical line: mean interval. (d) A periodic motion is one point, or a few.");
@@ -62,34 +62,35 @@ pub fn drop(file: &str, trace: &Trace, times: &[f64]) -> Plot {
     let (from, to) = ((first - margin).max(trace.axis.start()), (last + 2.0 * margin).min(end));
     let flight = times.get(1).map(|second| format!(", first flight {:.2} ms", 1e3 * (second - first)));
     let title = file.to_owned() + &flight.unwrap_or_default();
-    marked(trace, times, (from, to)).title(title).legend(Legend::Hidden)
+    trace_with_impacts(trace, times, (from, to)).title(title).legend(Legend::Hidden)
 }
 
 /// The part of a trace between two times, with its impacts marked over it.
-fn marked(trace: &Trace, times: &[f64], (from, to): (f64, f64)) -> Plot {
+fn trace_with_impacts(trace: &Trace, times: &[f64], (from, to): (f64, f64)) -> Plot {
     let (x, y) = outline(trace, from, to);
     let low = y.iter().copied().fold(f64::INFINITY, f64::min);
     let high = y.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     let times: Vec<f64> = times.iter().copied().filter(|t| (from..=to).contains(t)).collect();
-    let over = vec![high + 0.07 * (high - low); times.len()];
+    let marker_heights = vec![high + 0.07 * (high - low); times.len()];
     let name = if trace.meta.name.is_empty() { "Trace" } else { &trace.meta.name };
     Plot::new(
         AxisSpec::new("Time", "s").limits(from, to),
         AxisSpec::new(crate::report::layout::capital(name), trace.meta.unit.symbol()),
     )
     .with(Series::line("trace", x, y).stroke(Stroke::Thin).ink(Ink::Nth(0)))
-    .with(Series::points("impacts", times, over).marker(Marker::Triangle).ink(Ink::Nth(1)))
+    .with(Series::points("impacts", times, marker_heights).marker(Marker::Triangle).ink(Ink::Nth(1)))
     .legend(Legend::Above)
 }
 
-/// A line with the extremes of each stretch, where there are more samples than print can show.
+/// The samples of a trace between two times; of more than print can show, the smallest and largest of each
+/// stretch.
 fn outline(trace: &Trace, from: f64, to: f64) -> (Vec<f64>, Vec<f64>) {
     let inside: Vec<usize> =
         (0..trace.values.len()).filter(|i| (from..=to).contains(&trace.axis.at(*i))).collect();
-    let kept = inside.chunks(inside.len().div_ceil(SHOWN / 2).max(1)).flat_map(|part| {
-        let by = |a: &&usize, b: &&usize| trace.values[**a].total_cmp(&trace.values[**b]);
+    let kept = inside.chunks(inside.len().div_ceil(MOST_SAMPLES / 2).max(1)).flat_map(|part| {
+        let by_value = |a: &&usize, b: &&usize| trace.values[**a].total_cmp(&trace.values[**b]);
         let mut ends: Vec<usize> =
-            part.iter().min_by(by).into_iter().chain(part.iter().max_by(by)).copied().collect();
+            part.iter().min_by(by_value).into_iter().chain(part.iter().max_by(by_value)).copied().collect();
         ends.sort_unstable();
         ends.dedup();
         ends

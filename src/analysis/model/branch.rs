@@ -97,8 +97,8 @@ impl Keys {
         let mut answer = Answer::of(&json!({
             "scene": scene,
             "over": over,
-            "branches": branches.iter().map(|b| told(over, b)).collect::<Vec<Value>>(),
-            "one_impact": beside.iter().map(|b| told(over, b)).collect::<Vec<Value>>(),
+            "branches": branches.iter().map(|b| to_json(over, b)).collect::<Vec<Value>>(),
+            "one_impact": beside.iter().map(|b| to_json(over, b)).collect::<Vec<Value>>(),
         }))?;
         answer.add("", finding);
         if self.impacts > 1 || self.cycles > 1 {
@@ -172,19 +172,21 @@ struct BranchPoint {
     value: f64,
 }
 
-fn told(over: Parameter, branch: &Branch) -> Value {
-    let with = |orbit: &PeriodicOrbit| BranchPoint {
-        orbit: pattern::told(orbit, None),
+/// A branch as JSON.
+fn to_json(over: Parameter, branch: &Branch) -> Value {
+    let point = |orbit: &PeriodicOrbit| BranchPoint {
+        orbit: pattern::to_json(orbit, None),
         value: over.of(&orbit.rig, &orbit.sine),
     };
-    let mark = |m: &crate::model::continuation::Mark| json!({ "kind": m.kind, "after": m.after, "orbit": with(&m.orbit) });
+    let mark = |m: &crate::model::continuation::Mark| json!({ "kind": m.kind, "after": m.after, "orbit": point(&m.orbit) });
     json!({
-        "points": branch.points.iter().map(with).collect::<Vec<BranchPoint>>(),
+        "points": branch.points.iter().map(point).collect::<Vec<BranchPoint>>(),
         "marks": branch.marks.iter().map(mark).collect::<Vec<Value>>(),
         "ends": branch.ends,
     })
 }
 
+/// Range and ends of each branch.
 fn summary(over: Parameter, branches: &[Branch]) -> Table {
     let value = |o: &PeriodicOrbit| over.of(&o.rig, &o.sine);
     let end = |b: &Branch, i: usize| json!(b.ends[i]).as_str().unwrap_or_default().to_owned();
@@ -208,6 +210,7 @@ fn summary(over: Parameter, branches: &[Branch]) -> Table {
     .note("Real: admissible and stable.")
 }
 
+/// Folds, flips and other changes along the branches.
 fn marks(over: Parameter, branches: &[Branch]) -> Table {
     table(
         "Changes along the branches",
@@ -222,6 +225,7 @@ fn marks(over: Parameter, branches: &[Branch]) -> Table {
     )
 }
 
+/// Every point of every branch.
 fn points(over: Parameter, branches: &[Branch]) -> Table {
     table(
         "Points of the branches",

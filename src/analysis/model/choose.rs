@@ -78,7 +78,7 @@ impl Keys {
         }
         answer.add("", finding);
         if let Some((from, to)) = self.from.zip(self.to) {
-            along(&choose_over(&scene, from, to, self.points, &question)?, &question, &mut answer)?;
+            over_range(&choose_over(&scene, from, to, self.points, &question)?, &question, &mut answer)?;
             return Ok(answer);
         }
         let frequency = self.frequency.unwrap_or(excitation.frequency());
@@ -86,12 +86,13 @@ impl Keys {
             let expected = "a frequency, or from and to for an axis";
             return Err(Error::usage("no frequency", expected).setting("frequency"));
         }
-        single(&choose(&scene, frequency, &question)?, &question, &mut answer)?;
+        at_one_frequency(&choose(&scene, frequency, &question)?, &question, &mut answer)?;
         Ok(answer)
     }
 }
 
-fn single(choice: &Choice, question: &Question, answer: &mut Answer) -> Result<()> {
+/// Adds the choice at one frequency to an answer.
+fn at_one_frequency(choice: &Choice, question: &Question, answer: &mut Answer) -> Result<()> {
     answer.result.extend(Answer::of(&WordedChoice::of(choice))?.result);
     answer.add("", &choice.findings);
     answer.table("rungs", rungs(choice, question));
@@ -100,17 +101,18 @@ fn single(choice: &Choice, question: &Question, answer: &mut Answer) -> Result<(
     }
     answer.tables.push(table(
         "Reasons",
-        fates(choice),
+        verdicts(choice),
         &[
             ("model", "", &|(names, ..)| names.as_str().into()),
-            ("result", "", &|(_, fate, _)| (*fate).into()),
+            ("result", "", &|(_, verdict, _)| (*verdict).into()),
             ("reason", "", &|(.., why)| why.as_str().into()),
         ],
     ));
     Ok(())
 }
 
-fn along(survey: &Survey, question: &Question, answer: &mut Answer) -> Result<()> {
+/// Adds the choices over a range of frequencies to an answer.
+fn over_range(survey: &Survey, question: &Question, answer: &mut Answer) -> Result<()> {
     let points = survey.points.len();
     let why =
         |of: &Summary| format!("Valid at {} and chosen at {} of {points} points.", of.valid_at, of.chosen_at);
@@ -153,18 +155,18 @@ fn why(rung: &Rung) -> String {
 }
 
 /// Rungs up to the chosen one, grouped by equal result and reason: names, result, reason.
-fn fates(choice: &Choice) -> Vec<(String, &'static str, String)> {
+fn verdicts(choice: &Choice) -> Vec<(String, &'static str, String)> {
     let top = choice.chosen.map_or(choice.rungs.len(), |model| model as usize + 1);
-    let alike = choice.rungs[..top].chunk_by(|a, b| (a.valid, why(a)) == (b.valid, why(b)));
-    alike
+    let groups = choice.rungs[..top].chunk_by(|a, b| (a.valid, why(a)) == (b.valid, why(b)));
+    groups
         .map(|rungs| {
             let names: Vec<&str> = rungs.iter().map(|r| r.model.name()).collect();
-            let fate = match rungs[0].valid {
+            let verdict = match rungs[0].valid {
                 _ if choice.chosen == Some(rungs[0].model) => "chosen",
                 true => "valid",
                 false => "not valid",
             };
-            (names.join(", "), fate, why(&rungs[0]))
+            (names.join(", "), verdict, why(&rungs[0]))
         })
         .collect()
 }
@@ -187,8 +189,10 @@ struct WordedChoice<'a> {
 }
 
 impl WordedChoice<'_> {
+    /// The choice with its reasons.
     fn of(choice: &Choice) -> WordedChoice<'_> {
-        let rungs = fates(choice).into_iter().map(|(names, fate, why)| format!("{names}: {fate}. {why}"));
+        let rungs =
+            verdicts(choice).into_iter().map(|(names, verdict, why)| format!("{names}: {verdict}. {why}"));
         let found: Vec<_> = choice.findings.iter().map(|f| (String::new(), f.clone())).collect();
         WordedChoice {
             choice,
@@ -198,6 +202,7 @@ impl WordedChoice<'_> {
     }
 }
 
+/// A ratio in %.
 fn percent(part: Option<f64>) -> Cell {
     part.map(|p| 100.0 * p).into()
 }
@@ -248,6 +253,7 @@ fn sensitivity(rows: &[Sensitivity], question: &Question) -> Table {
     answered(found, question, rows.iter().map(|r| Some(r.answer)))
 }
 
+/// What a choice needs, in words.
 fn needed(needs: &[Need]) -> Cell {
     (!needs.is_empty()).then(|| Need::names(needs)).into()
 }
@@ -271,7 +277,7 @@ fn stretches(stretches: &[Stretch]) -> Table {
 }
 
 /// Explanation of the table of a campaign.
-const TRIED: &str = "The models are compared at evenly spaced frequencies, not at the measured points. No model (–): state what it needs.";
+const NOTE: &str = "The models are compared at evenly spaced frequencies, not at the measured points. No model (–): state what it needs.";
 
 /// Adequate model by frequency range along the sweeps of a campaign.
 pub(crate) fn climbed(overlay: &Overlay) -> Table {
@@ -282,7 +288,7 @@ pub(crate) fn climbed(overlay: &Overlay) -> Table {
             all.rows.push(row);
         }
     }
-    all.note(TRIED)
+    all.note(NOTE)
 }
 
 /// Each rung over the whole range of frequencies.

@@ -29,22 +29,22 @@ pub(super) type Moving = Box<dyn Motion>;
 
 /// The contact law of a scene, `None` for instantaneous impacts. A spring and a damper without a stated
 /// damping rebound with the rig's restitution.
-fn meeting(scene: &Scene, wanted: Contact) -> Result<Option<Law>> {
+fn contact_law(scene: &Scene, wanted: Contact) -> Result<Option<Law>> {
     let keys = scene.contact.unwrap_or_default();
     // Keys of `[contact]` that the law uses, and the exponent that it implies.
-    let (takes, own): (&[&str], _) = match wanted {
+    let (used_keys, implied_exponent): (&[&str], _) = match wanted {
         Contact::Restitution | Contact::HuntCrossley => (&["stiffness", "exponent", "damping"], None),
         Contact::KelvinVoigt | Contact::LooseMass => (&["stiffness", "damping"], Some(1.0)),
         Contact::Hertz => (&["stiffness"], Some(1.5)),
     };
     // A key that the law does not use is an error: the law decides whether a stiffness is in N/m or
     // N/m^1.5.
-    let exponent = keys.exponent.filter(|n| Some(*n) != own);
+    let exponent = keys.exponent.filter(|n| Some(*n) != implied_exponent);
     let given = [("stiffness", keys.stiffness), ("exponent", exponent), ("damping", keys.damping)];
     if let Some((key, value)) =
-        given.iter().find_map(|(k, v)| v.filter(|_| !takes.contains(k)).map(|v| (k, v)))
+        given.iter().find_map(|(k, v)| v.filter(|_| !used_keys.contains(k)).map(|v| (k, v)))
     {
-        let expected = format!("what this law takes: {}", takes.join(" and "));
+        let expected = format!("what this law takes: {}", used_keys.join(" and "));
         return Err(Error::usage(format!("contact.{key} = {value} for this law"), expected)
             .hint("remove the key, or choose the law that has it: hunt-crossley takes all three"));
     }
@@ -82,7 +82,7 @@ pub(super) fn motions(
     grazing: f64,
 ) -> Result<impl Fn(&Excitation, State, f64) -> Result<Moving>> {
     let (rig, buffer) = (&scene.rig, scene.buffer.unwrap_or(Buffer::thesis()));
-    let law = meeting(scene, wanted)?;
+    let law = contact_law(scene, wanted)?;
     Ok(move |excitation: &Excitation, state, phase| -> Result<Moving> {
         Ok(match law {
             _ if wanted == Contact::LooseMass => {

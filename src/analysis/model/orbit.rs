@@ -87,7 +87,7 @@ impl Keys {
         let found = search(&scene.rig, &pattern::sine(excitation)?, self.impacts, self.cycles)?;
         let mut answer = Answer::of(&json!({
             "scene": scene,
-            "orbits": found.iter().map(|o| pattern::told(o, self.gap_std)).collect::<Vec<Value>>(),
+            "orbits": found.iter().map(|o| pattern::to_json(o, self.gap_std)).collect::<Vec<Value>>(),
             "no_impact": crate::model::no_impact(&scene.rig, excitation).ok(),
         }))?;
         answer.add("", finding.clone());

@@ -24,9 +24,9 @@ pub(super) fn sine(excitation: &Excitation) -> Result<Sine> {
 
 /// A motion as JSON: the keys of one with a single impact a period, and its impacts. `gap_std` is the
 /// standard uncertainty of the gap in m.
-pub(super) fn told(orbit: &PeriodicOrbit, gap_std: Option<f64>) -> Value {
+pub(super) fn to_json(orbit: &PeriodicOrbit, gap_std: Option<f64>) -> Value {
     let v = &orbit.validity;
-    let mut told = json!({
+    let mut fields = json!({
         "frequency": orbit.sine.frequency,
         "cycles": orbit.cycles,
         "impacts": orbit.beats,
@@ -40,9 +40,9 @@ pub(super) fn told(orbit: &PeriodicOrbit, gap_std: Option<f64>) -> Value {
         "fundamental_phase": orbit.fundamental.map(Complex64::arg),
     });
     for (key, verdict) in v.keys() {
-        told[key] = verdict;
+        fields[key] = verdict;
     }
-    told
+    fields
 }
 
 /// Quantities, validity and stability of each motion.

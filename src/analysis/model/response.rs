@@ -58,10 +58,11 @@ impl Keys {
             let some = Finding::caution("frequencies-without-answer").count("n", refused.count());
             answer.add("", [some.name("why", why.trim_end_matches('.'))]);
         }
-        let real = |p: &&ResponsePoint| {
+        let has_stable = |p: &&ResponsePoint| {
             p.orbits.iter().any(|o| o.validity.admissible && o.validity.stable == Some(true))
         };
-        let stable = Finding::note("orbits-stable").count("n", found.points.iter().filter(real).count());
+        let stable =
+            Finding::note("orbits-stable").count("n", found.points.iter().filter(has_stable).count());
         answer.add("", [stable.count("all", found.points.len())]);
         answer.figure("response", figures::branches("Response with one impact a period", &found));
         answer.csv("response", &branches(&found));
@@ -69,6 +70,7 @@ impl Keys {
         Ok(answer)
     }
 
+    /// A point as JSON.
     fn point(&self, point: &ResponsePoint) -> Value {
         json!({
             "frequency": point.frequency,

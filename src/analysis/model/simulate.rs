@@ -47,9 +47,9 @@ pub struct Keys {
 }
 
 /// Excitation cycles in the plotted traces.
-const SHOWN: u32 = 12;
+const SHOWN_CYCLES: u32 = 12;
 /// Samples of the traces per cycle.
-const SAMPLES: u32 = 400;
+const SAMPLES_PER_CYCLE: u32 = 400;
 
 /// A motion over the analysed cycles.
 struct ObservedMotion {
@@ -74,8 +74,8 @@ impl Keys {
         let Driven { scene, excitation, finding } = self.scene.driven(self.frequency)?;
         let start = self.start(&scene.rig)?;
         let make = contact::motions(&scene, self.model, self.grazing)?;
-        let seen = self.seen(&mut *make(&excitation, start, self.phase)?)?;
-        let ObservedMotion { portrait, end: (time, phase, state), grazing, flights } = &seen;
+        let observed = self.observed(&mut *make(&excitation, start, self.phase)?)?;
+        let ObservedMotion { portrait, end: (time, phase, state), grazing, flights } = &observed;
         let State { x1, v1, x2, v2 } = state;
         let mut answer = Answer::of(&json!({
             "scene": scene,
@@ -89,8 +89,8 @@ impl Keys {
         }))?;
         answer.add("", finding);
         answer.add("", contact::buffer(&scene, self.model));
-        answer.add("", self.doubts(&seen, &scene.rig));
-        answer.tables.push(summary(&seen));
+        answer.add("", self.doubts(&observed, &scene.rig));
+        answer.tables.push(summary(&observed));
         answer.figure("traces", figures::traces("Traces of both masses", portrait, scene.rig.gap));
         answer.figure("phase_plane", figures::phase_plane("Phase plane", portrait));
         answer.figure("poincare", figures::poincare("Poincaré sections", portrait));
@@ -114,11 +114,12 @@ impl Keys {
     }
 
     /// Lets the transients decay for `settle` cycles, then records the motion.
-    fn seen(&self, motion: &mut dyn Motion) -> Result<ObservedMotion> {
+    fn observed(&self, motion: &mut dyn Motion) -> Result<ObservedMotion> {
         let end = motion.time() + f64::from(self.settle) / motion.frequency();
         motion.advance(end, &mut |_| {})?;
         let before = motion.counted().map(|counts| counts.grazing);
-        let options = PortraitOptions { cycles: self.cycles, samples: SAMPLES, shown: SHOWN };
+        let options =
+            PortraitOptions { cycles: self.cycles, samples: SAMPLES_PER_CYCLE, shown: SHOWN_CYCLES };
         let portrait = Portrait::take(motion, &options)?;
         let (end, counts) = ((motion.time(), motion.phase(), motion.state()), motion.counted());
         let grazing = counts.zip(before).map(|(counts, before)| counts.grazing - before);
@@ -126,12 +127,12 @@ impl Keys {
     }
 
     /// Findings that limit the result: grazing, irregular or unsettled motion, losses that are left out.
-    fn doubts(&self, seen: &ObservedMotion, rig: &Rig) -> Vec<Finding> {
+    fn doubts(&self, observed: &ObservedMotion, rig: &Rig) -> Vec<Finding> {
         let mut found = Vec::new();
-        let pattern = &seen.portrait.pattern;
-        if let Some(grazing) = seen.grazing.filter(|n| *n > 0) {
+        let pattern = &observed.portrait.pattern;
+        if let Some(grazing) = observed.grazing.filter(|n| *n > 0) {
             let some = Finding::caution("impacts-grazing").number("n", grazing as f64);
-            found.push(some.count("all", seen.portrait.impacts.len()).number("below", self.grazing));
+            found.push(some.count("all", observed.portrait.impacts.len()).number("below", self.grazing));
         }
         if pattern.regime == Regime::Irregular {
             found.push(Finding::caution("motion-irregular"));
@@ -145,7 +146,7 @@ impl Keys {
         if self.model == Contact::Hertz && rig.restitution < 1.0 {
             found.push(Finding::caution("hertz-lossless").number("restitution", rig.restitution));
         }
-        let State { x1, x2, .. } = seen.end.2;
+        let State { x1, x2, .. } = observed.end.2;
         // A gap below a millionth of the displacements counts as closed.
         if pattern.regime == Regime::NoImpact && rig.gap + x2 - x1 <= 1e-6 * (x1.abs() + x2.abs()) {
             found.push(Finding::caution("masses-pressed"));
@@ -154,8 +155,9 @@ impl Keys {
     }
 }
 
-fn summary(seen: &ObservedMotion) -> Table {
-    let Portrait { impacts, pattern, sticks, reaction, .. } = &seen.portrait;
+/// The regime and the last impact, in one row.
+fn summary(observed: &ObservedMotion) -> Table {
+    let Portrait { impacts, pattern, sticks, reaction, .. } = &observed.portrait;
     let regime = match pattern.regime {
         Regime::Periodic { impacts, cycles } => {
             format!("{} in {}", counted(impacts as usize, "impact"), counted(cycles as usize, "cycle"))
@@ -169,7 +171,7 @@ fn summary(seen: &ObservedMotion) -> Table {
         &[
             ("regime", "", &|()| regime.as_str().into()),
             ("impacts", "", &|()| impacts.len().into()),
-            ("grazing", "", &|()| seen.grazing.map(|n| n as f64).into()),
+            ("grazing", "", &|()| observed.grazing.map(|n| n as f64).into()),
             ("chatter", "", &|()| (*sticks as f64).into()),
             ("last impulse", "N s", &|()| last.map(|i| i.impulse).into()),
             ("approach speed", "m/s", &|()| last.map(|i| i.approach_velocity).into()),
@@ -182,6 +184,7 @@ fn summary(seen: &ObservedMotion) -> Table {
     .note("Phase: of the excitation at the last impact, after the crest of a sine force, the impulse or the onset of the pulse.")
 }
 
+/// Times and states, one a row.
 fn states(times: &[f64], states: &[State]) -> Table {
     table(
         "States",
@@ -196,6 +199,7 @@ fn states(times: &[f64], states: &[State]) -> Table {
     )
 }
 
+/// Every impact, one a row.
 fn impacts(portrait: &Portrait) -> Table {
     table(
         "Impacts",

@@ -112,7 +112,7 @@ impl Keys {
         answer.add("", finding);
         answer.add("", contact::buffer(&scene, self.model));
         answer.add("", scattered(&swept));
-        answer.tables.push(found(&resonances, &jumps));
+        answer.tables.push(resonances_and_jumps(&resonances, &jumps));
         answer.figure("sweep", figures::sweep(&swept, &resonances, &jumps, plan.observable, over_force));
         answer.figure("reaction", figures::forces(&swept, over_force));
         answer.csv("sweep", &points(&swept));
@@ -149,11 +149,13 @@ impl Keys {
     }
 }
 
-/// Scatter from cycle to cycle, over the amplitude, above which a motion does not repeat every cycle.
-const SCATTER: f64 = 0.05;
+/// Largest scatter from cycle to cycle, over the amplitude, of a motion that repeats every cycle.
+const REGULAR_SCATTER: f64 = 0.05;
 
+/// Caution on the points whose cycles differ.
 fn scattered(swept: &Swept) -> Option<Finding> {
-    let irregular = |p: &&Point| p.x1_scatter > SCATTER * p.x1 || p.x2_scatter > SCATTER * p.x2;
+    let irregular =
+        |p: &&Point| p.x1_scatter > REGULAR_SCATTER * p.x1 || p.x2_scatter > REGULAR_SCATTER * p.x2;
     let n = swept.up.iter().chain(&swept.down).filter(irregular).count();
     let all = swept.up.len() + swept.down.len();
     (n > 0).then(|| Finding::caution("sweep-cycles-unlike").count("n", n).count("all", all))
@@ -181,7 +183,7 @@ fn points(swept: &Swept) -> Table {
 }
 
 /// Resonances and jumps of both masses.
-fn found(resonances: &[Named<Resonance>], jumps: &[Named<Jump>]) -> Table {
+fn resonances_and_jumps(resonances: &[Named<Resonance>], jumps: &[Named<Jump>]) -> Table {
     let head = [("mass", ""), ("direction", ""), ("kind", ""), ("frequency", "Hz"), ("amplitude", "m")];
     let mut table = headed("Resonances and jumps", &head);
     for Named { mass, direction, found } in resonances {

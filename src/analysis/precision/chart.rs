@@ -17,7 +17,7 @@ const CROSSES: [Marker; 3] = [Marker::Cross, Marker::Saltire, Marker::Star];
 
 /// Methods not of this library that appear in several charts, with the same colour and marker in all. The
 /// last ones exist only in some builds.
-const OFTEN: [&str; 10] = [
+const RECURRING: [&str; 10] = [
     "Euler loop",
     "RK4 loop",
     "Moreau time stepping",
@@ -43,22 +43,26 @@ pub fn group(m: &MeasuredMethod) -> usize {
 }
 
 /// Height of a row of crosses, over the decades of the errors.
-const ROW: f64 = 0.05;
+const ROW_HEIGHT: f64 = 0.05;
 
 /// Distance within which points of a line share their letters, over the width and the height of the chart.
-const SHARED: [f64; 2] = [0.025, 0.03];
+const SAME_PLACE: [f64; 2] = [0.025, 0.03];
 
 /// Visible part of the plane: decades of time in s and of the error, and above them a row of crosses for
 /// each method that failed.
 struct View {
     times: [f64; 2],
+    /// Lower and upper limit of the errors.
     floor: f64,
     top: f64,
+    /// Height of a row of crosses.
     row: f64,
+    /// Upper edge, above all rows.
     edge: f64,
 }
 
 impl View {
+    /// The view that holds all points of a scene, with rows for `failing` methods.
     fn of(scene: &BenchmarkScene, failing: usize) -> View {
         let span = |values: &mut dyn Iterator<Item = f64>, none: [f64; 2]| {
             let (low, high) = values
@@ -69,15 +73,15 @@ impl View {
         let errors = span(&mut scene.methods.iter().filter_map(error).chain(scene.bound), [-3.0, 0.0]);
         let [first, last] = span(&mut scene.methods.iter().map(seconds), [-6.0, 0.0]);
         let (floor, top) = ((errors[0] - 0.15).floor(), errors[1].ceil());
-        let row = ROW * (top - floor).max(1.0);
+        let row = ROW_HEIGHT * (top - floor).max(1.0);
         View { times: [first - 0.22, last + 0.23], floor, top, row, edge: top + row * failing as f64 }
     }
 
     /// Whether two points are so close that they share their letters.
     fn shares(&self, a: (f64, f64), b: (f64, f64)) -> bool {
         let near = |a: f64, b: f64, span: f64, part: f64| (a / b).log10().abs() < part * span;
-        near(a.0, b.0, self.times[1] - self.times[0], SHARED[0])
-            && near(a.1, b.1, self.edge - self.floor, SHARED[1])
+        near(a.0, b.0, self.times[1] - self.times[0], SAME_PLACE[0])
+            && near(a.1, b.1, self.edge - self.floor, SAME_PLACE[1])
     }
 }
 
@@ -105,33 +109,33 @@ pub fn chart(scene: &BenchmarkScene) -> Figure {
     }
     // Methods of this library are black, others coloured, other programs dashed. After six colours the
     // marker changes.
-    let (mut own, mut others) = (0, OFTEN.len());
+    let (mut ours_count, mut others) = (0, RECURRING.len());
     let (mut crosses, mut named) = (Vec::new(), Vec::new());
     let mut last_group = None;
     for line in lines {
         let group = group(&line[0]);
         if last_group.replace(group) != Some(group) {
-            let told = group == 2 && scene.methods.iter().any(|m| tolerance(m).is_some());
-            let with = if told { ", with tolerances" } else { "" };
+            let has_tolerances = group == 2 && scene.methods.iter().any(|m| tolerance(m).is_some());
+            let with = if has_tolerances { ", with tolerances" } else { "" };
             plot = plot.with(Series::heading(format!("{}{with}", GROUPS[group])));
         }
         let name = line[0].method.as_str();
-        let often = OFTEN.iter().position(|known| *known == name);
-        let count = if line[0].ours { &mut own } else { &mut others };
-        let turn = often.unwrap_or(*count);
-        *count += usize::from(often.is_none());
-        let round = turn / 6;
+        let recurring = RECURRING.iter().position(|known| *known == name);
+        let count = if line[0].ours { &mut ours_count } else { &mut others };
+        let number = recurring.unwrap_or(*count);
+        *count += usize::from(recurring.is_none());
+        let round = number / 6;
         let (ink, marker, cross, stroke) = if line[0].ours {
-            (Ink::Black, turn, turn, Stroke::Solid)
+            (Ink::Black, number, number, Stroke::Solid)
         } else {
             let stroke = if line[0].other_program { Stroke::Dashed } else { Stroke::Thin };
-            (Ink::Nth(turn % 6), turn + 1 + round, round, stroke)
+            (Ink::Nth(number % 6), number + 1 + round, round, stroke)
         };
         let row = power(view.top + view.row * (crosses.len() as f64 + 0.5));
         let place = |m: &MeasuredMethod| (seconds(m), error(m).unwrap_or(row));
         let points = |name: String, failed: bool| {
-            let of = line.iter().filter(|m| error(m).is_none() == failed);
-            let (x, y): (Vec<f64>, Vec<f64>) = of.map(place).unzip();
+            let members = line.iter().filter(|m| error(m).is_none() == failed);
+            let (x, y): (Vec<f64>, Vec<f64>) = members.map(place).unzip();
             (!x.is_empty()).then(|| Series::points(name, x, y).ink(ink))
         };
         if let Some(reached) = points(name.to_owned(), false) {
@@ -149,14 +153,14 @@ pub fn chart(scene: &BenchmarkScene) -> Figure {
     plot = crosses.into_iter().rev().fold(plot, Plot::with);
     let (points, front) = match scene.family {
         Family::Models => {
-            plot = toleranced(plot, named);
+            plot = with_tolerances(plot, named);
             (
                 "a model, each point one of its settings",
                 "Dotted: nothing lies below and left of it. Numbers: tolerances of other programs.",
             )
         }
         Family::Estimators => {
-            plot = lettered(plot, scene, &view, named);
+            plot = with_letters(plot, scene, &view, named);
             (
                 "an estimator, each point a kind of record, named by its letter",
                 "Capital letters: no other is both faster and more accurate on the same records.",
@@ -181,13 +185,13 @@ fn tolerance(m: &MeasuredMethod) -> Option<&str> {
 }
 
 /// Writes the tolerance beside the points of other programs.
-fn toleranced(plot: Plot, lines: Vec<Vec<((f64, f64), &MeasuredMethod)>>) -> Plot {
-    let told = lines.into_iter().flatten().filter_map(|(at, m)| Some((at, tolerance(m)?)));
-    told.fold(plot, |plot, ((x, y), number)| plot.note(typeset(number), x, y))
+fn with_tolerances(plot: Plot, lines: Vec<Vec<((f64, f64), &MeasuredMethod)>>) -> Plot {
+    let with_tolerance = lines.into_iter().flatten().filter_map(|(at, m)| Some((at, tolerance(m)?)));
+    with_tolerance.fold(plot, |plot, ((x, y), number)| plot.note(typeset(number), x, y))
 }
 
 /// Names the record of each point by a letter, a capital on the Pareto front of that record.
-fn lettered(
+fn with_letters(
     mut plot: Plot,
     scene: &BenchmarkScene,
     view: &View,
@@ -224,6 +228,7 @@ fn lettered(
     plot
 }
 
+/// Time of an answer in s.
 fn seconds(m: &MeasuredMethod) -> f64 {
     1e-9 * m.time_ns
 }
@@ -236,8 +241,8 @@ fn error(m: &MeasuredMethod) -> Option<f64> {
 /// Pareto front as steps: down from the upper edge at the fastest, along to the most accurate, and on to
 /// the right edge.
 fn stairs(scene: &BenchmarkScene, edge: f64, last: f64) -> (Vec<f64>, Vec<f64>) {
-    let on = scene.methods.iter().filter(|m| m.front);
-    let mut front: Vec<(f64, f64)> = on.filter_map(|m| Some((seconds(m), error(m)?))).collect();
+    let members = scene.methods.iter().filter(|m| m.front);
+    let mut front: Vec<(f64, f64)> = members.filter_map(|m| Some((seconds(m), error(m)?))).collect();
     front.sort_by(|a, b| a.0.total_cmp(&b.0));
     let (mut x, mut y, mut above) = (Vec::new(), Vec::new(), edge);
     for (time, error) in front {
@@ -377,7 +382,8 @@ mod tests {
     fn what_failed_is_told_apart() {
         let own = [("exact", true), ("closed form", true)];
         let here = ["one", "two", "three", "four", "added", "added, too"].map(|name| (name, false));
-        let methods: Vec<_> = OFTEN.map(|name| (name, false)).into_iter().chain(own).chain(here).collect();
+        let methods: Vec<_> =
+            RECURRING.map(|name| (name, false)).into_iter().chain(own).chain(here).collect();
         let found = crosses(&methods);
         assert_eq!(found.len(), methods.len());
         let twice = |i: usize| found[..i].contains(&found[i]);

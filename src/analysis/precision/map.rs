@@ -20,11 +20,11 @@ pub const OUTCOMES: [(Outcome, &str, Rgb, f64); 6] = [
 /// files.
 pub fn maps(family: Family, map: &FailureMap) -> Vec<(String, Figure)> {
     let name = family.name();
-    let one = |(quantity, part): (&str, FailureMap)| match quantity {
+    let named_map = |(quantity, part): (&str, FailureMap)| match quantity {
         "" => (name.to_owned(), grid(&part, format!("Where {name} break"))),
         _ => (format!("{name} {quantity}"), grid(&part, format!("Where {name} break: {quantity}"))),
     };
-    map.parts().into_iter().map(one).collect()
+    map.parts().into_iter().map(named_map).collect()
 }
 
 /// Methods across, scenes of each border down, with the outcome in each cell.
@@ -38,12 +38,12 @@ fn grid(map: &FailureMap, title: String) -> Figure {
     let mut grid = Grid::new(methods.iter().map(|&m| m.to_owned()).collect(), OUTCOMES.map(kind).to_vec());
     // The cells of a row stand together.
     for row in map.cells.chunk_by(|a, b| (&a.border, &a.scene) == (&b.border, &b.scene)) {
-        let of = |method: &&str| {
+        let outcome_index = |method: &&str| {
             let cell = row.iter().find(|c| c.method == **method);
             let outcome = cell.map_or(Outcome::NotAsked, |c| c.outcome);
             OUTCOMES.iter().position(|o| o.0 == outcome)
         };
-        grid = grid.row(&row[0].border, &typeset(&row[0].scene), methods.iter().map(of).collect());
+        grid = grid.row(&row[0].border, &typeset(&row[0].scene), methods.iter().map(outcome_index).collect());
     }
     let height = grid.height();
     Figure::double(title).height(height).panel(grid).caption(

@@ -14,44 +14,44 @@ pub fn lines(title: &str, result: &SpectralResult) -> Figure {
         let (f, level): (Vec<f64>, Vec<f64>) =
             result.frequency.iter().zip(&result.level).filter(|line| *line.0 > 0.0).unzip();
         let plot = Plot::new(AxisSpec::frequency(), AxisSpec::new("Level", unit.clone()));
-        return drawn(title, plot, (f, level), result);
+        return spectrum_figure(title, plot, (f, level), result);
     }
     match &result.found {
         Lines::Spectrum(found) => {
             let (plot, lines) = axes(found);
-            drawn(title, plot, lines, result)
+            spectrum_figure(title, plot, lines, result)
         }
         Lines::Transfer(found) => transfer(title, found, &conditions(result)),
     }
 }
 
 /// Most spectral lines that print can resolve: a curve through more would fill the frame.
-const LINES: usize = 4000;
+const MOST_LINES: usize = 4000;
 
-/// Figure of a spectrum, with marks at the fitted sines. Of more than [`LINES`] lines the largest of each
-/// group of neighbours is drawn.
-fn drawn(title: &str, plot: Plot, (f, v): (Vec<f64>, Vec<f64>), result: &SpectralResult) -> Figure {
-    let together = f.len().div_ceil(LINES).max(1);
-    let on_line = |at: f64| {
+/// Figure of a spectrum, with marks at the fitted sines. Of more than [`MOST_LINES`] lines the largest of
+/// each group of neighbours is drawn.
+fn spectrum_figure(title: &str, plot: Plot, (f, v): (Vec<f64>, Vec<f64>), result: &SpectralResult) -> Figure {
+    let group_size = f.len().div_ceil(MOST_LINES).max(1);
+    let line_height = |at: f64| {
         // The mark of a sine is drawn at the height of the higher of its two neighbouring lines.
         let next = f.partition_point(|f| *f < at);
         v[next.saturating_sub(1)..v.len().min(next + 1)].iter().copied().fold(f64::NAN, f64::max)
     };
     let tones = result.tones.iter().map(|t| t.frequency.value);
-    let (at, heights): (Vec<f64>, Vec<f64>) = tones.map(|at| (at, on_line(at))).unzip();
+    let (at, heights): (Vec<f64>, Vec<f64>) = tones.map(|at| (at, line_height(at))).unzip();
     let largest = |(f, v): (&[f64], &[f64])| {
         let lines = f.iter().copied().zip(v.iter().copied()).filter(|line| !line.1.is_nan());
         lines.max_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or((f[0], f64::NAN))
     };
-    let (x, y): (Vec<f64>, Vec<f64>) = f.chunks(together).zip(v.chunks(together)).map(largest).unzip();
+    let (x, y): (Vec<f64>, Vec<f64>) = f.chunks(group_size).zip(v.chunks(group_size)).map(largest).unzip();
     let mut plot = plot.with(Series::line("", x, y));
     let mut caption = vec![conditions(result)];
     if !at.is_empty() {
         plot = plot.with(Series::points("", at, heights).marker(Marker::OpenCircle).ink(Ink::Nth(1)));
         caption.push("Circles mark the sines that were fitted.".to_owned());
     }
-    if together > 1 {
-        caption.push(format!("Of {together} lines side by side the largest is drawn."));
+    if group_size > 1 {
+        caption.push(format!("Of {group_size} lines side by side the largest is drawn."));
     }
     Figure::double(format!("Spectrum, {title}")).panel(plot).caption(caption.join(" "))
 }

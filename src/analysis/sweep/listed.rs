@@ -1,4 +1,4 @@
-//! The files of a sweep, before they are read.
+//! The files that a `[[sweep]]` table names, before they are read.
 
 use super::{Keys, order};
 use crate::analysis::recordings::matching;
@@ -21,44 +21,47 @@ pub struct Listed {
     pub findings: Vec<Finding>,
 }
 
-/// Content of the files of a sweep.
+/// Files of a sweep, by their content.
 #[derive(Debug, Clone)]
 pub enum Files {
-    /// A spectrum each.
+    /// One spectrum a file.
     Spectra(SweepList),
     /// Time traces of force and response.
     Traces(Steps),
 }
 
 impl Listed {
-    /// The sweep of a campaign.
+    /// The files that a `[[sweep]]` table names.
     ///
     /// # Errors
-    /// If its list cannot be read, a name leads outside the folder, or no file has such a name.
+    /// If its list cannot be read, a name leads outside the folder, or no file matches a pattern.
     pub fn of(campaign: &Campaign, entry: &Entry<Keys>) -> Result<Listed> {
         let keys = &entry.keys;
         let path = |key: &'static str, name: &String| campaign.path_of(entry, key, Path::new(name));
-        let all = |key: &'static str, names: &[String]| {
+        let paths = |key: &'static str, names: &[String]| {
             names.iter().map(|name| path(key, name)).collect::<Result<Vec<_>>>()
         };
         let files = if let Some(list) = &keys.list {
             let list = campaign.file(entry, "list", list)?;
             Files::Spectra(SweepList::from_path(list, campaign.within())?)
         } else if keys.traces.is_empty() {
+            // Without traces, `force` and `response` are names of spectrum files.
             Files::Spectra(SweepList {
                 lines: keys.lines.unwrap_or(0),
                 base_band: keys.base_band.unwrap_or(0.0),
-                force: all("force", &keys.force)?,
+                force: paths("force", &keys.force)?,
                 excitation: Vec::new(),
-                response: all("response", &keys.response)?,
+                response: paths("response", &keys.response)?,
                 places: Vec::new(),
             })
         } else {
             let (within, folder) = (campaign.within(), campaign.folder());
-            let one = |path: &PathBuf| matching(within, path.strip_prefix(folder).unwrap_or(path));
-            let found: Result<Vec<Vec<PathBuf>>> = all("traces", &keys.traces)?.iter().map(one).collect();
+            let matches = |path: &PathBuf| matching(within, path.strip_prefix(folder).unwrap_or(path));
+            let found: Result<Vec<Vec<PathBuf>>> =
+                paths("traces", &keys.traces)?.iter().map(matches).collect();
             let files = found.map_err(|e| campaign.fault(entry, e.setting("traces")))?.concat();
             let files = files.iter().map(|name| folder.join(name)).collect();
+            // With traces, `force` and `response` are channels.
             let (force, response) = (keys.force.clone(), keys.response.clone());
             Files::Traces(Steps { files, force, response, rate: keys.rate })
         };
@@ -106,7 +109,7 @@ impl Listed {
         }
     }
 
-    /// The sweep of time traces in the order of their files.
+    /// The sweep and its response from time traces, in the order of the files.
     fn stepped(&self, steps: &Steps, options: &ResponseOptions) -> Result<(Sweep, Response)> {
         let SweepReader { name, direction, mass, .. } = self.reader.clone();
         let (axis, points, findings) = (Axis::index(0), Vec::new(), Vec::new());

@@ -31,10 +31,12 @@ pub fn fit(campaign: &Campaign, rig: &Rig, responses: &[Response]) -> Result<Opt
     crate::compare::fit(rig, force, contact, predicting(campaign).pace(), responses, &campaign.fit).map(Some)
 }
 
+/// The sweeps of a campaign over the prediction for a rig.
 fn overlaid(campaign: &Campaign, rig: &Rig, responses: &[Response]) -> Result<Overlay> {
     overlay(rig, campaign.excitation.and_then(|e| e.force), &predicting(campaign), responses)
 }
 
+/// Model and contact with which a campaign predicts.
 fn predicting(campaign: &Campaign) -> Predicting {
     Predicting { model: campaign.model, contact: campaign.contact }
 }

@@ -10,25 +10,27 @@ use std::path::PathBuf;
 
 /// Relative difference in frequency up to which two steps have the same setting of the generator: twice the
 /// 50 ppm of a quartz.
-const SAME: f64 = 1e-4;
+const SAME_SETTING: f64 = 1e-4;
 
 /// Whether two frequencies are one setting of the generator.
 pub(crate) fn same(a: f64, b: f64) -> bool {
-    (a - b).abs() <= SAME * a.abs().max(b.abs())
+    (a - b).abs() <= SAME_SETTING * a.abs().max(b.abs())
 }
 
-/// Steps per change of direction below which the order of names is not that of the sweep. A random order
-/// turns at two steps of three; a sweep that goes up and down several times has branches of many steps.
-const STEPS_A_TURN: usize = 4;
+/// Least number of steps per reversal of direction for the order of the file names to be that of the sweep.
+/// A random order reverses at two steps of three; a sweep that goes up and down several times has branches
+/// of many steps.
+const LEAST_STEPS_PER_REVERSAL: usize = 4;
 
-/// The files by rising frequency, where the order of their names turns at more than one step of four.
+/// The files by frequency in the direction of the sweep, where the order of their names reverses at more
+/// than one step of four; else `None`.
 pub(super) fn sorted(sweep: &Sweep, response: &Response, files: &[PathBuf]) -> Option<Vec<PathBuf>> {
     let frequency = |k: usize| response.points[k].excitation;
     let mut order: Vec<usize> = (0..response.points.len()).collect();
     let steps = order.windows(2).map(|w| (frequency(w[0]), frequency(w[1])));
     let rises: Vec<bool> = steps.filter(|(a, b)| !same(*a, *b)).map(|(a, b)| b > a).collect();
-    let turns = rises.windows(2).filter(|w| w[0] != w[1]).count();
-    if turns < 2 || STEPS_A_TURN * turns <= rises.len() {
+    let reversals = rises.windows(2).filter(|w| w[0] != w[1]).count();
+    if reversals < 2 || LEAST_STEPS_PER_REVERSAL * reversals <= rises.len() {
         return None;
     }
     order.sort_by(|a, b| frequency(*a).total_cmp(&frequency(*b)));
@@ -37,8 +39,8 @@ pub(super) fn sorted(sweep: &Sweep, response: &Response, files: &[PathBuf]) -> O
     }
     let mut sorted: Vec<PathBuf> = order.iter().map(|k| sweep.points[*k].response_path.clone()).collect();
     // Steps left out of the response have no frequency.
-    let known: BTreeSet<&PathBuf> = sorted.iter().collect();
-    let rest: Vec<PathBuf> = files.iter().filter(|file| !known.contains(file)).cloned().collect();
+    let in_response: BTreeSet<&PathBuf> = sorted.iter().collect();
+    let rest: Vec<PathBuf> = files.iter().filter(|file| !in_response.contains(file)).cloned().collect();
     sorted.extend(rest);
     Some(sorted)
 }
@@ -47,9 +49,9 @@ pub(super) fn sorted(sweep: &Sweep, response: &Response, files: &[PathBuf]) -> O
 pub(super) fn repeated(sweep: &Sweep, response: &Response) -> Option<Finding> {
     let at = |k: usize| response.points[k].excitation;
     let file = |k: usize| file_name(&sweep.points[k].response_path);
-    let again = (1..response.points.len()).filter(|k| same(at(k - 1), at(*k)));
+    let repeats = (1..response.points.len()).filter(|k| same(at(k - 1), at(*k)));
     let name = |k: usize| format!("{} as {} ({} Hz)", file(k), file(k - 1), significant(at(k), 5));
-    let names: Vec<String> = again.map(name).collect();
+    let names: Vec<String> = repeats.map(name).collect();
     let n = names.len();
     let found = Finding::note("sweep-frequency-repeated").count("n", n);
     (n > 0).then(|| found.name("files", few(&names)))

@@ -24,7 +24,8 @@ pub struct Crossing {
     pub larger_above: u8,
 }
 
-fn forced(response: &Response) -> Option<f64> {
+/// Median force amplitude of a sweep in N.
+fn median_force(response: &Response) -> Option<f64> {
     Forcing::measured(response).map(|f| f.median())
 }
 
@@ -34,11 +35,12 @@ fn curve(response: &Response) -> Vec<(f64, f64, f64)> {
     points.map(|p| (p.excitation, p.amplitude.value, p.amplitude.std.unwrap_or(f64::NAN))).collect()
 }
 
+/// Indices of the sweeps at each level of force.
 fn by_level<'a>(responses: impl Iterator<Item = &'a Response>) -> Vec<Vec<usize>> {
-    levels(&responses.map(forced).collect::<Vec<_>>())
+    levels(&responses.map(median_force).collect::<Vec<_>>())
 }
 
-/// Names the resonances of sweeps, each level of force by itself.
+/// Names the resonances of sweeps (grazing, clapping, …), each level of force by itself.
 pub(super) fn name(responses: &mut [&mut Response]) {
     for level in by_level(responses.iter().map(|r| &**r)) {
         let members = responses.iter_mut().enumerate().filter(|(i, _)| level.contains(i));
@@ -59,15 +61,15 @@ pub(super) fn name(responses: &mut [&mut Response]) {
 }
 
 /// The first sweep of a mass in a direction.
-fn first<'a>(of: &[&'a Response], mass: u8, direction: Direction) -> Option<&'a Response> {
-    of.iter().copied().find(|r| r.mass == Some(mass) && r.direction == Some(direction))
+fn first_sweep<'a>(responses: &[&'a Response], mass: u8, direction: Direction) -> Option<&'a Response> {
+    responses.iter().copied().find(|r| r.mass == Some(mass) && r.direction == Some(direction))
 }
 
 /// The antiresonance of mass 1, up and down, at the first level of force.
 pub(super) fn antiresonances(responses: &[Response]) -> [Option<f64>; 2] {
     let all: Vec<&Response> = responses.iter().collect();
     [Direction::Up, Direction::Down]
-        .map(|direction| first(&all, 1, direction).and_then(|r| deepest(&r.resonances)))
+        .map(|direction| first_sweep(&all, 1, direction).and_then(|r| deepest(&r.resonances)))
 }
 
 /// Crossings of both masses, in each direction at each level of force.
@@ -77,11 +79,11 @@ pub(super) fn all_crossings(responses: &[Response]) -> Vec<Crossing> {
     for level in &levels {
         let members: Vec<&Response> = level.iter().filter_map(|i| responses.get(*i)).collect();
         for direction in [Direction::Up, Direction::Down] {
-            let pair = first(&members, 1, direction).zip(first(&members, 2, direction));
-            let Some((one, two)) = pair else { continue };
-            let force = forced(one).filter(|_| levels.len() > 1);
-            let jumps = [one.jumps.as_slice(), &two.jumps].concat();
-            found.extend(crossings(curve(one), curve(two), &jumps).into_iter().map(|c| Crossing {
+            let pair = first_sweep(&members, 1, direction).zip(first_sweep(&members, 2, direction));
+            let Some((excited, passive)) = pair else { continue };
+            let force = median_force(excited).filter(|_| levels.len() > 1);
+            let jumps = [excited.jumps.as_slice(), &passive.jumps].concat();
+            found.extend(crossings(curve(excited), curve(passive), &jumps).into_iter().map(|c| Crossing {
                 direction,
                 force,
                 frequency: c.frequency,
@@ -95,14 +97,14 @@ pub(super) fn all_crossings(responses: &[Response]) -> Vec<Crossing> {
 
 /// Cautions on further sweeps of one mass, direction and level of force: naming and crossings use the first
 /// only.
-pub(super) fn twice(responses: &[Response]) -> Vec<About> {
+pub(super) fn swept_twice(responses: &[Response]) -> Vec<About> {
     let mut found = Vec::new();
     for level in by_level(responses.iter()) {
         let members: Vec<&Response> = level.iter().filter_map(|i| responses.get(*i)).collect();
         for (i, r) in members.iter().enumerate() {
             let Some((mass, direction)) = r.mass.zip(r.direction) else { continue };
-            if let Some(known) = first(&members[..i], mass, direction) {
-                let finding = Finding::caution("swept-twice").name("first", format!("{:?}", known.name));
+            if let Some(earlier) = first_sweep(&members[..i], mass, direction) {
+                let finding = Finding::caution("swept-twice").name("first", format!("{:?}", earlier.name));
                 found.push((r.name.clone(), finding));
             }
         }

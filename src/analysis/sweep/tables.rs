@@ -7,7 +7,7 @@ use crate::report::layout::{pair, table};
 use crate::report::{Cell, Column, Table};
 
 /// Index of the column with upper limits in a curve.
-const LIMIT: usize = 6;
+const LIMIT_COLUMN: usize = 6;
 
 /// Points of a response, with columns that fit a page: excitation, force, response, and the upper limit of
 /// an amplitude below the noise floor.
@@ -42,7 +42,8 @@ pub fn response(response: &Response) -> Table {
             row.push(point.receptance.map(|r| pair([r.re, r.im][part], r.std)).into());
         }
     }
-    let before = LIMIT - 1;
+    // Before the columns on the strongest line and the limit.
+    let before = LIMIT_COLUMN - 1;
     let orders = |p: &ResponsePoint| p.harmonics.iter().chain(&p.subharmonics).cloned().collect::<Vec<_>>();
     let heads = response.points.first().map(orders).unwrap_or_default();
     let heads =

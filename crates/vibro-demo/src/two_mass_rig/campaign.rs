@@ -1,4 +1,4 @@
-//! The rig, the sweeps, and the files that they produce.
+//! The measuring campaign: simulated sweeps of the rig, and the files that the analyser would store of them.
 
 use super::analyser::{self, BASE_BAND, BLOCK, INTERVAL, LINES, SAMPLES};
 use super::noise::PairedNoise;
@@ -35,6 +35,7 @@ pub enum Direction {
 }
 
 impl Direction {
+    /// Word for the direction in `TRUTH.csv`.
     fn word(self) -> &'static str {
         if self == Direction::Up { "up" } else { "down" }
     }
@@ -61,11 +62,12 @@ pub struct Point {
     phase: f64,
     /// States at the converter's times, and one at the end of the block.
     states: Vec<State>,
-    pattern: String,
+    /// Impacts per cycle, such as `1` or `2/2`, or `irregular`.
+    impacts_per_cycle: String,
 }
 
-/// Measures a sweep up to point `last` and shows each point.
-pub fn measure(direction: Direction, last: usize, mut show: impl FnMut(&Point) -> Result<()>) -> Result<()> {
+/// Simulates a sweep in `direction`, stops after `last` points, and hands each point to `show`.
+pub fn simulate(direction: Direction, last: usize, mut show: impl FnMut(&Point) -> Result<()>) -> Result<()> {
     let rig = Rig { restitution: RESTITUTION, ..Rig::thesis() };
     let mut frequencies = FREQUENCIES;
     if direction == Direction::Down {
@@ -75,13 +77,13 @@ pub fn measure(direction: Direction, last: usize, mut show: impl FnMut(&Point) -
     for (i, frequency) in frequencies.into_iter().enumerate().take(last) {
         motion.set_frequency(frequency)?;
         motion.run(motion.time() + SETTLE, |_| {})?;
-        let (phase, pattern) = (motion.phase(), pattern(motion.clone())?);
+        let (phase, impacts_per_cycle) = (motion.phase(), impacts_per_cycle(motion.clone())?);
         let until = motion.time() + SAMPLES as f64 * INTERVAL;
         let mut samples = Samples::new(motion.time(), INTERVAL, until);
         motion.advance(until, &mut |piece| samples.take(&piece))?;
         let mut states = samples.states;
         states.push(motion.state());
-        show(&Point { direction, number: i + 1, frequency, phase, states, pattern })?;
+        show(&Point { direction, number: i + 1, frequency, phase, states, impacts_per_cycle })?;
     }
     Ok(())
 }
@@ -90,7 +92,8 @@ pub fn measure(direction: Direction, last: usize, mut show: impl FnMut(&Point) -
 ///
 /// The states at one phase of the force are compared, cycle by cycle, over the last part of a block. A motion
 /// counts as periodic if after some cycles every state is the same to within a thousandth of the largest.
-fn pattern(mut motion: Simulation) -> Result<String> {
+fn impacts_per_cycle(mut motion: Simulation) -> Result<String> {
+    /// Longest period that is recognised, in cycles.
     const LONGEST: usize = 12;
     let period = 1.0 / motion.frequency();
     let cycles = (BLOCK / period) as usize;
@@ -105,11 +108,12 @@ fn pattern(mut motion: Simulation) -> Result<String> {
     let size = |s: &State| s.x1.abs() + s.x2.abs() + (s.v1.abs() + s.v2.abs()) * period / TAU;
     let largest = tail.iter().map(|(s, _)| size(s)).fold(0.0, f64::max);
     let close = |a: &State, b: &State| {
-        let apart = State { x1: a.x1 - b.x1, v1: a.v1 - b.v1, x2: a.x2 - b.x2, v2: a.v2 - b.v2 };
-        size(&apart) < 1e-3 * largest
+        let difference = State { x1: a.x1 - b.x1, v1: a.v1 - b.v1, x2: a.x2 - b.x2, v2: a.v2 - b.v2 };
+        size(&difference) < 1e-3 * largest
     };
     let repeats = |q: &usize| tail.iter().zip(&tail[*q..]).all(|((a, _), (b, _))| close(a, b));
     Ok(match (1..=LONGEST).find(repeats) {
+        // The states repeat after `q` cycles.
         Some(q) => {
             // An impact at the comparison phase may be counted in either cycle: the mean over many periods is
             // whole.
@@ -123,8 +127,8 @@ fn pattern(mut motion: Simulation) -> Result<String> {
 }
 
 impl Point {
-    /// Names and contents of the force spectrum and both velocity spectra, with the noise that `draw`
-    /// selects.
+    /// Names and contents of the force spectrum and both velocity spectra, with the noise of
+    /// realisation number `draw`.
     pub fn files(&self, draw: u64) -> [(String, String); 3] {
         let omega = TAU * self.frequency;
         let force: Vec<f64> =
@@ -161,7 +165,7 @@ impl Point {
             self.direction.word(),
             self.number,
             self.frequency,
-            self.pattern
+            self.impacts_per_cycle
         )
     }
 }

@@ -1,7 +1,7 @@
 //! Orbits under a sine force, or without force: roots of a quadratic equation in the impulse.
 
 use super::conditions::{Conditions, Root};
-use super::{Course, Orbit, driven};
+use super::{Course, Orbit, check_not_zero};
 use crate::excitation::{Excitation, Sine};
 use crate::flow::Flight;
 use crate::least::{NumberRange, number};
@@ -119,7 +119,7 @@ pub struct ShownOrbit {
 /// As [`super::orbits`].
 pub fn shown(rig: &Rig, sine: &Sine) -> Result<ShownOrbit> {
     let steady = Steady::new(rig, sine)?;
-    driven(sine.force)?;
+    check_not_zero(sine.force)?;
     let conditions = Conditions::new(rig, sine.frequency, 1, 0.0)?;
     let omega = steady.omega;
     let quadratic = Quadratic::new(&conditions, steady.amplitude(), omega);

@@ -1,4 +1,5 @@
-//! Verdicts on whether a computed orbit is real: four, independent of each other.
+//! Four independent verdicts on a computed orbit: whether it exists, is admissible, is stable, and how far
+//! it is from grazing.
 
 use super::Course;
 use crate::floquet;
@@ -9,7 +10,7 @@ use serde::Serialize;
 use serde_json::{Value, json};
 
 /// Verdicts on an orbit. A motion that can be measured needs `exists`, `admissible` and `stable`;
-/// `grazing_distance` tells how far it is from losing one of them.
+/// `grazing_distance` is the change of the gap to the loss of one of them.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Validity {
     /// The impulse pushes and the masses approach: J > 0.

@@ -5,7 +5,7 @@ use crate::excitation::{Excitation, Sine};
 use crate::impact::Impact;
 use crate::ladder::starts;
 use crate::motion::{Event, Motion};
-use crate::orbit::driven;
+use crate::orbit::check_not_zero;
 use crate::rig::Rig;
 use crate::simulate::Simulation;
 use std::f64::consts::TAU;
@@ -38,7 +38,7 @@ pub fn search(rig: &Rig, sine: &Sine, impacts: u32, cycles: u32) -> Result<Vec<P
             return Err(error.hint(hint.to_string()).setting(key));
         }
     }
-    driven(sine.force)?;
+    check_not_zero(sine.force)?;
     let excitation = Excitation::Sine(*sine);
     let rest = (Simulation::at_rest(rig), 0.0);
     let mut found: Vec<PeriodicOrbit> = Vec::new();

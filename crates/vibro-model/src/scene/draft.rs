@@ -21,7 +21,7 @@ const KINDS: [(&str, &[&str]); 4] = [
 
 /// The tables of a file, beside the rig's own keys.
 #[derive(Deserialize)]
-#[expect(dead_code, reason = "of the excitation, what is read is that each key is known and of its kind")]
+#[expect(dead_code, reason = "deserialised only to check names and types; the excitation is built later")]
 struct Sections {
     excitation: Option<ExcitationKeys>,
     contact: Option<ContactKeys>,
@@ -31,7 +31,7 @@ struct Sections {
 /// Keys of all kinds of excitation.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields, expecting = "a table")]
-#[expect(dead_code, reason = "what is read is that each is known and of its kind")]
+#[expect(dead_code, reason = "deserialised only to check names and types; the excitation is built later")]
 struct ExcitationKeys {
     kind: Option<String>,
     force: Option<f64>,
@@ -85,7 +85,8 @@ impl Draft {
         Ok(Draft { path: None, text: text.to_owned(), table: table(text)?, later: Vec::new() })
     }
 
-    /// Sets one key by `key=value`, in tables with a dot: `excitation.force=0.5`. Words need no quotes.
+    /// Sets one key by the text `key=value`, as it is typed; keys of a table have a dot:
+    /// `excitation.force=0.5`. Words need no quotes. [`Draft::put`] sets it to a value of a program.
     ///
     /// # Errors
     /// If the key is unknown or the value of the wrong kind.
@@ -116,8 +117,8 @@ impl Draft {
         Ok(())
     }
 
-    /// Sets a key to a number or a text; a table's key has a dot. A new kind of excitation drops the keys
-    /// that do not belong to it.
+    /// Sets a key to a value, unchecked; keys of a table have a dot. A new kind of excitation drops the
+    /// keys that do not belong to it. [`Draft::set`] checks, and takes text.
     pub fn put(&mut self, key: &str, value: impl Into<Value>) {
         let value = value.into();
         self.later.push(key.to_owned());
@@ -155,9 +156,9 @@ impl Draft {
     /// If a value is impossible, or a key of the excitation is missing or belongs to another kind; the error
     /// shows the line in the file.
     pub fn scene(&self) -> Result<Scene> {
-        let (sections, own): (Table, Table) =
+        let (sections, rig_keys): (Table, Table) =
             self.table.clone().into_iter().partition(|(key, _)| Scene::TABLES.contains(&key.as_str()));
-        let rig = Rig::deserialize(own).map_err(|e| unread(&e))?;
+        let rig = Rig::deserialize(rig_keys).map_err(|e| unread(&e))?;
         let keys = Sections::deserialize(sections).map_err(|e| unread(&e))?;
         if let Some((key, error)) = rig.fault() {
             return Err(self.at(key, error));
@@ -172,12 +173,13 @@ impl Draft {
             let checked = value.map_or(Ok(()), |value| number(key, value, unit, least));
             checked.map_err(|error| self.at(key, error))?;
         }
-        let driven = self.table.get("excitation").and_then(Value::as_table);
-        let excitation = driven.map(|section| self.excitation(section.clone())).transpose()?;
+        let excitation_keys = self.table.get("excitation").and_then(Value::as_table);
+        let excitation = excitation_keys.map(|section| self.excitation(section.clone())).transpose()?;
         let contact = Some(contact).filter(|c| *c != ContactKeys::default());
         Ok(Scene { rig, excitation, contact, buffer: keys.buffer })
     }
 
+    /// The excitation of the table `[excitation]`, checked.
     fn excitation(&self, mut section: Table) -> Result<Excitation> {
         // Each kind except a sine has a key of its own.
         let inferred = [("impulse", "impulse"), ("width", "pulse"), ("parts", "sines")];
@@ -194,8 +196,8 @@ impl Draft {
             return Err(self.at(&format!("excitation.{stray}"), Error::usage(found, expected)));
         }
         // Several sines have their own frequencies; `frequency` scales all of them, with their ratios kept.
-        let whole = if kind == "sines" { section.remove("frequency") } else { None };
-        let whole = whole.and_then(|hz| f64::deserialize(hz).ok());
+        let common_frequency = if kind == "sines" { section.remove("frequency") } else { None };
+        let common_frequency = common_frequency.and_then(|hz| f64::deserialize(hz).ok());
         let optional = if kind == "sines" { "frequency" } else { "" };
         let missing = |key: &&&str| **key != optional && !section.contains_key(**key);
         if let Some(key) = belonging.iter().find(missing) {
@@ -206,7 +208,8 @@ impl Draft {
         }
         section.insert("kind".to_owned(), Value::String(kind));
         let excitation = Excitation::deserialize(section).map_err(|e| unread(&e))?;
-        let excitation = whole.map_or_else(|| excitation.clone(), |hz| excitation.at_frequency(hz));
+        let excitation =
+            common_frequency.map_or_else(|| excitation.clone(), |hz| excitation.at_frequency(hz));
         excitation.check().map_err(|error| {
             let key = error.settings().next().unwrap_or("kind");
             self.at(&format!("excitation.{key}"), error)
@@ -237,9 +240,9 @@ impl Draft {
 fn table(text: &str) -> Result<Table> {
     let written = Written { text, ..Written::default() };
     let all = written.parse()?;
-    let (sections, own): (DeTable<'_>, DeTable<'_>) =
+    let (sections, rig_keys): (DeTable<'_>, DeTable<'_>) =
         all.into_iter().partition(|(key, _)| Scene::TABLES.contains(&key.get_ref().as_ref()));
-    if let Some((key, _)) = own.iter().find(|(key, _)| !Parameter::is_of_rig(key.get_ref())) {
+    if let Some((key, _)) = rig_keys.iter().find(|(key, _)| !Parameter::is_of_rig(key.get_ref())) {
         let known = Parameter::of_rig().map(Parameter::name).chain(Scene::TABLES).collect::<Vec<_>>();
         let found = format!("unknown key `{}`", key.get_ref());
         let error = match nearest(key.get_ref(), known.iter().copied()) {
@@ -248,7 +251,7 @@ fn table(text: &str) -> Result<Table> {
         };
         return Err(error.excerpt(text, key.span()));
     }
-    written.read::<Rig>(&own, 0..0)?;
+    written.read::<Rig>(&rig_keys, 0..0)?;
     written.read::<Sections>(&sections, 0..0)?;
     written.read(&written.parse()?, 0..0)
 }

@@ -22,20 +22,24 @@ fn pulse(x: f64) -> f64 {
 }
 
 /// Samples after the onset beyond which a pulse and its ringing are negligible.
-const LONG: f64 = 120.0;
+const PULSE_LENGTH: f64 = 120.0;
 
 /// Parameters of a train of impacts.
 #[derive(Clone, Default)]
 struct SyntheticTrain {
-    /// Number of impacts, and the numbers of missing ones.
+    /// Number of impacts.
     count: usize,
+    /// Indices of missing impacts.
     missing: Vec<usize>,
-    /// Standard deviations of the noise, of the logarithm of the heights, and of the onsets in intervals.
+    /// Standard deviation of the noise.
     noise: f64,
+    /// Standard deviation of the logarithm of the heights.
     heights: f64,
+    /// Standard deviation of the onsets in intervals.
     jitter: f64,
-    /// Height of the first impact, and of a ringing with 12 samples a cycle.
+    /// Height of the first impact; the others have a mean of 1.
     first: f64,
+    /// Height of a ringing with 12 samples a cycle, over that of its impact.
     ringing: f64,
 }
 
@@ -51,21 +55,22 @@ impl SyntheticTrain {
         let start = noise.between(200.0, 300.0);
         let n = (start + interval * self.count as f64) as usize;
         let mut values: Vec<f64> = (0..n).map(|_| self.noise * noise.normal()).collect();
-        let mut at = Vec::new();
+        let mut onsets = Vec::new();
         for k in (0..self.count).filter(|k| !self.missing.contains(k)) {
             let time = start + interval * (k as f64 + self.jitter * noise.normal());
             let height = (self.heights * noise.normal()).exp() * if k == 0 { self.first } else { 1.0 };
-            at.push(time);
-            let part = (time - 20.0).max(0.0) as usize..n.min((time + LONG).max(0.0) as usize);
+            onsets.push(time);
+            let part = (time - 20.0).max(0.0) as usize..n.min((time + PULSE_LENGTH).max(0.0) as usize);
             for (i, v) in part.clone().zip(&mut values[part]) {
                 let x = i as f64 - time;
                 let ring = self.ringing * (TAU * x / 12.0).sin() * (-x / 25.0).exp();
                 *v += height * (pulse(x) + if x > 0.0 { ring } else { 0.0 });
             }
         }
-        (trace("contact", "V", 1.0 / RATE, values), at, interval)
+        (trace("contact", "V", 1.0 / RATE, values), onsets, interval)
     }
 
+    /// Draws records of the train, whose impact frequency is to be estimated.
     fn rate(self) -> impl Fn(&mut Noise) -> Case<Trace> {
         move |noise| {
             let (data, _, interval) = self.synthesised(noise);
@@ -81,6 +86,7 @@ fn onset_bound(noise: f64) -> f64 {
     bounds(&[0.37, 1.0], &[1e-4, 1e-4], noise, model)[0]
 }
 
+/// Methods for the impact frequency.
 const RATES: [EstimationMethod<Trace>; 3] = [
     EstimationMethod::Rival("timeav", |t| contact_times(t).map_or(f64::NAN, |f| f.frequency)),
     EstimationMethod::Rival("threshold", |t| RATE * rivals::mean_rate(&rivals::threshold(&t.values))),
@@ -98,6 +104,7 @@ fn middle(times: &[f64]) -> f64 {
     if times.len() == COUNT { times[COUNT / 2] - times[COUNT / 2 - 1] } else { f64::NAN }
 }
 
+/// Methods for one interval between impacts.
 const TIMES: [EstimationMethod<Trace>; 3] = [
     EstimationMethod::Rival("threshold, sample", |t| middle(&rivals::threshold(&t.values)) / RATE),
     EstimationMethod::Rival("threshold, between", |t| {

@@ -11,7 +11,9 @@ use vibro_record::{Error, Result, Scaling, Trace, Window};
 use vibro_signal::integrate::{InTime, in_time};
 use vibro_signal::spectrum;
 
+/// Sampling rate in Hz.
 const RATE: f64 = 2048.0;
+/// Samples of a record: two seconds.
 const N: usize = 4096;
 /// Amplitude of the displacement in m.
 const AMPLITUDE: f64 = 1e-3;
@@ -22,6 +24,7 @@ struct Vibration {
     frequency: f64,
 }
 
+/// Methods for the amplitude of a displacement from its velocity.
 const METHODS: [EstimationMethod<Vibration>; 6] = [
     EstimationMethod::Rival("division, largest line", |v| divided(v).into_iter().skip(1).fold(0.0, f64::max)),
     EstimationMethod::Rival("division, line at f", |v| {
@@ -61,8 +64,8 @@ fn with_cut_off(v: &Vibration) -> Result<EstimatorAnswer> {
 /// divided by the gain of filter and trapezoidal rule.
 fn filtered(v: &Vibration) -> Result<EstimatorAnswer> {
     let f = v.frequency;
-    let how = InTime { times: 1, corner: 0.5 * f, order: 4, period: Some(1.0 / f) };
-    let found = in_time(&v.velocity, &how)?;
+    let options = InTime { times: 1, corner: 0.5 * f, order: 4, period: Some(1.0 / f) };
+    let found = in_time(&v.velocity, &options)?;
     let [low, high] = found.band;
     if !(low..=high).contains(&f) {
         return Err(Error::refused(format!("amplitudes are right from {low:.1} to {high:.1} Hz only")));
@@ -74,7 +77,7 @@ fn filtered(v: &Vibration) -> Result<EstimatorAnswer> {
         return Err(Error::refused("the edges of the filter fill the record"));
     }
     let sine = sine(&trace("laser", "m", 1.0 / RATE, inner.to_vec()), Some(f))?;
-    let gain = how.gain(f, RATE)?;
+    let gain = options.gain(f, RATE)?;
     let EstimatorAnswer { value, std, doubt } =
         EstimatorAnswer::found(&sine.tones[0].amplitude, &sine.findings);
     Ok(EstimatorAnswer { value: value / gain, std: std.map(|s| s / gain), doubt })
@@ -84,17 +87,22 @@ fn filtered(v: &Vibration) -> Result<EstimatorAnswer> {
 /// the whole record are added to the velocity, in units of its amplitude.
 #[derive(Clone, Copy)]
 struct SyntheticVibration {
+    /// Number of samples.
     n: usize,
+    /// Lowest and highest frequency in Hz.
     band: (f64, f64),
     level: f64,
     drift: f64,
+    /// Power of the vibration over that of the noise, in dB.
     decibel: f64,
 }
 
+/// A vibration without level and drift, 40 dB above the noise.
 const CLEAN: SyntheticVibration =
     SyntheticVibration { n: N, band: (15.0, 25.0), level: 0.0, drift: 0.0, decibel: 40.0 };
 
 impl SyntheticVibration {
+    /// Random records of this vibration.
     fn kind(self, name: impl Into<String>, seed: u64) -> Ensemble<Vibration> {
         Ensemble::new(name, seed, move |noise: &mut Noise| {
             let SyntheticVibration { n, band, level, drift, decibel } = self;

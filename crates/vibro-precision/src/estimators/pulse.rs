@@ -21,9 +21,11 @@ struct Pulse {
     times: [f64; 3],
 }
 
+/// ξ from two instants read off the record.
 const BY_HAND: EstimationMethod<Pulse> =
     EstimationMethod::Rival("two instants", |p| closed_form(rivals::instants(&p.trace.values)));
 
+/// ξ from the shape of the whole pulse, as from `vibro pulse`.
 const WHOLE: EstimationMethod<Pulse> = EstimationMethod::Own("whole pulse", |p| {
     let found = pulse(&p.trace, &PulseOptions { instrument: p.instrument.clone(), mass: None })?;
     Ok(EstimatorAnswer::found(&found.xi, &found.findings))
@@ -40,8 +42,10 @@ const TWO_TIMES: EstimationMethod<Pulse> = EstimationMethod::Own("two times", |p
 const FORMULA: EstimationMethod<Pulse> =
     EstimationMethod::Rival("formula of ρ", |p| closed_form(p.times[0] / p.times[1]));
 
+/// Methods for a record of the pulse.
 const METHODS: [EstimationMethod<Pulse>; 2] = [BY_HAND, WHOLE];
-const FOUR: [EstimationMethod<Pulse>; 4] = [FORMULA, BY_HAND, TWO_TIMES, WHOLE];
+/// These and the methods for two times read elsewhere.
+const ALL_METHODS: [EstimationMethod<Pulse>; 4] = [FORMULA, BY_HAND, TWO_TIMES, WHOLE];
 
 /// ξ from ρ = time to peak / duration, for any ρ.
 fn closed_form(rho: f64) -> f64 {
@@ -51,15 +55,18 @@ fn closed_form(rho: f64) -> f64 {
 /// Deceleration of a contact of spring and damper, normalised: −ẍ of x = e^{−ht} sin(Ωt)/Ω.
 fn contact(xi: f64, t: f64) -> f64 {
     let omega = TAU * FREQUENCY;
-    let (h, turn) = (xi * omega, omega * (1.0 - xi * xi).sqrt());
-    let (sin, cos) = (turn * t).sin_cos();
-    (-h * t).exp() * ((turn * turn - h * h) * sin + 2.0 * h * turn * cos) / turn
+    let (h, damped_omega) = (xi * omega, omega * (1.0 - xi * xi).sqrt());
+    let (sin, cos) = (damped_omega * t).sin_cos();
+    (-h * t).exp() * ((damped_omega * damped_omega - h * h) * sin + 2.0 * h * damped_omega * cos)
+        / damped_omega
 }
 
 /// Duration of this contact in s, until the force is zero.
 fn duration(xi: f64) -> f64 {
-    let turn = (1.0 - xi * xi).sqrt();
-    (2.0 * xi * turn).atan2(xi * xi - turn * turn) / (TAU * FREQUENCY * turn)
+    // Damped over undamped frequency.
+    let relative_omega = (1.0 - xi * xi).sqrt();
+    (2.0 * xi * relative_omega).atan2(xi * xi - relative_omega * relative_omega)
+        / (TAU * FREQUENCY * relative_omega)
 }
 
 /// A record of `n` samples, `dt` in s apart, of a pulse that begins at `onset` in s; `first` is the first
@@ -98,15 +105,20 @@ fn bound(xi: f64, samples: f64, part: f64) -> f64 {
     let (dt, n) = (length / samples, (5.8 * samples) as usize);
     let first = (2.3 * samples).ceil() as usize;
     let onset = (first as f64 - 0.5) * dt;
-    let own = KelvinVoigt::new(xi, FREQUENCY).map_or(f64::NAN, |k| k.frequency());
+    let frequency = KelvinVoigt::new(xi, FREQUENCY).map_or(f64::NAN, |k| k.frequency());
     // A lower frequency stretches the pulse in time and lowers its deceleration.
     let model = |p: &[f64]| {
-        let stretch = p[4] / own;
+        let stretch = p[4] / frequency;
         let grid = (n, dt * stretch, first);
         clean(p[3], p[0] * stretch, grid).iter().map(|v| p[1] + p[2] * stretch * v).collect()
     };
     let height = clean(xi, onset, (n, dt, first)).into_iter().fold(0.0, f64::max);
-    bounds(&[onset, 0.0, 1.0, xi, own], &[1e-6 * dt, 1e-6, 1e-6, 1e-6, 1e-6 * own], part * height, model)[3]
+    bounds(
+        &[onset, 0.0, 1.0, xi, frequency],
+        &[1e-6 * dt, 1e-6, 1e-6, 1e-6, 1e-6 * frequency],
+        part * height,
+        model,
+    )[3]
 }
 
 /// The scene of pulses.
@@ -122,6 +134,7 @@ pub fn scenes(quick: bool) -> Vec<BenchmarkScene> {
     vec![scene(texts, bound(0.2, 128.0, 0.01), measured(&METHODS, &settings, quick))]
 }
 
+/// Height of a pulse above zero.
 fn height(p: &Pulse) -> f64 {
     2.0 * rivals::half(&p.trace.values)
 }
@@ -175,8 +188,8 @@ pub(crate) fn borders(quick: bool) -> Vec<BorderQuestion> {
     ];
     let faults =
         changes.map(|(name, change)| Ensemble::new(name, 51_000, pulses(0.2, 40.0, 0.01)).changed(change));
-    let mut all = questions("contact ξ: ρ → 1/2", &FOUR, light, quick);
-    all.extend(questions("contact ξ: ρ → 0", &FOUR, heavy, quick));
+    let mut all = questions("contact ξ: ρ → 1/2", &ALL_METHODS, light, quick);
+    all.extend(questions("contact ξ: ρ → 0", &ALL_METHODS, heavy, quick));
     all.extend(questions("contact ξ: noise", &METHODS, noise, quick));
     all.extend(questions("contact ξ: few samples", &METHODS, few, quick));
     all.extend(questions("contact ξ: faults", &METHODS, faults, quick));

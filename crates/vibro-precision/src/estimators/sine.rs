@@ -51,6 +51,7 @@ fn hertz(trace: &Trace, window: Window, place: fn(&[f64]) -> f64) -> f64 {
     place(&rivals::lines(trace, window)) * rivals::spacing(trace)
 }
 
+/// Methods for the frequency of a sine.
 const FREQUENCY: [EstimationMethod<Trace>; 5] = [
     EstimationMethod::Rival("zero crossings", |t| {
         RATE * rivals::mean_rate(&rivals::passages(&t.values, rivals::mean(&t.values)))
@@ -65,11 +66,12 @@ const FREQUENCY: [EstimationMethod<Trace>; 5] = [
     }),
 ];
 
+/// Methods for the amplitude of a sine.
 const AMPLITUDE: [EstimationMethod<Trace>; 6] = [
     EstimationMethod::Rival("half the swing", |t| rivals::half_swing(&t.values)),
-    EstimationMethod::Rival("line, no window", |t| highest(t, Window::Rectangular)),
-    EstimationMethod::Rival("line, Hann", |t| highest(t, Window::Hann)),
-    EstimationMethod::Rival("line, flat top", |t| highest(t, Window::FlatTop)),
+    EstimationMethod::Rival("line, no window", |t| highest_line(t, Window::Rectangular)),
+    EstimationMethod::Rival("line, Hann", |t| highest_line(t, Window::Hann)),
+    EstimationMethod::Rival("line, flat top", |t| highest_line(t, Window::FlatTop)),
     EstimationMethod::Own("three lines, Hann", |t| {
         three_lines(t, |e| (e.force.unwrap_or(f64::NAN), e.force_std))
     }),
@@ -78,11 +80,12 @@ const AMPLITUDE: [EstimationMethod<Trace>; 6] = [
     }),
 ];
 
-fn highest(trace: &Trace, window: Window) -> f64 {
+/// Amplitude of the largest line.
+fn highest_line(trace: &Trace, window: Window) -> f64 {
     rivals::lines(trace, window).into_iter().fold(0.0, f64::max)
 }
 
-/// The weaker of two sines.
+/// Methods for the frequency of the weaker of two sines.
 const WEAKER: [EstimationMethod<Trace>; 3] = [
     EstimationMethod::Rival("second line", |t| {
         hertz(t, Window::Rectangular, |l| rivals::second(l).map_or(f64::NAN, |k| k as f64))
@@ -104,7 +107,8 @@ fn at_line(data: Trace, place: f64, unit: f64) -> Case<Trace> {
     Case { data, truth: place * line, unit: unit * line, tolerance: 0.5 * line }
 }
 
-/// A sine anywhere between lines, at least ten lines from the ends; errors in units of `unit` lines.
+/// Draws records of a sine anywhere between lines, at least ten lines from the ends of the band; errors in
+/// units of `unit` lines.
 fn anywhere(n: usize, decibel: f64, unit: f64) -> impl Fn(&mut Noise) -> Case<Trace> {
     move |noise| {
         let (place, phase) = (noise.between(10.0, n as f64 / 2.0 - 10.0), noise.between(0.0, TAU));
@@ -112,8 +116,8 @@ fn anywhere(n: usize, decibel: f64, unit: f64) -> impl Fn(&mut Noise) -> Case<Tr
     }
 }
 
-/// Two sines `apart` lines from each other, 40 dB; the frequency of the second, of half the amplitude, is to
-/// be estimated.
+/// Draws records of two sines `apart` lines from each other, the first 40 dB above the noise; the frequency
+/// of the second, of half its amplitude, is to be estimated.
 fn pair(apart: f64) -> impl Fn(&mut Noise) -> Case<Trace> {
     move |noise| {
         let first = noise.between(20.0, 200.0);
@@ -176,8 +180,8 @@ pub fn scenes(quick: bool) -> Vec<BenchmarkScene> {
     ]
 }
 
-/// A sine of amplitude 1 at this place in lines, with a constant level, 40 dB.
-fn at(name: impl Into<String>, n: usize, place: f64, level: f64) -> Ensemble<Trace> {
+/// Records of a sine of amplitude 1 at this place in lines, on a constant level, 40 dB above the noise.
+fn fixed_sine(name: impl Into<String>, n: usize, place: f64, level: f64) -> Ensemble<Trace> {
     Ensemble::new(name, 10_000, move |noise: &mut Noise| {
         let phase = noise.between(0.0, TAU);
         at_line(record(n, &[(place, 1.0, phase)], level, 40.0, noise), place, 1.0)
@@ -188,11 +192,11 @@ fn at(name: impl Into<String>, n: usize, place: f64, level: f64) -> Ensemble<Tra
 pub(crate) fn borders(quick: bool) -> Vec<BorderQuestion> {
     let noise =
         [0.0, -10.0, -20.0, -30.0].map(|db| Ensemble::new(format!("{db} dB"), 12_000, anywhere(N, db, 1.0)));
-    let short = [0.5, 0.9, 1.2, 1.6, 2.5].map(|p| at(format!("{p} periods"), 256, p, 0.0));
+    let short = [0.5, 0.9, 1.2, 1.6, 2.5].map(|p| fixed_sine(format!("{p} periods"), 256, p, 0.0));
     let ends = [
-        at("1.7 lines from half the rate", N, 510.3, 0.0),
-        at("0.4 lines from half the rate", N, 511.6, 0.0),
-        at("half the rate", N, 512.0, 0.0),
+        fixed_sine("1.7 lines from half the rate", N, 510.3, 0.0),
+        fixed_sine("0.4 lines from half the rate", N, 511.6, 0.0),
+        fixed_sine("half the rate", N, 512.0, 0.0),
     ];
     let changes: [Change<Trace>; 6] = [
         ("drift of 20 amplitudes", |t| each(t, |part, v| v + 20.0 * part)),
@@ -204,7 +208,7 @@ pub(crate) fn borders(quick: bool) -> Vec<BorderQuestion> {
     ];
     let changed =
         changes.map(|(name, change)| Ensemble::new(name, 11_000, anywhere(N, 40.0, 1.0)).changed(change));
-    let faults = std::iter::once(at("level 1000 times the amplitude", N, 40.3, 1e3)).chain(changed);
+    let faults = std::iter::once(fixed_sine("level 1000 times the amplitude", N, 40.3, 1e3)).chain(changed);
     let beside = [0.3, 0.7, 1.0, 2.0, 4.0]
         .map(|apart| Ensemble::new(format!("{apart} lines apart"), 13_000, pair(apart)));
     // Methods for a single sine are asked for the stronger of two.

@@ -70,6 +70,7 @@ pub struct Case<D> {
 /// A named change of a record after it was made.
 pub type Change<D> = (&'static str, fn(&mut D));
 
+/// Makes a record from seeded noise.
 type Make<D> = dyn Fn(&mut Noise) -> Case<D> + Send + Sync;
 
 /// Random records of one kind.
@@ -101,6 +102,7 @@ impl<D: 'static> Ensemble<D> {
         })
     }
 
+    /// The record of this number.
     fn case(&self, number: usize) -> Case<D> {
         (self.make)(&mut Noise::new(self.seed + number as u64))
     }
@@ -124,7 +126,7 @@ const RECORDS: [usize; 2] = [128, 8];
 const TIMED: [usize; 2] = [24, 3];
 /// Distance of the seeds of two settings of a scene: each setting has its own records, the same for all
 /// methods.
-const APART: usize = 1_000_000;
+const SEED_DISTANCE: usize = 1_000_000;
 
 /// Measures every method on every setting. The error is the root mean square over the answers, to compare
 /// with a standard deviation. A method that answers for fewer than half of the records has failed.
@@ -134,8 +136,8 @@ pub fn measured<D: 'static>(
     quick: bool,
 ) -> Vec<MeasuredMethod> {
     let (records, clocked) = (RECORDS[usize::from(quick)], TIMED[usize::from(quick)]);
-    let one = |method: &EstimationMethod<D>, place: usize, setting: &Ensemble<D>| {
-        let case = |number: usize| setting.case(place * APART + number);
+    let measure = |method: &EstimationMethod<D>, place: usize, setting: &Ensemble<D>| {
+        let case = |number: usize| setting.case(place * SEED_DISTANCE + number);
         let error = |number: usize| {
             let Case { data, truth, unit, .. } = case(number);
             Ok((method.answer(&data)?.value - truth) / unit)
@@ -154,18 +156,21 @@ pub fn measured<D: 'static>(
             ..MeasuredMethod::new(method.name(), setting.name.clone(), median(&times), answer)
         }
     };
-    methods.iter().flat_map(|m| settings.iter().enumerate().map(move |(place, s)| one(m, place, s))).collect()
+    methods
+        .iter()
+        .flat_map(|m| settings.iter().enumerate().map(move |(place, s)| measure(m, place, s)))
+        .collect()
 }
 
 /// Records of a cell of the map, in a full and a quick run.
 const TRIALS: [usize; 2] = [40, 6];
 /// An answer within this many of its standard uncertainties is right.
-const WITHIN: f64 = 3.0;
+const RIGHT_WITHIN: f64 = 3.0;
 /// Most answers of a cell that may lie further off, in a full and a quick run; and the standard uncertainties
 /// beyond which a single answer is wrong. Either limit calls a method with correct uncertainties wrong
 /// somewhere in a full map of 500 cells in fewer than one of 200 runs.
 const OUTLIERS: [usize; 2] = [3, 2];
-const FAR: f64 = 5.2;
+const WRONG_BEYOND: f64 = 5.2;
 
 /// The questions to each method about each kind of record at a border.
 pub fn questions<D: Send + 'static>(
@@ -186,33 +191,34 @@ pub fn questions<D: Send + 'static>(
 /// Error of an answer over the largest allowed one, or why it counts as no answer. An answer with an
 /// uncertainty may err by three of it, even if a finding doubts it; one without may err by `tolerance`. A
 /// doubted answer without uncertainty is none, and so is one whose uncertainty exceeds `tolerance`.
-fn off(answer: &EstimatorAnswer, truth: f64, tolerance: f64) -> std::result::Result<f64, String> {
-    let off = (answer.value - truth).abs();
+fn relative_error(answer: &EstimatorAnswer, truth: f64, tolerance: f64) -> std::result::Result<f64, String> {
+    let error = (answer.value - truth).abs();
     match (answer.std, &answer.doubt) {
         (None, Some(doubt)) => Err(format!("no uncertainty: {doubt}")),
-        (None, None) => Ok(off / tolerance),
+        (None, None) => Ok(error / tolerance),
         (Some(std), _) if std > tolerance => {
             Err(format!("its uncertainty of {std:.2e} is more than is allowed"))
         }
-        (Some(std), _) => Ok(off / (WITHIN * std.max(1e-12 * truth.abs()))),
+        (Some(std), _) => Ok(error / (RIGHT_WITHIN * std.max(1e-12 * truth.abs()))),
     }
 }
 
+/// Outcome of a method on a cell's records.
 fn judged<D: 'static>(method: &EstimationMethod<D>, kind: &Ensemble<D>, quick: bool) -> Found {
     let trials = TRIALS[usize::from(quick)];
     // Error of each answer over the largest allowed one, and whether it states an uncertainty.
-    let one = |number: usize| {
+    let answer = |number: usize| {
         let Case { data, truth, tolerance, .. } = kind.case(number);
-        method.answer(&data).and_then(|a| Ok((off(&a, truth, tolerance)?, a.std.is_some())))
+        method.answer(&data).and_then(|a| Ok((relative_error(&a, truth, tolerance)?, a.std.is_some())))
     };
-    let answers: Vec<_> = (0..trials).map(one).collect();
+    let answers: Vec<_> = (0..trials).map(answer).collect();
     let count =
         |which: fn(f64, bool) -> bool| answers.iter().flatten().filter(|(o, s)| which(*o, *s)).count();
     let (right, wrong) = (count(|off, _| off <= 1.0), count(|off, _| off > 1.0));
     let stated = [count(|_, states| states), count(|off, states| states && off > 1.0)];
     let worst = answers.iter().flatten().map(|a| a.0).fold(0.0, f64::max);
     let allowed = "what they state or is allowed";
-    let found = if WITHIN * worst > FAR || wrong > OUTLIERS[usize::from(quick)] {
+    let found = if RIGHT_WITHIN * worst > WRONG_BEYOND || wrong > OUTLIERS[usize::from(quick)] {
         let why = format!("{wrong} of {trials} answers beyond {allowed}, the worst {worst:.3} times");
         Found::new(Outcome::Wrong, why)
     } else if 2 * right >= trials {
@@ -235,9 +241,12 @@ mod tests {
         let density = |x: f64| (-0.5 * x * x).exp() * (2.0 / std::f64::consts::PI).sqrt();
         let beyond =
             |z: f64| (0..100_000).map(|i| 1e-4 * density(z + 1e-4 * (f64::from(i) + 0.5))).sum::<f64>();
-        assert!(TRIALS[0] as f64 * beyond(FAR) < half && TRIALS[0] as f64 * beyond(FAR - 0.1) > half);
+        assert!(
+            TRIALS[0] as f64 * beyond(WRONG_BEYOND) < half
+                && TRIALS[0] as f64 * beyond(WRONG_BEYOND - 0.1) > half
+        );
         // The binomial distribution by its factorials.
-        let share = beyond(WITHIN);
+        let share = beyond(RIGHT_WITHIN);
         for (n, most) in TRIALS.into_iter().zip(OUTLIERS) {
             let at = |k: usize| {
                 let ways = (0..k).map(|i| (n - i) as f64 / (i + 1) as f64).product::<f64>();
@@ -251,7 +260,7 @@ mod tests {
     #[test]
     fn an_answer_is_held_to_its_uncertainty_whatever_is_found_beside() {
         let of = |value, std, doubt: Option<&'static str>| {
-            off(&EstimatorAnswer { value, std, doubt: doubt.map(Into::into) }, 10.0, 1.0)
+            relative_error(&EstimatorAnswer { value, std, doubt: doubt.map(Into::into) }, 10.0, 1.0)
         };
         let near = |found: std::result::Result<f64, String>, off: f64| (found.unwrap() - off).abs() < 1e-9;
         assert!(near(of(10.3, Some(0.1), None), 1.0));

@@ -1,4 +1,4 @@
-//! The borders of what the models can do, and how each method fares there.
+//! Failure map of the models: scenes at the borders of their domain, and the outcome of each method there.
 
 use super::check;
 use super::rivals::{self as by, Method};
@@ -13,15 +13,17 @@ use vibro_model::{Rig, Sine, Steady};
 use vibro_record::Result;
 use vibro_record::units::notation::quantity;
 
-/// A scene at a border.
+/// A scene at a border of the domain of the models.
 struct Border {
+    /// The border, such as `grazing`.
     name: &'static str,
+    /// The scene, such as `reached by 1 µm`.
     scene: String,
     task: Task,
     goal: Goal,
 }
 
-/// Question to a method.
+/// What a method is asked at a border.
 #[derive(Clone, Copy, PartialEq)]
 enum Goal {
     /// What are the impacts and rests of the motion?
@@ -36,9 +38,9 @@ enum Goal {
     Speed,
 }
 
-/// Kind of question that a method answers.
+/// What a method can compute.
 #[derive(Clone, Copy, PartialEq)]
-enum Can {
+enum Ability {
     /// Periodic orbits with rigid impacts.
     Orbits,
     /// Periodic orbits with a contact of the task's stiffness.
@@ -50,24 +52,24 @@ enum Can {
 }
 
 /// Cycles beyond which other methods than ours are not run: they would take minutes.
-const LONG: f64 = 1e4;
+const MOST_RIVAL_CYCLES: f64 = 1e4;
 
-/// Methods in the order of the picture, with their settings, and what they answer. The stiff spring counts as
-/// a rigid impact: it is in contact for 0.07 % of the period.
-const METHODS: &[(Method, f64, Can)] = &[
-    (by::CLOSED, 0.0, Can::Orbits),
-    (Method { name: "soft-corrected form", ..by::SOFT }, 0.0, Can::SoftOrbits),
-    (by::FLIGHTS, 0.0, Can::Follow),
-    (by::KELVIN_VOIGT, 0.0, Can::FollowSoft),
-    (by::EULER, 1e3, Can::Follow),
-    (by::RK4_LOOP, 1e3, Can::Follow),
-    (by::MOREAU, 1e3, Can::Follow),
-    (by::RK45_ENDS, 1e-6, Can::Follow),
-    (by::DOP853_RESTS, 1e-9, Can::Follow),
+/// Methods in the order of the figure, each with its setting and what it can compute. The stiff spring
+/// counts as a rigid impact: it is in contact for 0.07 % of the period.
+const METHODS: &[(Method, f64, Ability)] = &[
+    (by::CLOSED, 0.0, Ability::Orbits),
+    (Method { name: "soft-corrected form", ..by::SOFT }, 0.0, Ability::SoftOrbits),
+    (by::FLIGHTS, 0.0, Ability::Follow),
+    (by::KELVIN_VOIGT, 0.0, Ability::FollowSoft),
+    (by::EULER, 1e3, Ability::Follow),
+    (by::RK4_LOOP, 1e3, Ability::Follow),
+    (by::MOREAU, 1e3, Ability::Follow),
+    (by::RK45_ENDS, 1e-6, Ability::Follow),
+    (by::DOP853_RESTS, 1e-9, Ability::Follow),
     #[cfg(feature = "diffsol")]
-    (by::TSIT45_RESTS, 1e-9, Can::Follow),
-    (by::ROUGH_SPRING, 1e8, Can::Follow),
-    (by::RK45_CONTACT, 1e-6, Can::FollowSoft),
+    (by::TSIT45_RESTS, 1e-9, Ability::Follow),
+    (by::ROUGH_SPRING, 1e8, Ability::Follow),
+    (by::RK45_CONTACT, 1e-6, Ability::FollowSoft),
 ];
 
 /// Six cycles at ν = ω/Ω₁ = 2.1 under 0.5 N from x₁ = −1 mm.
@@ -90,7 +92,7 @@ fn onset() -> f64 {
     bisected(0.7, 0.9, 20, rests).0
 }
 
-/// All scenes; with `quick` the long runs have fewer cycles.
+/// All scenes at all borders; with `quick` the long runs have fewer cycles.
 fn borders(quick: bool) -> Result<Vec<Border>> {
     let thesis = Rig::thesis();
     let mut all = Vec::new();
@@ -180,17 +182,17 @@ pub fn failures(quick: bool) -> Result<FailureMap> {
     let mut questions = Vec::new();
     for border in borders(quick)? {
         let truths = [false, true].map(|soft| truth(&border, soft));
-        let own = Arc::new((border, truths));
+        let shared = Arc::new((border, truths));
         for (method, setting, can) in METHODS {
-            let (border, own) = (&own.0, Arc::clone(&own));
+            let (border, shared) = (&shared.0, Arc::clone(&shared));
             questions.push(BorderQuestion {
                 method: method.name,
                 ours: method.ours,
                 border: border.name,
                 scene: border.scene.clone(),
                 answer: Box::new(move || {
-                    let truth = own.1[usize::from(*can == Can::FollowSoft)].as_ref();
-                    judged(method, *setting, *can, &own.0, truth).unwrap_or_else(|fault| fault)
+                    let truth = shared.1[usize::from(*can == Ability::FollowSoft)].as_ref();
+                    judged(method, *setting, *can, &shared.0, truth).unwrap_or_else(|fault| fault)
                 }),
             });
         }
@@ -202,23 +204,23 @@ pub fn failures(quick: bool) -> Result<FailureMap> {
 fn judged(
     method: &Method,
     setting: f64,
-    can: Can,
+    can: Ability,
     border: &Border,
     truth: Option<&Log>,
 ) -> std::result::Result<Found, Found> {
     let task = &border.task;
     let not_asked = |why: &str| Ok(Found::new(Outcome::NotAsked, why));
     match (can, border.goal) {
-        (Can::Orbits | Can::Follow, Goal::Contact)
-        | (Can::Orbits | Can::SoftOrbits, Goal::First(_))
-        | (Can::Follow | Can::FollowSoft, Goal::Orbits) => {
+        (Ability::Orbits | Ability::Follow, Goal::Contact)
+        | (Ability::Orbits | Ability::SoftOrbits, Goal::First(_))
+        | (Ability::Follow | Ability::FollowSoft, Goal::Orbits) => {
             return not_asked("it answers another question");
         }
-        (_, Goal::Speed) if !method.ours && task.until * task.frequency > LONG => {
+        (_, Goal::Speed) if !method.ours && task.until * task.frequency > MOST_RIVAL_CYCLES => {
             return not_asked("it would take minutes; fewer cycles are asked of it");
         }
-        (Can::Orbits, Goal::Motion | Goal::Orbits) => return check::closed_form(task),
-        (Can::SoftOrbits, _) => return check::corrected(task),
+        (Ability::Orbits, Goal::Motion | Goal::Orbits) => return check::closed_form(task),
+        (Ability::SoftOrbits, _) => return check::corrected(task),
         _ => {}
     }
     let log = (method.follow)(task, setting)?;
@@ -302,7 +304,7 @@ mod tests {
             Ok(log)
         };
         let outcome = |method: &Method, truth: Option<&Log>| {
-            judged(method, 0.0, Can::Follow, &border, truth).unwrap().outcome
+            judged(method, 0.0, Ability::Follow, &border, truth).unwrap().outcome
         };
         assert_eq!(outcome(&Method { follow: without, ..by::FLIGHTS }, truth.as_ref()), Outcome::Wrong);
         assert_eq!(outcome(&by::FLIGHTS, truth.as_ref()), Outcome::Right);

@@ -1,4 +1,4 @@
-//! Comparison of answers with the truth.
+//! Judges the answers of the models by comparison with the true motion.
 
 use super::ours::soft_forms;
 use super::task::{Log, Task};
@@ -11,34 +11,39 @@ use vibro_model::{Orbit, State, orbits};
 /// Largest error allowed to every method: this part of a cycle for times, this part of the fastest approach
 /// speed for speeds. A method with a thousand fixed steps a cycle reaches it within some impacts; it is
 /// twenty times what would show on a millimetre scale.
-const ALLOWED: f64 = 0.01;
-/// Approach speed in m/s from which an impact must be found.
-const SLOW: f64 = 1e-3;
-/// Cycles within which a motion may settle.
+const TOLERANCE: f64 = 0.01;
+/// Approach speed in m/s above which an impact must be found.
+const LEAST_SPEED: f64 = 1e-3;
+/// Cycles within which a motion must settle, to be compared.
 pub const SETTLED: f64 = 400.0;
-/// Largest closing error of an orbit in closed form, relative and in rad.
-const CLOSES: f64 = 1e-8;
-/// The same for the distance of an orbit from the motion on which a task settles.
-const NEAR: f64 = 1e-4;
-/// Impacts and rests of either list one by one in their order: every impact that is not slow, within
-/// [`ALLOWED`] of a cycle and of the fastest approach speed; every rest that lasts longer than twice that
-/// part of a cycle, begun and ended within it.
+/// Largest difference in approach speed (relative) and phase (rad) between an orbit in closed form and the
+/// motion that repeats beside it.
+const SAME_ORBIT: f64 = 1e-8;
+/// The same between an orbit and the motion on which a task settles.
+const SAME_AS_SETTLED: f64 = 1e-4;
+
+/// Judges a motion by its impacts and rests, one by one in their order. Each impact faster than
+/// [`LEAST_SPEED`] must agree within [`TOLERANCE`] of a cycle and of the fastest approach speed; each rest
+/// longer than twice that part of a cycle must begin and end within it. This holds for both lists: none may
+/// be missing, and none invented.
 pub fn motion(log: &Log, truth: &Log, task: &Task) -> Found {
-    let off = ALLOWED * task.cycle();
-    let seen = task.until - 2.0 * off;
-    let speed = ALLOWED * truth.impacts.iter().map(|i| i.1).fold(SLOW, f64::max);
-    // Written so that NaN counts, and is close to nothing.
-    let counts = |i: &(f64, f64)| !(i.0 >= seen || i.1 <= SLOW);
-    let close = |a: &(f64, f64), b: &(f64, f64)| (a.0 - b.0).abs() <= off && (a.1 - b.1).abs() <= speed;
-    let lasts = |s: &[f64; 2]| !(s[0] >= seen || s[1] - s[0] <= 2.0 * off);
+    let time_error = TOLERANCE * task.cycle();
+    // What begins later may lie beyond the end of either list.
+    let last = task.until - 2.0 * time_error;
+    let speed_error = TOLERANCE * truth.impacts.iter().map(|i| i.1).fold(LEAST_SPEED, f64::max);
+    // With NaN the comparisons are false: such an impact must be paired, and is close to none.
+    let counts = |i: &(f64, f64)| !(i.0 >= last || i.1 <= LEAST_SPEED);
+    let close =
+        |a: &(f64, f64), b: &(f64, f64)| (a.0 - b.0).abs() <= time_error && (a.1 - b.1).abs() <= speed_error;
+    let lasts = |s: &[f64; 2]| !(s[0] >= last || s[1] - s[0] <= 2.0 * time_error);
     let same = |a: &[f64; 2], b: &[f64; 2]| {
-        (a[0] - b[0]).abs() <= off && (a[1].min(seen) - b[1].min(seen)).abs() <= off
+        (a[0] - b[0]).abs() <= time_error && (a[1].min(last) - b[1].min(last)).abs() <= time_error
     };
     let impacts = in_order(&truth.impacts, &log.impacts, counts, close);
     let rests = in_order(&truth.sticks, &log.sticks, lasts, same);
     match (impacts, rests) {
         (Ok(n), Ok(m)) => {
-            let why = format!("{n} impacts within {off:.0e} s and {speed:.0e} m/s, {m} rests");
+            let why = format!("{n} impacts within {time_error:.0e} s and {speed_error:.0e} m/s, {m} rests");
             Found::new(Outcome::Right, why)
         }
         (Err(why), _) => Found::new(Outcome::Wrong, format!("impacts (s, m/s): {why}")),
@@ -46,8 +51,8 @@ pub fn motion(log: &Log, truth: &Log, task: &Task) -> Found {
     }
 }
 
-/// Number of pairs of `truth` and `log` that are `close`, each in its order. Everything that `counts` must be
-/// in a pair, in both lists; the rest may be.
+/// Pairs the entries of `truth` and `log` that are `close`, in their order; returns the number of pairs.
+/// Each entry that `counts`, in either list, must be in a pair; else the error says which is not.
 fn in_order<T: Debug>(
     truth: &[T],
     log: &[T],
@@ -72,33 +77,35 @@ fn in_order<T: Debug>(
 /// Judges the first impact by its true time, or by its absence.
 pub fn first(log: &Log, truth: &Log, task: &Task) -> Found {
     let [log, truth] = [log, truth].map(|motion| motion.impacts.first().map(|i| i.0));
-    let kept = match (log, truth) {
-        (Some(log), Some(truth)) => (log - truth).abs() <= ALLOWED * task.cycle(),
+    let right = match (log, truth) {
+        (Some(log), Some(truth)) => (log - truth).abs() <= TOLERANCE * task.cycle(),
         (log, truth) => log.is_none() && truth.is_none(),
     };
-    Found::right_if(kept, format!("time of the first impact in s: told {log:?}, true {truth:?}"))
+    Found::right_if(right, format!("time of the first impact in s: told {log:?}, true {truth:?}"))
 }
 
 /// Judges the last approach speed by that of the periodic motion.
 pub fn speed(log: &Log, truth: &Log) -> Found {
     let [log, truth] = [log, truth].map(|motion| motion.impacts.last().map_or(f64::NAN, |i| i.1));
     let error = (log / truth - 1.0).abs();
-    Found::right_if(error <= ALLOWED, format!("approach speed {error:.0e} off, allowed {ALLOWED:.0e}"))
+    Found::right_if(error <= TOLERANCE, format!("approach speed {error:.0e} off, allowed {TOLERANCE:.0e}"))
 }
 
-/// Judges orbits in closed form by the motion itself. Each orbit that is called admissible must repeat. One
-/// that is not, where the masses would pass through each other, must not repeat; slow impacts are left out.
-/// The motion on which the task settles, if with one impact a cycle, must be among the stable orbits.
+/// Judges orbits in closed form by following the motion. An orbit called admissible must repeat. One that
+/// is not, where the masses would pass through each other, must not repeat. Orbits with slow impacts are
+/// left out. The motion on which the task settles, if with one impact a cycle, must be among the stable
+/// orbits.
 pub fn closed_form(task: &Task) -> Result<Found, Found> {
     let found = orbits(&task.rig, task.force, task.frequency)?;
     judged(task, &found.orbits.iter().filter(|o| o.validity.exists).collect::<Vec<_>>())
 }
 
+/// As [`closed_form`], for these orbits.
 fn judged(task: &Task, log: &[&Orbit]) -> Result<Found, Found> {
-    for orbit in log.iter().filter(|o| o.approach_velocity > SLOW) {
+    for orbit in log.iter().filter(|o| o.approach_velocity > LEAST_SPEED) {
         let (speed, admissible) = (orbit.approach_velocity, orbit.validity.admissible);
-        let motion = repeats(task, None, orbit.period(), &rigid(orbit));
-        let repeated = motion.is_some_and(|one| one.off(speed, orbit.force_phase) < CLOSES);
+        let motion = repeats(task, None, orbit.period(), &impact_of(orbit));
+        let repeated = motion.is_some_and(|one| one.off(speed, orbit.force_phase) < SAME_ORBIT);
         if repeated != admissible {
             let why = format!("an orbit of {speed:.6e} m/s: admissible {admissible}, repeated {repeated}");
             return Ok(Found::new(Outcome::Wrong, why));
@@ -107,7 +114,7 @@ fn judged(task: &Task, log: &[&Orbit]) -> Result<Found, Found> {
     let settled = settled(task, None, SETTLED)?;
     let among = |one: &Repeats| {
         let stable = log.iter().filter(|o| o.validity.admissible && o.validity.stable != Some(false));
-        stable.map(|o| one.off(o.approach_velocity, o.force_phase)).any(|off| off < NEAR)
+        stable.map(|o| one.off(o.approach_velocity, o.force_phase)).any(|off| off < SAME_AS_SETTLED)
     };
     Ok(match settled {
         Some(one) => Found::right_if(among(&one), format!("the motion settles at {:.6e} m/s", one.speed())),
@@ -115,7 +122,8 @@ fn judged(task: &Task, log: &[&Orbit]) -> Result<Found, Found> {
     })
 }
 
-fn rigid(orbit: &Orbit) -> Repeats {
+/// The impact of an orbit with rigid impacts.
+fn impact_of(orbit: &Orbit) -> Repeats {
     let State { x1, v1, x2, v2 } = orbit.before_impact();
     Repeats { before: [x1, v1, x2, v2], phase: orbit.force_phase }
 }
@@ -129,7 +137,9 @@ pub fn corrected(task: &Task) -> Result<Found, Found> {
     let omega = TAU * task.frequency;
     let (mut judged, mut withheld) = (Vec::new(), 0);
     for (orbit, soft) in found.orbits.iter().zip(soft).filter(|(o, _)| o.validity.admissible) {
-        let Some(truth) = repeats(task, Some(task.spring()), orbit.period(), &rigid(orbit)) else { continue };
+        let Some(truth) = repeats(task, Some(task.spring()), orbit.period(), &impact_of(orbit)) else {
+            continue;
+        };
         let Some(soft) = soft else {
             withheld += 1;
             continue;
@@ -208,19 +218,19 @@ mod tests {
             motion(&log, &truth, &task).outcome
         };
         let cycle = task.cycle();
-        assert_eq!(changed(&|t| t.impacts[2].0 += 0.5 * ALLOWED * cycle), Outcome::Right);
-        assert_eq!(changed(&|t| t.impacts[2].0 += 1.5 * ALLOWED * cycle), Outcome::Wrong);
+        assert_eq!(changed(&|t| t.impacts[2].0 += 0.5 * TOLERANCE * cycle), Outcome::Right);
+        assert_eq!(changed(&|t| t.impacts[2].0 += 1.5 * TOLERANCE * cycle), Outcome::Wrong);
         assert_eq!(changed(&|t| t.impacts.truncate(2)), Outcome::Wrong);
         assert_eq!(changed(&|t| t.impacts.push((0.06, 0.1))), Outcome::Wrong);
         // An additional impact close to a true one, one impact for two, another speed, and NaN.
-        let phantom = (truth.impacts[2].0 + 0.1 * ALLOWED * cycle, truth.impacts[2].1);
+        let phantom = (truth.impacts[2].0 + 0.1 * TOLERANCE * cycle, truth.impacts[2].1);
         assert_eq!(changed(&|t| t.impacts.insert(3, phantom)), Outcome::Wrong);
         let doubled =
             Log { impacts: [&truth.impacts[..3], &[phantom], &truth.impacts[3..]].concat(), ..truth.clone() };
         assert_eq!(motion(&truth, &doubled, &task).outcome, Outcome::Wrong);
         let fastest = truth.impacts.iter().map(|i| i.1).fold(0.0, f64::max);
-        assert_eq!(changed(&|t| t.impacts[2].1 += 0.5 * ALLOWED * fastest), Outcome::Right);
-        assert_eq!(changed(&|t| t.impacts[2].1 += 1.5 * ALLOWED * fastest), Outcome::Wrong);
+        assert_eq!(changed(&|t| t.impacts[2].1 += 0.5 * TOLERANCE * fastest), Outcome::Right);
+        assert_eq!(changed(&|t| t.impacts[2].1 += 1.5 * TOLERANCE * fastest), Outcome::Wrong);
         assert_eq!(changed(&|t| t.impacts[2].1 = f64::NAN), Outcome::Wrong);
         assert_eq!(changed(&|t| t.impacts[2].0 = f64::NAN), Outcome::Wrong);
     }
@@ -228,7 +238,7 @@ mod tests {
     #[test]
     fn a_rest_that_is_not_told_is_invented_or_ends_at_another_time_is_wrong() {
         let task = task_b(1.0);
-        let off = ALLOWED * task.cycle();
+        let off = TOLERANCE * task.cycle();
         let rests = |sticks: &[[f64; 2]]| Log { sticks: sticks.to_vec(), ..Log::default() };
         let judged = |log: &[[f64; 2]], truth: &[[f64; 2]]| motion(&rests(log), &rests(truth), &task).outcome;
         assert_eq!(judged(&[], &[[0.5, 0.6]]), Outcome::Wrong);

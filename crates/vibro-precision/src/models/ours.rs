@@ -8,10 +8,12 @@ use vibro_model::{
 };
 use vibro_model::{Softened, orbits, softened};
 
+/// The excitation of a task.
 fn sine(task: &Task) -> Sine {
     Sine { force: task.force, frequency: task.frequency }
 }
 
+/// The state of a task at time 0.
 fn start(task: &Task) -> State {
     let [x1, v1, x2, v2] = task.start;
     State { x1, v1, x2, v2 }
@@ -60,7 +62,7 @@ pub fn closed_form(task: &Task) -> Result<Log, Found> {
     Ok(Log::of(found.orbits.iter().take(1).map(|o| (0.0, o.approach_velocity))))
 }
 
-/// The same, corrected for the contact of the task.
+/// As [`closed_form`], corrected for the contact of the task.
 pub fn soft_form(task: &Task) -> Result<Log, Found> {
     let (_, soft, _) = soft_forms(task)?;
     Ok(Log::of(soft.iter().take(1).flatten().map(|o| (0.0, o.approach_velocity))))
@@ -87,6 +89,7 @@ pub fn standing(task: &Task, n: f64) -> Result<Log, Found> {
 }
 
 impl Log {
+    /// Adds the event at the end of a piece of the motion.
     fn take(&mut self, piece: &Piece<'_>) {
         let end = piece.start + piece.duration;
         match piece.event {

@@ -37,22 +37,30 @@ pub struct Method {
     pub follow: Follow,
 }
 
+/// Follows a task with a setting.
 type Follow = fn(&Task, f64) -> Result<Log, Found>;
+/// Words before and after a value of a setting; `None` without one.
 type Setting = Option<[&'static str; 2]>;
 
+/// Steps per cycle of the excitation.
 const STEPS: Setting = Some(["", " steps a cycle"]);
+/// Relative tolerance of the integrator.
 const TOLERANCE: Setting = Some(["tolerance ", ""]);
+/// Contact stiffness in N/m.
 const STIFFNESS: Setting = Some(["k₃ ", " N/m"]);
 
 impl Method {
+    /// A method of this library.
     const fn own(name: &'static str, setting: Setting, follow: Follow) -> Method {
         Method { name, ours: true, other_program: false, setting, follow }
     }
 
+    /// A common method, coded in this project.
     const fn rival(name: &'static str, setting: Setting, follow: Follow) -> Method {
         Method { name, ours: false, other_program: false, setting, follow }
     }
 
+    /// A method that another library computes.
     #[cfg(feature = "diffsol")]
     const fn other(name: &'static str, follow: Follow) -> Method {
         Method { name, ours: false, other_program: true, setting: TOLERANCE, follow }
@@ -87,7 +95,7 @@ pub const DOP853_DENSE: Method = Method::rival("DOP853, dense events", TOLERANCE
 pub const DOP853_RESTS: Method =
     Method::rival("DOP853, rule for rest", TOLERANCE, |t, r| dense(&rests(t, true), Dop853(r)));
 pub const STIFF_SPRING: Method = Method::rival("stiff spring, RK45", STIFFNESS, |t, k| stiff(t, k, 1e-8));
-/// With a larger tolerance, for motions whose other errors are larger.
+/// The stiff spring with a larger tolerance, where the error of the stiffness is larger still.
 pub const ROUGH_SPRING: Method = Method { follow: |t, k| stiff(t, k, 1e-6), ..STIFF_SPRING };
 pub const RK45_THROUGH: Method =
     Method::rival("RK45 straight through", TOLERANCE, |t, r| through(t, Rk45(r)));
@@ -107,14 +115,17 @@ pub const TSIT45_TOUCH: Method = Method { follow: |t, r| followed(t, Some(t.spri
 pub const BDF_TOUCH: Method =
     Method::other("diffsol BDF, sign test", |t, r| followed(t, Some(t.spring()), Bdf(r)));
 
+/// Events located by signs at the ends of steps.
 fn ends(task: &Task, kind: IntegratorKind) -> Result<Log, Found> {
     events(task, None, kind, Locate::Ends)
 }
 
+/// Events located in the dense output.
 fn dense(task: &Task, kind: IntegratorKind) -> Result<Log, Found> {
     events(task, None, kind, Locate::Dense)
 }
 
+/// A contact of the task's stiffness, with touch and parting located in the dense output.
 fn touch(task: &Task, kind: IntegratorKind) -> Result<Log, Found> {
     events(task, Some(task.spring()), kind, Locate::Dense)
 }
@@ -124,6 +135,7 @@ fn stiff(task: &Task, k: f64, tolerance: f64) -> Result<Log, Found> {
     through(&Task { stiffness: k, ..*task }, Rk45(tolerance))
 }
 
+/// The task with or without the rule for rest.
 fn rests(task: &Task, rests: bool) -> Task {
     Task { rests, ..*task }
 }

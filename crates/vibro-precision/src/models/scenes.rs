@@ -10,8 +10,9 @@ use std::f64::consts::TAU;
 use vibro_model::{Compliance, Rig, Sine, Steady};
 use vibro_record::{Error, Result, median};
 
-/// The error of the motions found, or why there is none.
+/// The error of a method's answer, or why it failed.
 type Verdict = std::result::Result<f64, String>;
+/// Compares the logs of all tasks with the truth.
 type Judge = dyn Fn(&[Log]) -> Verdict;
 
 /// A method with the settings to run.
@@ -26,15 +27,15 @@ struct Setup {
     judge: Box<Judge>,
 }
 
-/// Repeats of an answer, in a full and a quick run.
-const REPEATS: [usize; 2] = [15, 3];
+/// Repetitions of an answer whose median time counts, in a full and a quick run.
+const REPETITIONS: [usize; 2] = [15, 3];
 
 impl Setup {
     /// Runs, times and judges every method; with `quick`, for the first half of its settings only.
     fn measured(self, quick: bool) -> BenchmarkScene {
-        let one = |method: &Method, setting: f64| {
+        let measure = |method: &Method, setting: f64| {
             let follow = || self.tasks.iter().map(|task| (method.follow)(task, setting)).collect();
-            let (log, time) = timed(REPEATS[usize::from(quick)], quick, follow);
+            let (log, time) = timed(REPETITIONS[usize::from(quick)], quick, follow);
             let fault = |f: Found| format!("{}: {}", f.outcome.name(), f.why);
             let log: std::result::Result<Vec<_>, Found> = log;
             let answer = log.map_err(fault).and_then(|log| (self.judge)(&log));
@@ -42,8 +43,9 @@ impl Setup {
             let measured = MeasuredMethod::new(name, setting, time / self.tasks.len() as f64, answer);
             MeasuredMethod { other_program: method.other_program, ..measured }
         };
-        let of = |settings: &[f64]| if quick { settings.len().div_ceil(2) } else { settings.len() };
-        let methods = self.methods.iter().flat_map(|(m, all)| all[..of(all)].iter().map(|s| one(m, *s)));
+        let count = |settings: &[f64]| if quick { settings.len().div_ceil(2) } else { settings.len() };
+        let methods =
+            self.methods.iter().flat_map(|(m, all)| all[..count(all)].iter().map(|s| measure(m, *s)));
         BenchmarkScene { methods: methods.collect(), ..self.scene }
     }
 }
@@ -69,13 +71,13 @@ pub fn scenes(quick: bool, progress: &mut dyn FnMut(&str)) -> Result<Vec<Benchma
     Ok(found)
 }
 
-/// Setting of a method that has none.
-const ONE: &[f64] = &[0.0];
+/// Settings of a method that has none: it is run once.
+const NO_SETTING: &[f64] = &[0.0];
 
-/// Methods with fixed steps a cycle, up to numbers that take about a second.
+/// Methods with fixed steps, by the steps per cycle; the largest numbers take about a second.
 const LOOPS: [Run; 3] =
     [(by::EULER, &[100.0, 1e3, 1e4]), (by::RK4_LOOP, &[100.0, 1e3, 1e4]), (by::MOREAU, &[100.0, 1e3, 1e4])];
-/// Methods that locate impacts.
+/// Methods that locate impacts, by their relative tolerances.
 const EVENTS: &[Run] = &[
     (by::RK45_ENDS, &[1e-3, 1e-6, 1e-9, 1e-12]),
     (by::RK45_DENSE, &[1e-3, 1e-6, 1e-9, 1e-12]),
@@ -84,7 +86,7 @@ const EVENTS: &[Run] = &[
     (by::TSIT45, &[1e-4, 1e-6, 1e-9, 1e-12]),
 ];
 
-/// Frequency in Hz at which ν = ω/Ω₁ has this value.
+/// Frequency in Hz at which the ratio ν = ω/Ω₁ to the natural frequency of mass 1 has this value.
 pub(super) fn at(rig: &Rig, nu: f64) -> f64 {
     nu * (rig.k1 / rig.m1).sqrt() / TAU
 }
@@ -101,21 +103,22 @@ pub(super) const GOLDEN_B: [(usize, f64); 5] = [
 
 /// Largest error in s of the true impact times: ten times that found in its own test up to 2 s, after which
 /// errors decay.
-const FOLLOWED: f64 = 1e-11;
+const TRUTH_ERROR: f64 = 1e-11;
 
-/// From rest, with every impact crossed at speed.
+/// The task of scene B: from rest, and no impact is slow or grazing.
 pub(super) fn task_b(until: f64) -> Task {
     let rig = Rig::thesis();
     Task::sine(rig, 0.5, at(&rig, 2.1), until)
 }
 
+/// Scene B: the times of all impacts of a motion from rest.
 fn scene_b(seconds: f64) -> Result<Setup> {
     let task = task_b(seconds);
     let golden = GOLDEN_B.iter().filter(|g| g.1 < seconds);
     let count = golden.clone().next_back().map_or(0, |g| g.0);
     // Time of each impact and its uncertainty, in s.
     let followed = truth::motion(&task, None)?.impacts;
-    let mut truth: Vec<[f64; 2]> = followed.iter().take(count).map(|i| [i.0, FOLLOWED]).collect();
+    let mut truth: Vec<[f64; 2]> = followed.iter().take(count).map(|i| [i.0, TRUTH_ERROR]).collect();
     for (number, time) in golden {
         truth[number - 1] = [*time, 0.0];
     }
@@ -138,11 +141,11 @@ fn scene_b(seconds: f64) -> Result<Setup> {
         "largest error of an impact time (s)".to_owned(),
         format!(
             "impacts 1, 2, 3, 22 and 1098: Newton's method on the equations of motion with 40 digits; all others: integration of \
-     order 8 to 1e-13, beyond {FOLLOWED:.0e} s; smaller errors than {least:.0e} s, the rounding of the time, are told as that"
+     order 8 to 1e-13, beyond {TRUTH_ERROR:.0e} s; smaller errors than {least:.0e} s, the rounding of the time, are told as that"
         ),
     ];
     let methods = [
-        &[(by::FLIGHTS, ONE)],
+        &[(by::FLIGHTS, NO_SETTING)],
         &LOOPS[..],
         &[(by::RK4_ENDS, &[30.0, 100.0, 300.0, 1e3])],
         EVENTS,
@@ -153,7 +156,7 @@ fn scene_b(seconds: f64) -> Result<Setup> {
     Ok(Setup { scene, tasks: vec![task], methods, judge: Box::new(judge) })
 }
 
-/// Starts for the reaching motion and for the missing one.
+/// Number of starts of the motion that reaches the other mass, and of the one that misses it.
 const STARTS: usize = 8;
 
 /// A motion that reaches `depth` in m into the other mass, or misses it by −`depth`, and the time of its
@@ -167,7 +170,7 @@ pub(super) fn grazing_task(depth: f64, start: usize) -> Result<(Task, Option<f64
     let steady = Steady::new(&rig, &Sine { force: 0.5, frequency })?;
     let (amplitude, omega) = (steady.amplitude(), steady.omega);
     let gap = amplitude - depth;
-    // Peaks at instants of the cycle that favour no step size.
+    // The starts place the peak at different phases of a fixed step, so that no step size is favoured.
     let peak = (0.3 + 0.043_217 * start as f64) / frequency;
     let turn = omega * peak;
     let task = Task {
@@ -181,6 +184,7 @@ pub(super) fn grazing_task(depth: f64, start: usize) -> Result<(Task, Option<f64
     Ok((task, time))
 }
 
+/// Scene of grazing: whether a barely reached impact is found, and when.
 fn grazing(depth: f64) -> Result<Setup> {
     let starts =
         [depth, -depth].into_iter().flat_map(|d| (0..STARTS).map(move |start| grazing_task(d, start)));
@@ -212,7 +216,8 @@ fn grazing(depth: f64) -> Result<Setup> {
         "median error of the impact's time (s)".to_owned(),
         "the forced motion A cos ω(t − tₚ) meets the gap A − d at tₚ − 2 asin(√(d/2A))/ω".to_owned(),
     ];
-    let methods = [&[(by::FLIGHTS, ONE)], &LOOPS[..], &[(by::RK4_ENDS, &[100.0, 1e3, 1e4])], EVENTS].concat();
+    let methods =
+        [&[(by::FLIGHTS, NO_SETTING)], &LOOPS[..], &[(by::RK4_ENDS, &[100.0, 1e3, 1e4])], EVENTS].concat();
     Ok(Setup { scene: BenchmarkScene::new(Family::Models, texts), tasks, methods, judge: Box::new(judge) })
 }
 
@@ -221,7 +226,8 @@ fn grazing(depth: f64) -> Result<Setup> {
 pub(super) const GOLDEN_C: [f64; 3] =
     [0.152_721_089_353_360_45, 0.220_247_418_265_660_51, 0.574_521_373_816_090_7];
 
-/// Impacts that accumulate to rest, and release: the pre-loaded rig from x₁ = −2 mm.
+/// The task of scene C: the pre-loaded rig from x₁ = −2 mm, whose impacts accumulate to rest before it is
+/// released.
 pub(super) fn task_c() -> Task {
     let rig = Rig { gap: -5e-4, ..Rig::thesis() };
     Task {
@@ -232,6 +238,7 @@ pub(super) fn task_c() -> Task {
     }
 }
 
+/// Scene C: chatter to rest, release, and chatter again.
 fn scene_c() -> Setup {
     let judge = |log: &[Log]| -> Verdict {
         let Log { impacts, sticks } = &log[0];
@@ -250,7 +257,7 @@ fn scene_c() -> Setup {
         "arithmetic with 40 digits",
     ];
     let first = [
-        (by::FLIGHTS, ONE),
+        (by::FLIGHTS, NO_SETTING),
         (by::EULER, &[1e3, 1e4, 1e5]),
         (by::RK4_LOOP, &[1e3, 1e4, 1e5]),
         (by::MOREAU, &[1e3, 1e4, 1e5]),
@@ -265,9 +272,10 @@ fn scene_c() -> Setup {
 /// orbit, 0.970, is then below 1e-16. With a contact of 7 % of the period it is −0.9945: the remainder
 /// changes sign from impact to impact, and the mean of sixteen keeps 2.6e-3 of it, 2e-10 of the start.
 const SOFT_CONTACTS: [(f64, f64); 3] = [(1e8, 1250.0), (1e6, 1250.0), (1e4, 3000.0)];
-/// Last impacts, whose mean approach speed is read.
-const READ: usize = 16;
+/// Number of last impacts whose mean approach speed is compared.
+const AVERAGED: usize = 16;
 
+/// Scene of a soft contact: the settled approach speed.
 fn soft(stiffness: f64, cycles: f64) -> Result<Setup> {
     let task = task_b(0.0);
     let task = Task { stiffness, until: cycles * task.cycle(), most: 100_000_000, ..task };
@@ -277,7 +285,7 @@ fn soft(stiffness: f64, cycles: f64) -> Result<Setup> {
         .speed();
     let judge = move |log: &[Log]| -> Verdict {
         let impacts = &log[0].impacts;
-        let last = &impacts[impacts.len().saturating_sub(READ)..];
+        let last = &impacts[impacts.len().saturating_sub(AVERAGED)..];
         if last.is_empty() {
             return Err("no impacts".to_owned());
         }
@@ -297,10 +305,10 @@ fn soft(stiffness: f64, cycles: f64) -> Result<Setup> {
         "the motion that repeats, by Newton's method on integration of order 8 to 1e-13".to_owned(),
     ];
     let methods = vec![
-        (by::CLOSED, ONE),
-        (by::SOFT, ONE),
-        (by::RIGID, ONE),
-        (by::KELVIN_VOIGT, ONE),
+        (by::CLOSED, NO_SETTING),
+        (by::SOFT, NO_SETTING),
+        (by::RIGID, NO_SETTING),
+        (by::KELVIN_VOIGT, NO_SETTING),
         (by::RK45_THROUGH, &[1e-3, 1e-6, 1e-9]),
         (by::RK4_THROUGH, &[1e3, 1e4]),
         (by::RK45_TOUCH, &[1e-3, 1e-6, 1e-9, 1e-12]),
@@ -319,16 +327,21 @@ fn soft(stiffness: f64, cycles: f64) -> Result<Setup> {
 const FROM: f64 = 10.2;
 const TO: f64 = 10.8;
 const RATE: f64 = 0.02;
-const BEGUN: f64 = 5.0;
+const TRANSIENT: f64 = 5.0;
 
+/// Scene of a slow sweep: the largest approach speed over a resonance.
 fn slow_sweep() -> Result<Setup> {
     let task = Task { rate: RATE, ..Task::sine(Rig::thesis(), 0.5, FROM, (TO - FROM) / RATE) };
-    let largest = |log: &Log| log.impacts.iter().filter(|i| i.0 > BEGUN).map(|i| i.1).fold(0.0, f64::max);
+    let largest = |log: &Log| log.impacts.iter().filter(|i| i.0 > TRANSIENT).map(|i| i.1).fold(0.0, f64::max);
     let truth = largest(&events(&task, None, IntegratorKind::Dop853(1e-13), Locate::Dense)?);
-    let apart = (largest(&ours::swept(&task, 1e-7)?) / truth - 1.0).abs();
+    let truth_error = (largest(&ours::swept(&task, 1e-7)?) / truth - 1.0).abs();
     let judge = move |log: &[Log]| -> Verdict {
         let speed = largest(&log[0]);
-        if speed > 0.0 { Ok((speed / truth - 1.0).abs().max(apart)) } else { Err("no impacts".to_owned()) }
+        if speed > 0.0 {
+            Ok((speed / truth - 1.0).abs().max(truth_error))
+        } else {
+            Err("no impacts".to_owned())
+        }
     };
     let texts = [
         "slow sweep".to_owned(),
@@ -337,7 +350,7 @@ fn slow_sweep() -> Result<Setup> {
         ),
         "relative error of the largest approach speed".to_owned(),
         format!(
-            "order 8 with located events, tolerance 1e-13; exact flights in fine steps differ from it by {apart:.0e}, so smaller errors are told as \
+            "order 8 with located events, tolerance 1e-13; exact flights in fine steps differ from it by {truth_error:.0e}, so smaller errors are told as \
      that"
         ),
     ];
@@ -361,7 +374,7 @@ mod tests {
             let task = task_b(until);
             let truth = truth::motion(&task, None).unwrap();
             for (number, time) in GOLDEN_B.into_iter().filter(|g| g.1 < until) {
-                assert!((truth.impacts[number - 1].0 - time).abs() < FOLLOWED, "{number}");
+                assert!((truth.impacts[number - 1].0 - time).abs() < TRUTH_ERROR, "{number}");
             }
             let setup = scene_b(until).unwrap();
             let log = ours::flights(&task).unwrap();
@@ -369,7 +382,7 @@ mod tests {
             // An impact that none of the golden numbers covers.
             let mut late = log;
             late.impacts[10].0 += 1e-6;
-            assert!(((setup.judge)(&[late]).unwrap() - 1e-6).abs() < 2.0 * FOLLOWED);
+            assert!(((setup.judge)(&[late]).unwrap() - 1e-6).abs() < 2.0 * TRUTH_ERROR);
         }
     }
 }

@@ -31,7 +31,7 @@ pub struct Task {
     pub rests: bool,
 }
 
-/// Impacts and rests of a motion as a method finds them.
+/// Impacts and rests of a motion, as a method reports them.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Log {
     /// Time in s and approach speed in m/s of each impact.
@@ -66,8 +66,8 @@ pub struct Spring {
     pub alone: f64,
 }
 
-/// A contact that lasts this many times as long as that of the undamped spring alone counts as rest.
-const RESTS: f64 = 10.0;
+/// Least duration of a contact that counts as rest, over that of the undamped spring alone.
+const LEAST_REST: f64 = 10.0;
 
 impl Spring {
     /// A spring whose damper gives the restitution of the rig. R = 0 needs an infinite damper: critical
@@ -79,14 +79,14 @@ impl Spring {
         Spring { stiffness, damping, alone: PI * (mass / stiffness).sqrt() }
     }
 
-    /// Force in N of spring and damper alone; it may pull.
+    /// Force in N of spring and damper in the state `y`, as if bound to both masses: it may pull.
     pub fn bound(&self, task: &Task, y: &[f64; 4]) -> f64 {
         -self.stiffness * task.gap(y) + self.damping * (y[1] - y[3])
     }
 
     /// The contact between these times in s as a rest, if it lasts long enough to be one.
     pub fn rest(&self, from: f64, to: f64) -> Option<[f64; 2]> {
-        (to - from > RESTS * self.alone).then_some([from, to])
+        (to - from > LEAST_REST * self.alone).then_some([from, to])
     }
 }
 
@@ -153,7 +153,7 @@ impl Task {
         approach
     }
 
-    /// The finding that the steps are used up at the time `t`.
+    /// The outcome of a method that has used up its steps at the time `t` (s).
     pub fn stalled(&self, t: f64) -> Found {
         let why = format!("{} steps are spent at {t:.6} s of {:.6} s", self.most, self.until);
         Found::new(Outcome::Stalled, why)

@@ -10,18 +10,18 @@ use std::f64::consts::{PI, TAU};
 /// Integrator and its relative tolerance.
 const KIND: IntegratorKind = IntegratorKind::Dop853(1e-13);
 /// Length in m by which displacements are scaled, so that all unknowns are of order 1.
-const LENGTH: f64 = 1e-3;
+const LENGTH_SCALE: f64 = 1e-3;
 /// Most rounds of Newton's method.
 const ROUNDS: usize = 30;
 /// Change of the unknowns for a central difference, in units of 1 mm, 1 mm·ω and 1 rad: half the digits.
-const SMALL: f64 = 1e-7;
+const DIFFERENCE: f64 = 1e-7;
 /// Largest closing error of a periodic motion in these units: errors of some ten steps, enlarged near
 /// grazing.
-const CLOSED: f64 = 1e-9;
+const CLOSING_ERROR: f64 = 1e-9;
 /// Time after an impact, over the period, within which another one counts as the same.
-const AT_ONCE: f64 = 1e-6;
+const SAME_IMPACT: f64 = 1e-6;
 /// Relative deviation of the last impacts from each other below which Newton's method takes over.
-const NEARLY: f64 = 1e-3;
+const NEARLY_SETTLED: f64 = 1e-3;
 
 /// The motion of a task with rigid impacts, or with a contact.
 pub fn motion(task: &Task, contact: Option<Spring>) -> Result<Log, Found> {
@@ -51,8 +51,8 @@ impl Repeats {
     }
 }
 
-/// The next impact of a motion: its time in s and the state before.
-fn meeting(course: &mut Trajectory<'_>) -> Result<Option<(f64, [f64; 4])>, Found> {
+/// The next impact of a motion: its time in s and the state before; `None` if there is none.
+fn next_impact(course: &mut Trajectory<'_>) -> Result<Option<(f64, [f64; 4])>, Found> {
     while let Some((which, t, y)) = course.next()? {
         let met = course.apart().then_some((t, y));
         course.meet(which, t, y);
@@ -67,48 +67,49 @@ fn meeting(course: &mut Trajectory<'_>) -> Result<Option<(f64, [f64; 4])>, Found
 /// reaches from `guess`.
 pub fn repeats(task: &Task, contact: Option<Spring>, period: f64, guess: &Repeats) -> Option<Repeats> {
     let omega = TAU * task.frequency;
-    let speed = LENGTH * omega;
-    let of = |u: &Vector4<f64>| Repeats {
-        before: [u[0] * LENGTH, u[1] * speed, u[0] * LENGTH - task.rig.gap, u[2] * speed],
+    let speed = LENGTH_SCALE * omega;
+    let orbit = |u: &Vector4<f64>| Repeats {
+        before: [u[0] * LENGTH_SCALE, u[1] * speed, u[0] * LENGTH_SCALE - task.rig.gap, u[2] * speed],
         phase: u[3],
     };
-    let missed = |u: &Vector4<f64>| -> Option<Vector4<f64>> {
-        let Repeats { before: y, phase } = of(u);
+    // Change of the unknowns from one impact to the next, which vanishes for a periodic motion.
+    let closing_error = |u: &Vector4<f64>| -> Option<Vector4<f64>> {
+        let Repeats { before: y, phase } = orbit(u);
         let task = Task { phase, start: y, until: 1.5 * period, rests: true, ..*task };
         let mut course = Trajectory::new(&task, contact, KIND, Locate::Summed);
         course.meet(0, 0.0, y);
-        let mut met = meeting(&mut course).ok()??;
+        let mut impact = next_impact(&mut course).ok()??;
         // At R = 0 rounding makes the masses meet again at once.
-        while met.0 < AT_ONCE * period {
-            met = meeting(&mut course).ok()??;
+        while impact.0 < SAME_IMPACT * period {
+            impact = next_impact(&mut course).ok()??;
         }
-        let (time, then) = met;
+        let (time, then) = impact;
         let [x1, v1, _, v2] = std::array::from_fn(|i| then[i] - y[i]);
-        Some(Vector4::new(x1 / LENGTH, v1 / speed, v2 / speed, omega * (time - period)))
+        Some(Vector4::new(x1 / LENGTH_SCALE, v1 / speed, v2 / speed, omega * (time - period)))
     };
     let y = guess.before;
-    let mut u = Vector4::new(y[0] / LENGTH, y[1] / speed, y[3] / speed, guess.phase);
-    let mut off = missed(&u)?;
+    let mut u = Vector4::new(y[0] / LENGTH_SCALE, y[1] / speed, y[3] / speed, guess.phase);
+    let mut error = closing_error(&u)?;
     for _ in 0..ROUNDS {
         let mut slope = Matrix4::zeros();
         for i in 0..4 {
             let (mut up, mut down) = (u, u);
-            up[i] += SMALL;
-            down[i] -= SMALL;
-            slope.set_column(i, &((missed(&up)? - missed(&down)?) / (2.0 * SMALL)));
+            up[i] += DIFFERENCE;
+            down[i] -= DIFFERENCE;
+            slope.set_column(i, &((closing_error(&up)? - closing_error(&down)?) / (2.0 * DIFFERENCE)));
         }
-        let step = slope.lu().solve(&off)?;
+        let step = slope.lu().solve(&error)?;
         // Halves the step while it increases the error, up to seven times; ends when only rounding is left.
-        let nearer = (0..8).find_map(|halvings| {
+        let improved = (0..8).find_map(|halvings| {
             let tried = u - step * 0.5_f64.powi(halvings);
-            let missed = missed(&tried)?;
-            (missed.norm() < off.norm()).then_some((tried, missed))
+            let closing_error = closing_error(&tried)?;
+            (closing_error.norm() < error.norm()).then_some((tried, closing_error))
         });
-        let Some(nearer) = nearer else { break };
-        (u, off) = nearer;
+        let Some(improved) = improved else { break };
+        (u, error) = improved;
     }
-    let Repeats { before, phase } = of(&u);
-    (off.amax() < CLOSED).then_some(Repeats { before, phase: phase.rem_euclid(TAU) })
+    let Repeats { before, phase } = orbit(&u);
+    (error.amax() < CLOSING_ERROR).then_some(Repeats { before, phase: phase.rem_euclid(TAU) })
 }
 
 /// The motion with one impact a cycle on which a task settles within this many `cycles`; `None` if it does
@@ -117,14 +118,14 @@ pub fn settled(task: &Task, contact: Option<Spring>, cycles: f64) -> Result<Opti
     let long = Task { until: cycles * task.cycle(), most: u64::MAX, rests: true, ..*task };
     let mut course = Trajectory::new(&long, contact, KIND, Locate::Summed);
     let mut impacts = Vec::new();
-    while let Some((time, before)) = meeting(&mut course)? {
+    while let Some((time, before)) = next_impact(&mut course)? {
         impacts.push((time, Repeats { before, phase: TAU * task.frequency * time + task.phase }));
     }
     let last = &impacts[impacts.len().saturating_sub(9)..];
     let regular = last.len() == 9
         && last.windows(2).all(|w| {
-            ((w[1].0 - w[0].0) * task.frequency - 1.0).abs() < NEARLY
-                && (w[1].1.speed() / w[0].1.speed() - 1.0).abs() < NEARLY
+            ((w[1].0 - w[0].0) * task.frequency - 1.0).abs() < NEARLY_SETTLED
+                && (w[1].1.speed() / w[0].1.speed() - 1.0).abs() < NEARLY_SETTLED
         });
     Ok(if regular { repeats(task, contact, task.cycle(), &last[8].1) } else { None })
 }

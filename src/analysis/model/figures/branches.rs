@@ -9,17 +9,19 @@ use crate::report::{AxisSpec, Figure, Ink, Marker, Plot, Stroke};
 /// How a motion is drawn.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum MotionLook {
-    Real,
+    /// Stable or neutral.
+    Stable,
     Unstable,
     Impossible,
 }
 
+/// How a motion with these verdicts is drawn; `None` if it does not exist.
 fn look(v: &Validity) -> Option<MotionLook> {
     match (v.exists, v.admissible, v.stable) {
         (false, ..) => None,
         (_, false, _) => Some(MotionLook::Impossible),
         (.., Some(false)) => Some(MotionLook::Unstable),
-        _ => Some(MotionLook::Real),
+        _ => Some(MotionLook::Stable),
     }
 }
 
@@ -57,50 +59,51 @@ pub fn branches(title: &str, response: &Response) -> Figure {
     ))
 }
 
+/// The panel of a mass, its index from 0.
 fn panel(response: &Response, mass: usize) -> Plot {
-    let seen = |o: &&Orbit| look(&o.validity).is_some_and(|l| l != MotionLook::Impossible);
-    let orbits = response.points.iter().flat_map(|p| p.orbits.iter().filter(seen));
+    let is_possible = |o: &&Orbit| look(&o.validity).is_some_and(|l| l != MotionLook::Impossible);
+    let orbits = response.points.iter().flat_map(|p| p.orbits.iter().filter(is_possible));
     let free = response.points.iter().filter_map(|p| p.no_impact.filter(|n| n.possible && mass == 0));
     let heights = orbits.map(|o| o.peak_to_peak[mass] / 2.0).chain(free.map(|n| n.amplitude));
-    let top = heights.fold(0.0, f64::max);
+    let largest = heights.fold(0.0, f64::max);
     let (label, title) = [("Amplitude of x₁", "excited mass"), ("Amplitude of x₂", "passive mass")][mass];
     let ends = [response.points.first(), response.points.last()];
     let ends = ends.map(|p| p.map_or(f64::NAN, |p| p.frequency));
     let y = AxisSpec::new(label, "mm");
     // From a thousandth to twice the largest amplitude.
-    let y = if top > 0.0 { y.log().limits(1.0 * top, 2.0e3 * top) } else { y };
+    let y = if largest > 0.0 { y.log().limits(1.0 * largest, 2.0e3 * largest) } else { y };
     let mut plot = Plot::new(AxisSpec::frequency().limits(ends[0], ends[1]), y).title(title);
     let mut lines: [Pieces; 3] = Default::default();
-    let (mut free, mut back) = (Pieces::default(), Pieces::default());
+    let (mut free, mut backbone) = (Pieces::default(), Pieces::default());
     let place = |o: &Orbit| (o.frequency, 1e3 * o.peak_to_peak[mass] / 2.0);
     for pair in response.points.windows(2) {
         let [a, b] = pair else { continue };
         for orbit in &a.orbits {
             let Some(next) = orbit.continued(&b.orbits) else { continue };
-            if let (Some(_), Some(seen)) = (look(&orbit.validity), look(&next.validity)) {
-                lines[seen as usize].join(place(orbit), place(next));
+            if let (Some(_), Some(look)) = (look(&orbit.validity), look(&next.validity)) {
+                lines[look as usize].join(place(orbit), place(next));
             }
         }
-        let still = |p: &ResponsePoint| p.no_impact.filter(|n| n.possible).map(|n| n.amplitude);
-        if let Some((n, m)) = still(a).zip(still(b)) {
+        let without_impacts = |p: &ResponsePoint| p.no_impact.filter(|n| n.possible).map(|n| n.amplitude);
+        if let Some((n, m)) = without_impacts(a).zip(without_impacts(b)) {
             let height = |amplitude: f64| if mass == 0 { 1e3 * amplitude } else { 0.0 };
             free.join((a.frequency, height(n)), (b.frequency, height(m)));
         }
         if let (Some(n), Some(m)) = (&a.backbone, &b.backbone) {
             // Near poles the backbone is too steep to be drawn.
             let (n, m) = (place(n), place(m));
-            if n.1.max(m.1) < 2.0e3 * top && n.1 < 3.0 * m.1 && m.1 < 3.0 * n.1 {
-                back.join(n, m);
+            if n.1.max(m.1) < 2.0e3 * largest && n.1 < 3.0 * m.1 && m.1 < 3.0 * n.1 {
+                backbone.join(n, m);
             }
         }
     }
-    let [real, unstable, impossible] = lines;
+    let [stable_lines, unstable, impossible] = lines;
     for (name, pieces, ink, stroke) in [
         ("impossible motion", impossible, Ink::Grey, Stroke::Thin),
-        ("backbone", back, Ink::Nth(2), Stroke::DashDot),
+        ("backbone", backbone, Ink::Nth(2), Stroke::DashDot),
         ("without impacts", free, Ink::Black, Stroke::Thin),
         ("unstable motion", unstable, Ink::Nth(0), Stroke::Dashed),
-        ("stable motion", real, Ink::Nth(0), Stroke::Solid),
+        ("stable motion", stable_lines, Ink::Nth(0), Stroke::Solid),
     ] {
         plot = line(plot, name, pieces.places(), ink, stroke);
     }
@@ -110,7 +113,7 @@ fn panel(response: &Response, mass: usize) -> Plot {
         (&[ChangeKind::NeimarkSacker], "Neimark–Sacker", Marker::Triangle),
         (&[ChangeKind::Grazing, ChangeKind::SecondContact], "grazing", Marker::OpenCircle),
     ] {
-        let shown = 1e-3 * top..2.0 * top;
+        let shown = 1e-3 * largest..2.0 * largest;
         let at =
             response.changes.iter().filter(|c| kinds.contains(&c.kind) && shown.contains(&c.amplitude[mass]));
         plot = points(plot, name, at.map(|c| (c.frequency, 1e3 * c.amplitude[mass])), Ink::Nth(3), marker);
@@ -137,14 +140,14 @@ pub fn continued(over: Parameter, branches: &[Branch], beside: &[Branch]) -> Fig
         ] {
             let mut lines: [Pieces; 3] = Default::default();
             for pair in all.iter().flat_map(|b| b.points.windows(2)) {
-                if let (Some(_), Some(seen)) = (look(&pair[0].validity), look(&pair[1].validity)) {
-                    lines[seen as usize].join(place(&pair[0]), place(&pair[1]));
+                if let (Some(_), Some(look)) = (look(&pair[0].validity), look(&pair[1].validity)) {
+                    lines[look as usize].join(place(&pair[0]), place(&pair[1]));
                 }
             }
-            let [real, dashed, impossible] = lines;
+            let [stable_lines, dashed, impossible] = lines;
             plot = line(plot, "", impossible.places(), Ink::Grey, Stroke::Thin);
             plot = line(plot, unstable, dashed.places(), ink, Stroke::Dashed);
-            plot = line(plot, stable, real.places(), ink, Stroke::Solid);
+            plot = line(plot, stable, stable_lines.places(), ink, Stroke::Solid);
         }
         for (kind, marker) in [
             (Loss::Fold, Marker::FilledSquare),

@@ -1,4 +1,4 @@
-//! The ladder of models: which rung is chosen where.
+//! The ladder of models: the verdict on each rung over frequency.
 
 use crate::error::Result;
 use crate::model::Observable;
@@ -7,25 +7,31 @@ use crate::report::layout::lettered;
 use crate::report::{AxisSpec, Figure, Heatmap, Ink, Legend, Plot, Series};
 use ndarray::Array2;
 
-/// Result of a rung at one frequency.
+/// Verdict on a rung at one frequency.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum RungFate {
+enum RungVerdict {
     NotValid,
-    Moves,
-    Enough,
+    /// A richer model changes the answer by more than the tolerance.
+    ChangesTooMuch,
+    Adequate,
+    /// The simplest adequate one.
     Chosen,
 }
 
-impl RungFate {
-    const ALL: [RungFate; 4] = [RungFate::Chosen, RungFate::Enough, RungFate::Moves, RungFate::NotValid];
+impl RungVerdict {
+    /// All verdicts in the order of the legend.
+    const ALL: [RungVerdict; 4] =
+        [RungVerdict::Chosen, RungVerdict::Adequate, RungVerdict::ChangesTooMuch, RungVerdict::NotValid];
+    /// Their names.
     const NAMES: [&'static str; 4] = ["chosen", "adequate", "answer changes too much", "not valid"];
 
-    fn of(choice: &Choice, rung: &Rung) -> RungFate {
+    /// The verdict on a rung of a choice.
+    fn of(choice: &Choice, rung: &Rung) -> RungVerdict {
         match rung {
-            _ if choice.chosen == Some(rung.model) => RungFate::Chosen,
-            r if !r.valid => RungFate::NotValid,
-            r if r.sufficient => RungFate::Enough,
-            _ => RungFate::Moves,
+            _ if choice.chosen == Some(rung.model) => RungVerdict::Chosen,
+            r if !r.valid => RungVerdict::NotValid,
+            r if r.sufficient => RungVerdict::Adequate,
+            _ => RungVerdict::ChangesTooMuch,
         }
     }
 }
@@ -38,20 +44,20 @@ pub fn ladder(survey: &Survey, question: &Question) -> Result<Figure> {
     let all = &survey.points;
     let x: Vec<f64> = all.iter().map(|c| c.frequency).collect();
     // Rungs above the highest one that is valid anywhere are left out.
-    let tried = |model: &Model| all.iter().any(|c| c.rung(*model).valid);
-    let rows = 1 + Model::ALL.iter().rposition(tried).unwrap_or(0);
+    let is_valid_somewhere = |model: &Model| all.iter().any(|c| c.rung(*model).valid);
+    let rows = 1 + Model::ALL.iter().rposition(is_valid_somewhere).unwrap_or(0);
     let y: Vec<f64> = (1..=rows).map(|n| n as f64).collect();
-    let fates = Array2::from_shape_fn((rows, x.len()), |(row, column)| {
+    let verdicts = Array2::from_shape_fn((rows, x.len()), |(row, column)| {
         let choice = &all[column];
-        let fate = RungFate::of(choice, &choice.rungs[row]);
-        RungFate::ALL.iter().position(|f| *f == fate).map_or(f64::NAN, |k| k as f64)
+        let verdict = RungVerdict::of(choice, &choice.rungs[row]);
+        RungVerdict::ALL.iter().position(|f| *f == verdict).map_or(f64::NAN, |k| k as f64)
     });
     let frequency = || AxisSpec::frequency().limits(x[0], x[x.len() - 1]);
     let names: Vec<String> = (1..=rows).zip(Model::ALL).map(|(i, m)| format!("{i} {}", m.name())).collect();
     let names = names.join(", ");
     let map = Plot::new(frequency(), AxisSpec::new("Model", ""))
         .title(format!("models: {names}"))
-        .heatmap(Heatmap::classes(&x, &y, &fates, &RungFate::NAMES)?)
+        .heatmap(Heatmap::classes(&x, &y, &verdicts, &RungVerdict::NAMES)?)
         .legend(Legend::Above);
     let observable = question.observable;
     let panels: &[(&str, &str)] = match observable {
@@ -75,9 +81,9 @@ pub fn ladder(survey: &Survey, question: &Question) -> Result<Figure> {
         let y = AxisSpec::new(*label, observable.unit());
         let mut plot = Plot::new(frequency(), y).title(*title).legend(Legend::Right);
         for (i, model) in Model::ALL.into_iter().enumerate() {
-            let of = all.iter().filter(|c| c.chosen == Some(model));
+            let chosen_here = all.iter().filter(|c| c.chosen == Some(model));
             let (x, y): (Vec<f64>, Vec<f64>) =
-                of.filter_map(|c| Some((c.frequency, c.answer()?[mass]))).unzip();
+                chosen_here.filter_map(|c| Some((c.frequency, c.answer()?[mass]))).unzip();
             if !x.is_empty() {
                 plot = plot.with(Series::points(model.name(), x, y).ink(Ink::Nth(i)));
             }

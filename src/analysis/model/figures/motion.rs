@@ -40,21 +40,21 @@ pub fn reaction(title: &str, portrait: &Portrait) -> Figure {
     let mut figure = Figure::double(title).height(if portrait.force.is_empty() { 70.0 } else { 120.0 });
     if let [first, .., last] = portrait.force[..] {
         // From contact to contact the force is zero.
-        let mut whole = vec![(from.min(first.0), 0.0)];
+        let mut course = vec![(from.min(first.0), 0.0)];
         for pair in portrait.force.windows(2) {
-            whole.push(pair[0]);
+            course.push(pair[0]);
             let step = portrait.time.get(1).map_or(0.0, |t| t - from);
             if pair[1].0 - pair[0].0 > step {
-                whole.extend([(pair[0].0, 0.0), (pair[1].0, 0.0)]);
+                course.extend([(pair[0].0, 0.0), (pair[1].0, 0.0)]);
             }
         }
-        whole.push(last);
+        course.push(last);
         let plot = Plot::new(time(), AxisSpec::new("Force", "N")).legend(Legend::Hidden);
-        figure = figure.shared_x().panel(line(plot, "", whole, Ink::Nth(0), Stroke::Solid));
+        figure = figure.shared_x().panel(line(plot, "", course, Ink::Nth(0), Stroke::Solid));
     }
-    let struck = portrait.impacts.iter().filter(|i| i.time >= from).map(|i| (i.time, i.impulse));
+    let impacts = portrait.impacts.iter().filter(|i| i.time >= from).map(|i| (i.time, i.impulse));
     let plot = Plot::new(time(), AxisSpec::new("Impulse", "N s")).legend(Legend::Hidden);
-    let plot = points(plot, "", struck, Ink::Nth(0), Marker::Circle);
+    let plot = points(plot, "", impacts, Ink::Nth(0), Marker::Circle);
     lettered(
         figure
             .panel(plot)
@@ -63,7 +63,7 @@ pub fn reaction(title: &str, portrait: &Portrait) -> Figure {
 }
 
 /// Samples with the states before and after each impact between them.
-fn whole(portrait: &Portrait) -> Vec<State> {
+fn with_impacts(portrait: &Portrait) -> Vec<State> {
     let mut jumps = portrait.jumps.iter().peekable();
     let mut all = Vec::with_capacity(portrait.states.len() + 2 * portrait.jumps.len());
     for (time, state) in portrait.time.iter().zip(&portrait.states) {
@@ -77,7 +77,7 @@ fn whole(portrait: &Portrait) -> Vec<State> {
 
 /// An axis over these values with 10 % of room at both ends, no finer than 1 % of the largest value:
 /// rounding errors of a repeating motion then appear as one point.
-fn roomy(axis: AxisSpec, values: &[f64]) -> AxisSpec {
+fn with_room(axis: AxisSpec, values: &[f64]) -> AxisSpec {
     let (low, high) =
         values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), v| (a.min(*v), b.max(*v)));
     let width = (high - low).max(0.01 * high.abs().max(low.abs()));
@@ -91,12 +91,15 @@ fn roomy(axis: AxisSpec, values: &[f64]) -> AxisSpec {
 /// Axes of velocity over displacement with room around these places.
 fn plane(places: &[(f64, f64)]) -> Plot {
     let (x, v): (Vec<f64>, Vec<f64>) = places.iter().copied().unzip();
-    Plot::new(roomy(AxisSpec::new("Displacement", "mm"), &x), roomy(AxisSpec::new("Velocity", "m/s"), &v))
+    Plot::new(
+        with_room(AxisSpec::new("Displacement", "mm"), &x),
+        with_room(AxisSpec::new("Velocity", "m/s"), &v),
+    )
 }
 
 /// Velocity over displacement of each mass.
 pub fn phase_plane(title: &str, portrait: &Portrait) -> Figure {
-    let states = whole(portrait);
+    let states = with_impacts(portrait);
     let mut figure = Figure::double(title).columns(2);
     for (name, mass) in MASSES {
         let places: Vec<(f64, f64)> = states.iter().map(|s| place(s, mass)).collect();
@@ -108,16 +111,16 @@ pub fn phase_plane(title: &str, portrait: &Portrait) -> Figure {
 
 /// States once a cycle, and approach speed over phase at the impacts.
 pub fn poincare(title: &str, portrait: &Portrait) -> Figure {
-    let of = |mass| portrait.section.iter().map(move |s| place(s, mass));
-    let mut section = plane(&of(0).chain(of(1)).collect::<Vec<_>>()).legend(Legend::Above);
+    let places = |mass| portrait.section.iter().map(move |s| place(s, mass));
+    let mut section = plane(&places(0).chain(places(1)).collect::<Vec<_>>()).legend(Legend::Above);
     for (name, mass) in MASSES {
         let marker = [Marker::Circle, Marker::Square][mass];
-        section = points(section, name, of(mass), Ink::Nth(mass), marker);
+        section = points(section, name, places(mass), Ink::Nth(mass), marker);
     }
     let struck = portrait.impacts.iter().map(|i| (i.phase.to_degrees(), i.approach_velocity));
     let speeds: Vec<f64> = portrait.impacts.iter().map(|i| i.approach_velocity).collect();
     let phase = AxisSpec::new("Phase of the excitation at the impact", "°").limits(0.0, 360.0);
-    let impacts = Plot::new(phase, roomy(AxisSpec::new("Approach speed", "m/s"), &speeds));
+    let impacts = Plot::new(phase, with_room(AxisSpec::new("Approach speed", "m/s"), &speeds));
     let impacts = points(impacts, "", struck, Ink::Nth(0), Marker::Circle).legend(Legend::Hidden);
     lettered(
         Figure::double(title)
@@ -129,29 +132,29 @@ pub fn poincare(title: &str, portrait: &Portrait) -> Figure {
 }
 
 /// Number of samples of a period.
-const POINTS: usize = 800;
+const PERIOD_SAMPLES: usize = 800;
 
 /// Both masses over two periods, x₂ counted from the rest of x₁'s contact face, so that the curves meet at
 /// the impacts; velocities over displacements beside it.
 pub fn orbit(title: &str, rig: &Rig, orbit: &Orbit) -> Figure {
-    let at = |i: usize| orbit.period() * i as f64 / POINTS as f64;
+    let at = |i: usize| orbit.period() * i as f64 / PERIOD_SAMPLES as f64;
     let states: Vec<(f64, State)> =
-        (0..=2 * POINTS).map(|i| (i as f64 / POINTS as f64, orbit.state(at(i)))).collect();
+        (0..=2 * PERIOD_SAMPLES).map(|i| (i as f64 / PERIOD_SAMPLES as f64, orbit.state(at(i)))).collect();
     let ends: Vec<f64> = states.iter().flat_map(|(_, s)| [1e3 * s.x1, 1e3 * s.x2]).collect();
     let axis = AxisSpec::new("Time in periods from impact to impact", "").limits(0.0, 2.0);
     let plot = Plot::new(axis, AxisSpec::new("Displacement", "mm")).title("displacements");
     let second = states.iter().map(|(t, s)| (*t, 1e3 * (s.x2 + rig.gap)));
     let plot = line(plot, "gap + x₂", second, Ink::Nth(1), Stroke::Solid);
     let plot = line(plot, "x₁", states.iter().map(|(t, s)| (*t, 1e3 * s.x1)), Ink::Nth(0), Stroke::Solid);
-    let met = 1e3 * orbit.before_impact().x1;
-    let impacts = [0.0, 1.0, 2.0].map(|t| (t, met));
+    let meeting_place = 1e3 * orbit.before_impact().x1;
+    let impacts = [0.0, 1.0, 2.0].map(|t| (t, meeting_place));
     let traces = points(plot, "impact", impacts, Ink::Black, Marker::OpenCircle);
-    let x = roomy(AxisSpec::new("Displacement from rest", "mm"), &ends);
+    let x = with_room(AxisSpec::new("Displacement from rest", "mm"), &ends);
     let mut plane = Plot::new(x, AxisSpec::new("Velocity", "m/s")).title("phase plane");
     for (i, name) in ["x₁", "x₂"].into_iter().enumerate() {
         let of = |s: State| if i == 0 { (1e3 * s.x1, s.v1) } else { (1e3 * s.x2, s.v2) };
         let (before, after) = (orbit.before_impact(), orbit.state(0.0));
-        let period = (0..POINTS).map(|k| orbit.state(at(k))).chain([before]);
+        let period = (0..PERIOD_SAMPLES).map(|k| orbit.state(at(k))).chain([before]);
         plane = line(plane, "", [of(before), of(after)], Ink::Nth(i), Stroke::Dotted);
         plane = line(plane, name, period.map(of), Ink::Nth(i), Stroke::Solid);
     }
@@ -175,8 +178,8 @@ pub fn orbit(title: &str, rig: &Rig, orbit: &Orbit) -> Figure {
 
 /// Both masses over a period with several impacts, x₂ counted from the rest of x₁'s contact face.
 pub fn pattern(title: &str, orbit: &PeriodicOrbit) -> Figure {
-    let at = |i: usize| orbit.period() * i as f64 / POINTS as f64;
-    let states: Vec<(f64, State)> = (0..=POINTS).map(|i| (at(i), orbit.state(at(i)))).collect();
+    let at = |i: usize| orbit.period() * i as f64 / PERIOD_SAMPLES as f64;
+    let states: Vec<(f64, State)> = (0..=PERIOD_SAMPLES).map(|i| (at(i), orbit.state(at(i)))).collect();
     let plot =
         Plot::new(AxisSpec::new("Time after the first impact", "s"), AxisSpec::new("Displacement", "mm"));
     let second = states.iter().map(|(t, s)| (*t, 1e3 * (s.x2 + orbit.rig.gap)));
@@ -184,8 +187,8 @@ pub fn pattern(title: &str, orbit: &PeriodicOrbit) -> Figure {
     let plot = line(plot, "x₁", states.iter().map(|(t, s)| (*t, 1e3 * s.x1)), Ink::Nth(0), Stroke::Solid);
     let first = orbit.beats.first().map_or(0.0, |b| b.phase);
     let impacts = orbit.beats.iter().map(|b| (b.phase - first) / orbit.sine.omega());
-    let met: Vec<_> = impacts.map(|t| (t, 1e3 * orbit.state(t).x1)).collect();
-    let plot = points(plot, "impact", met, Ink::Black, Marker::OpenCircle);
+    let impact_places: Vec<_> = impacts.map(|t| (t, 1e3 * orbit.state(t).x1)).collect();
+    let plot = points(plot, "impact", impact_places, Ink::Black, Marker::OpenCircle);
     let v = &orbit.validity;
     let verdict = match (v.admissible, v.instability) {
         (false, _) => "impossible: the masses would pass through each other".to_owned(),

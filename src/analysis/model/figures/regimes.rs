@@ -8,7 +8,7 @@ use crate::report::{AxisSpec, Figure, Heatmap, Legend, Plot};
 use ndarray::Array2;
 
 /// Number of patterns with a colour of their own, the most frequent ones.
-const OWN: usize = 3;
+const COLOURED_PATTERNS: usize = 3;
 
 /// Regimes by colour, and the spectral radius, beside each other.
 ///
@@ -16,21 +16,21 @@ const OWN: usize = 3;
 /// As [`Heatmap::new`].
 pub fn regimes(plan: &Plan, rows: &[Vec<Cell>]) -> Result<Figure> {
     let (x, y) = (plan.x.values(), plan.y.values());
-    let cells = |of: &dyn Fn(&Cell) -> f64| {
+    let matrix = |value: &dyn Fn(&Cell) -> f64| {
         Array2::from_shape_fn((y.len(), x.len()), |(row, column)| {
-            rows.get(row).map_or(f64::NAN, |cells| of(&cells[column]))
+            rows.get(row).map_or(f64::NAN, |cells| value(&cells[column]))
         })
     };
     let patterns = counted(rows.iter().flatten())
         .into_iter()
         .map(|c| c.0)
         .filter(|r| matches!(r, Regime::Periodic { .. }));
-    let own: Vec<Regime> = patterns.take(OWN).collect();
-    let names: Vec<String> = own.iter().map(Regime::to_string).collect();
+    let coloured: Vec<Regime> = patterns.take(COLOURED_PATTERNS).collect();
+    let names: Vec<String> = coloured.iter().map(Regime::to_string).collect();
     let others = ["other patterns", "irregular or not settled", "chatter", "no impact"];
     let names: Vec<&str> = names.iter().map(String::as_str).chain(others).collect();
-    let regime = cells(&|c| c.regime.map_or(f64::NAN, |r| class(&own, r) as f64));
-    let radius = cells(&|c| c.spectral_radius.unwrap_or(f64::NAN));
+    let regime = matrix(&|c| c.regime.map_or(f64::NAN, |r| class(&coloured, r) as f64));
+    let radius = matrix(&|c| c.spectral_radius.unwrap_or(f64::NAN));
     let axis = |axis: &MapAxis| {
         let (name, unit) = (axis.key.name(), axis.key.unit());
         // A name of two characters, such as k1, is a symbol and stays as it is.
@@ -67,11 +67,11 @@ pub(in crate::analysis::model) fn counted<'a>(cells: impl Iterator<Item = &'a Ce
 }
 
 /// Index of the colour of a regime, where the patterns `own` have colours of their own.
-fn class(own: &[Regime], regime: Regime) -> usize {
-    own.iter().position(|r| *r == regime).unwrap_or(match regime {
-        Regime::Periodic { .. } => own.len(),
-        Regime::Irregular => own.len() + 1,
-        Regime::Chatter { .. } => own.len() + 2,
-        Regime::NoImpact => own.len() + 3,
+fn class(coloured: &[Regime], regime: Regime) -> usize {
+    coloured.iter().position(|r| *r == regime).unwrap_or(match regime {
+        Regime::Periodic { .. } => coloured.len(),
+        Regime::Irregular => coloured.len() + 1,
+        Regime::Chatter { .. } => coloured.len() + 2,
+        Regime::NoImpact => coloured.len() + 3,
     })
 }

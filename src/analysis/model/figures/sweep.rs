@@ -32,17 +32,18 @@ pub fn sweep(
             ("sweeping down", Direction::Down, &swept.down, Ink::Nth(1), Stroke::Dashed),
         ] {
             plot = line(plot, name, points.iter().map(place), ink, stroke);
-            let own = jumps.iter().filter(|j| usize::from(j.mass) == mass + 1 && j.direction == direction);
-            let ends = own.map(|j| &j.found);
+            let of_curve =
+                jumps.iter().filter(|j| usize::from(j.mass) == mass + 1 && j.direction == direction);
+            let ends = of_curve.map(|j| &j.found);
             let ends = ends.flat_map(|j| [(j.from, j.amplitude_before), (j.to, j.amplitude_after)]);
             plot = self::points(plot, "", ends, ink, Marker::Cross);
         }
-        let named = |r: &&Named<Resonance>| {
+        let is_labelled = |r: &&Named<Resonance>| {
             let kind = r.found.kind;
             usize::from(r.mass) == mass + 1
                 && matches!(kind, ResonanceKind::Grazing | ResonanceKind::Clapping)
         };
-        for Named { direction, found, .. } in resonances.iter().filter(named) {
+        for Named { direction, found, .. } in resonances.iter().filter(is_labelled) {
             let text = format!("{} {:.2} Hz, {}", found.kind.name(), found.frequency, direction.name());
             plot = plot.note(text, found.frequency, found.amplitude);
         }
@@ -57,13 +58,14 @@ pub fn sweep(
 /// cycle.
 pub fn forces(swept: &Swept, over_force: bool) -> Figure {
     let (over, unit) = if over_force { ("Force", "N") } else { ("Excitation frequency", "Hz") };
-    let lasting = swept.up.iter().chain(&swept.down).any(|p| p.reaction.peak.is_some());
+    // Contacts that last have a force; instantaneous impacts have an impulse only.
+    let has_force = swept.up.iter().chain(&swept.down).any(|p| p.reaction.peak.is_some());
     let mut figure =
-        Figure::double("Force between the masses").height(if lasting { 170.0 } else { 70.0 }).shared_x();
+        Figure::double("Force between the masses").height(if has_force { 170.0 } else { 70.0 }).shared_x();
     for (i, (label, size)) in [("Peak force", "N"), ("RMS force", "N"), ("Impulse a cycle", "N s")]
         .into_iter()
         .enumerate()
-        .skip(if lasting { 0 } else { 2 })
+        .skip(if has_force { 0 } else { 2 })
     {
         let value = |r: &Reaction| [r.peak, r.rms, r.impulse][i];
         let mut plot = Plot::new(AxisSpec::new(over, unit), AxisSpec::new(label, size));

@@ -18,8 +18,8 @@ pub fn fit(title: &str, fit: &Fit) -> Figure {
         (2, Direction::Up, Marker::FilledSquare),
         (2, Direction::Down, Marker::Square),
     ] {
-        let mine = fit.points.iter().filter(|p| p.mass == mass && p.direction == direction);
-        let places = mine.map(|p| (p.frequency, p.residual));
+        let of_sweep = fit.points.iter().filter(|p| p.mass == mass && p.direction == direction);
+        let places = of_sweep.map(|p| (p.frequency, p.residual));
         let name = format!("mass {mass}, {}", direction.name());
         above = points(above, &name, places, Ink::Nth(usize::from(mass) - 1), marker);
     }
@@ -32,14 +32,14 @@ pub fn fit(title: &str, fit: &Fit) -> Figure {
         left.clear()
     );
     if let Some(profile) = &fit.profile {
-        let sure = fit.doubt.is_none();
-        figure = figure.panel(profiled(profile, sure)).height(150.0);
+        let certain = fit.doubt.is_none();
+        figure = figure.panel(profile_plot(profile, certain)).height(150.0);
         let name = profile.parameter.name();
         let _ = write!(
             caption,
             " Below: the least sum of squares over {name}, the least certain parameter, all others free; "
         );
-        let _ = if sure {
+        let _ = if certain {
             write!(caption, "the 95 % confidence interval lies below the grey line ({}).", profile.limit)
         } else {
             write!(caption, "the answer is in doubt, so it gives no interval.")
@@ -48,16 +48,18 @@ pub fn fit(title: &str, fit: &Fit) -> Figure {
     lettered(figure).caption(caption)
 }
 
-fn profiled(profile: &Profile, sure: bool) -> Plot {
-    let top = profile.rise.iter().copied().filter(|r| r.is_finite()).fold(profile.limit, f64::max);
+/// The least sum of squares over one parameter, all others free; with the limit of its 95 % interval where
+/// the fit is not in doubt.
+fn profile_plot(profile: &Profile, certain: bool) -> Plot {
+    let largest = profile.rise.iter().copied().filter(|r| r.is_finite()).fold(profile.limit, f64::max);
     let unit = if profile.unit == "1" { "" } else { profile.unit };
     let plot = Plot::new(
         AxisSpec::new(profile.parameter.name(), unit),
-        AxisSpec::new("Rise of the sum of squares", "").limits(0.0, 1.05 * top.min(6.0 * profile.limit)),
+        AxisSpec::new("Rise of the sum of squares", "").limits(0.0, 1.05 * largest.min(6.0 * profile.limit)),
     )
     .title(format!("Profile of {}", profile.parameter.name()))
     .legend(Legend::Hidden);
-    let plot = if sure { plot.with(Series::horizontal("95 %", profile.limit)) } else { plot };
+    let plot = if certain { plot.with(Series::horizontal("95 %", profile.limit)) } else { plot };
     let places = profile.value.iter().copied().zip(profile.rise.iter().copied());
     line(plot, "", places, Ink::Nth(0), Stroke::Solid)
 }

@@ -9,7 +9,7 @@ use crate::report::{AxisSpec, Figure, Ink, Marker, Plot, Stroke};
 use crate::units::notation::significant;
 
 /// Height of a panel in mm.
-const PANEL: f64 = 85.0;
+const PANEL_HEIGHT: f64 = 85.0;
 
 /// One panel for each mass and level of force. Observable branches are solid, unstable ones dashed, neutral
 /// ones dash-dotted, the motion without impacts thin; measured points are on top. Branches on which the
@@ -40,9 +40,10 @@ pub fn overlay(title: &str, overlay: &Overlay, responses: &[Response]) -> Figure
         }
     }
     let panels = figure.panels.len().max(1) as f64;
-    lettered(figure.height(PANEL * panels))
+    lettered(figure.height(PANEL_HEIGHT * panels))
 }
 
+/// The panel of a mass at one level of force.
 fn panel(mass: u8, curve: &Prediction, pairs: &[Pair], measured: &[(usize, &Response)]) -> Plot {
     let (factor, unit) = shown("m");
     let y = AxisSpec::new(format!("Displacement of mass {mass}"), unit).log();
@@ -50,10 +51,10 @@ fn panel(mass: u8, curve: &Prediction, pairs: &[Pair], measured: &[(usize, &Resp
     let limits = log_limits(measured.iter().map(|m| m.1)).map(|(low, high)| (factor * low, factor * high));
     let y = limits.map_or(y.clone(), |(low, high)| y.limits(low, high));
     let mut plot = Plot::new(AxisSpec::new("Excitation frequency", "Hz"), y);
-    let swept = |p: &&Pair| p.mass == mass && measured.iter().any(|(_, r)| r.name == p.sweep);
-    let lasting = [Model::KelvinVoigt, Model::HuntCrossley];
-    let lasts = pairs.iter().filter(swept).any(|p| lasting.contains(&p.model));
-    let (seen, other) = if lasts {
+    let of_panel = |p: &&Pair| p.mass == mass && measured.iter().any(|(_, r)| r.name == p.sweep);
+    let soft_models = [Model::KelvinVoigt, Model::HuntCrossley];
+    let is_soft = pairs.iter().filter(of_panel).any(|p| soft_models.contains(&p.model));
+    let (closed_form, other) = if is_soft {
         ("one impact a cycle, rigid contact", "predicted with the contact stiffness")
     } else {
         ("one impact a cycle", "another motion, simulated")
@@ -64,7 +65,7 @@ fn panel(mass: u8, curve: &Prediction, pairs: &[Pair], measured: &[(usize, &Resp
         if is_within(&y, limits) { line(plot, name, places, ink, stroke) } else { plot }
     };
     for (verdict, name, stroke) in [
-        (Verdict::Seen, seen, Stroke::Solid),
+        (Verdict::Seen, closed_form, Stroke::Solid),
         (Verdict::Unstable, "unstable motion", Stroke::Dashed),
         (Verdict::Neutral, "neutral motion", Stroke::DashDot),
     ] {
@@ -81,7 +82,7 @@ fn panel(mass: u8, curve: &Prediction, pairs: &[Pair], measured: &[(usize, &Resp
         let [points, faint] = series(response, *rank, &[], limits);
         plot = plot.with(faint).with(points);
     }
-    let others = pairs.iter().filter(swept).filter(|p| p.model != Model::ClosedForm);
+    let others = pairs.iter().filter(of_panel).filter(|p| p.model != Model::ClosedForm);
     let places = others.filter_map(|p| Some((p.frequency, factor * p.predicted?)));
     points(plot, other, places, Ink::Black, Marker::Cross)
 }
@@ -103,11 +104,12 @@ fn free(motions: &[Motion]) -> f64 {
 /// Unobservable parts extend one point into observable ones, so that no gap opens between them.
 fn branch(curve: &Prediction, mass: u8, rank: usize, verdict: Verdict) -> Vec<f64> {
     let motion = |i: usize| curve.motions[i].iter().filter(|m| m.kind == MotionKind::Impacting).nth(rank);
-    let is = |i: usize| i < curve.motions.len() && motion(i).is_some_and(|m| m.verdict == verdict);
-    let beside = |i: usize| verdict != Verdict::Seen && (is(i + 1) || i > 0 && is(i - 1));
+    let has_verdict = |i: usize| i < curve.motions.len() && motion(i).is_some_and(|m| m.verdict == verdict);
+    let is_at_border =
+        |i: usize| verdict != Verdict::Seen && (has_verdict(i + 1) || i > 0 && has_verdict(i - 1));
     (0..curve.frequency.len())
         .map(|i| {
-            let shown = motion(i).filter(|m| is(i) || m.is_seen() && beside(i));
+            let shown = motion(i).filter(|m| has_verdict(i) || m.is_seen() && is_at_border(i));
             shown.map_or(f64::NAN, |m| m.amplitude[usize::from(mass) - 1])
         })
         .collect()

@@ -22,6 +22,7 @@ pub fn response(title: &str, responses: &[Response]) -> Figure {
     lettered(figure.caption(format!("Amplitude at the excitation frequency. {MARKS}")))
 }
 
+/// Amplitude of all sweeps over excitation frequency, on a linear or logarithmic axis.
 fn plot(responses: &[Response], log: bool) -> Plot {
     let first = responses.first();
     let quantity = first.map_or("Amplitude", |r| r.quantity);
@@ -57,16 +58,16 @@ pub(super) const MARKS: &str = "Bars: one standard uncertainty, where larger tha
 /// Limits of a logarithmic axis that shows all points above the noise floor with their uncertainties, the
 /// lower ends down to a quarter of the amplitude. Without such points, limits that show the upper limits.
 pub(super) fn log_limits<'a>(responses: impl Iterator<Item = &'a Response>) -> Option<(f64, f64)> {
-    let (mut clear, mut faint) = (Vec::new(), Vec::new());
+    let (mut above_noise, mut upper_limits) = (Vec::new(), Vec::new());
     for point in responses.flat_map(|r| &r.points) {
         if let Some(limit) = point.upper_limit {
-            faint.push(limit);
+            upper_limits.push(limit);
         } else {
             let (a, std) = (point.amplitude.value, point.amplitude.std.unwrap_or(0.0));
-            clear.extend([(a - std).max(a / 4.0), a + std]);
+            above_noise.extend([(a - std).max(a / 4.0), a + std]);
         }
     }
-    let all = if clear.is_empty() { faint } else { clear };
+    let all = if above_noise.is_empty() { upper_limits } else { above_noise };
     let all = all.into_iter().filter(|a| *a > 0.0);
     let (low, high) = all.fold((f64::INFINITY, 0.0f64), |(l, h), a| (l.min(a), h.max(a)));
     (low <= high).then_some((low / 2.0, high * 2.0))
@@ -74,9 +75,9 @@ pub(super) fn log_limits<'a>(responses: impl Iterator<Item = &'a Response>) -> O
 
 /// Number of earlier sweeps of the same mass and direction: usually the index of the level of force.
 pub(super) fn rank(responses: &[Response], i: usize) -> usize {
-    let of = |r: &Response| (r.mass, r.direction);
+    let kind = |r: &Response| (r.mass, r.direction);
     let earlier = responses.iter().take(i);
-    responses.get(i).map_or(0, |own| earlier.filter(|r| of(r) == of(own)).count())
+    responses.get(i).map_or(0, |sweep| earlier.filter(|r| kind(r) == kind(sweep)).count())
 }
 
 /// Measured points and upper limits of one curve. Its colour is by mass and `rank`, its marker by mass
@@ -89,14 +90,14 @@ pub(super) fn series(
     axis: Option<(f64, f64)>,
 ) -> [Series; 2] {
     let (mut x, mut y, mut std) = (Vec::new(), Vec::new(), Vec::new());
-    let (mut at, mut limits) = (Vec::new(), Vec::new());
+    let (mut limit_frequencies, mut limits) = (Vec::new(), Vec::new());
     let (factor, _) = shown(response.unit);
     // Centre of a triangle that stands on the lower edge, 2 % up the axis.
     let edge = axis.map_or(0.0, |(low, high)| low * (high / low).powf(0.02));
     for (i, point) in response.points.iter().enumerate() {
         let limit = point.upper_limit;
         if let Some(limit) = limit {
-            at.push(point.excitation);
+            limit_frequencies.push(point.excitation);
             limits.push((factor * limit).max(edge));
         }
         x.push(point.excitation);
@@ -112,7 +113,7 @@ pub(super) fn series(
     }
     let (marker, ink) = look(response, rank);
     let measured = Series { marker, ..Series::points(response.name.clone(), x, y).y_error(std) };
-    let limits = Series::points("", at, limits).marker(Marker::Limit);
+    let limits = Series::points("", limit_frequencies, limits).marker(Marker::Limit);
     [measured, limits].map(|series| series.ink(ink))
 }
 
@@ -144,8 +145,8 @@ fn names(responses: &[Response]) -> Vec<(String, f64, f64)> {
     let mut found: Vec<(String, Vec<&str>, f64, f64)> = Vec::new();
     for response in responses {
         let Some(direction) = response.direction.map(Direction::name) else { continue };
-        let named = |r: &&Resonance| matches!(r.kind, ResonanceKind::Grazing | ResonanceKind::Clapping);
-        for r in response.resonances.iter().filter(named) {
+        let is_labelled = |r: &&Resonance| matches!(r.kind, ResonanceKind::Grazing | ResonanceKind::Clapping);
+        for r in response.resonances.iter().filter(is_labelled) {
             let text = format!("{} {:.2} Hz", r.kind.name(), r.frequency);
             let Some(known) = found.iter_mut().find(|f| f.0 == text) else {
                 found.push((text, vec![direction], r.frequency, r.amplitude));

@@ -18,7 +18,7 @@ const RANGE: f64 = 90.0;
 /// If the matrix and its axes do not fit, or `fmax` is not above the cut-off.
 pub fn waterfall(matrix: &Matrix, fmax: Option<f64>) -> Result<Figure> {
     let height = AxisSpec::new(format!("{} amplitude", capital(matrix.quantity.name())), matrix.unit.clone());
-    let ShownRange { low, high, left_out } = shown(matrix, fmax, SEEN)?;
+    let ShownRange { low, high, left_out } = shown(matrix, fmax, SHOWN_PART)?;
     let scene = Waterfall::new(&matrix.frequency, &matrix.excitation, &matrix.magnitude, height)?
         .frequencies(low, high)
         .of(&matrix.name);
@@ -34,7 +34,7 @@ pub fn map(matrix: &Matrix, fmax: Option<f64>) -> Result<Figure> {
     order.sort_by(|a, b| matrix.excitation[*a].total_cmp(&matrix.excitation[*b]));
     // A map has one row a position: of repeated excitations the first stays.
     order.dedup_by(|a, b| matrix.excitation[*a] <= matrix.excitation[*b]);
-    let ShownRange { low, high, left_out } = shown(matrix, fmax, SEEN_IN_COLOUR)?;
+    let ShownRange { low, high, left_out } = shown(matrix, fmax, SHOWN_PART_IN_COLOUR)?;
     let columns: Vec<usize> =
         (0..matrix.frequency.len()).filter(|k| (low..=high).contains(&matrix.frequency[*k])).collect();
     let x: Vec<f64> = columns.iter().map(|k| matrix.frequency[*k]).collect();
@@ -65,7 +65,7 @@ struct ShownRange {
 /// Range up to `fmax`, else to the last line at which a spectrum reaches `part` of the largest.
 fn shown(matrix: &Matrix, fmax: Option<f64>, part: f64) -> Result<ShownRange> {
     let last = matrix.frequency.last().copied().unwrap_or(1.0);
-    let high = fmax.unwrap_or_else(|| highest(matrix, part)).min(last);
+    let high = fmax.unwrap_or_else(|| highest_visible(matrix, part)).min(last);
     if high <= matrix.fmin {
         return Err(Error::usage(
             format!("a picture from {:.3} Hz (the cut-off) to {high:.3} Hz", matrix.fmin),
@@ -86,21 +86,21 @@ fn shown(matrix: &Matrix, fmax: Option<f64>, part: f64) -> Result<ShownRange> {
 }
 
 /// Part of the largest line that lines at the upper end must reach to be shown, unless `fmax` is stated.
-const SEEN: f64 = 0.01;
+const SHOWN_PART: f64 = 0.01;
 /// The same for a map, whose colours in dB show weaker lines.
-const SEEN_IN_COLOUR: f64 = 1e-3;
+const SHOWN_PART_IN_COLOUR: f64 = 1e-3;
 /// Factor on the highest excitation up to which lines are always shown: includes its second harmonic.
 const HARMONICS: f64 = 2.5;
 
 /// Upper end of the visible lines, in Hz.
-fn highest(matrix: &Matrix, part: f64) -> f64 {
+fn highest_visible(matrix: &Matrix, part: f64) -> f64 {
     let finite = |v: &&f64| v.is_finite();
     // The line at 0 Hz is the mean, not a motion.
     let lines = || (0..matrix.frequency.len()).filter(|k| matrix.frequency[*k] > 0.0);
-    let top = |k: usize| matrix.magnitude.column(k).iter().filter(finite).copied().fold(0.0, f64::max);
-    let largest = lines().map(top).fold(0.0, f64::max);
-    let seen = |k: &usize| top(*k) >= part * largest;
-    let last = lines().rev().find(seen).map_or(f64::INFINITY, |k| matrix.frequency[k]);
+    let largest_at = |k: usize| matrix.magnitude.column(k).iter().filter(finite).copied().fold(0.0, f64::max);
+    let largest = lines().map(largest_at).fold(0.0, f64::max);
+    let is_visible = |k: &usize| largest_at(*k) >= part * largest;
+    let last = lines().rev().find(is_visible).map_or(f64::INFINITY, |k| matrix.frequency[k]);
     let excitation = matrix.excitation.iter().filter(finite).copied().fold(0.0, f64::max);
     (1.1 * last).max(HARMONICS * excitation)
 }

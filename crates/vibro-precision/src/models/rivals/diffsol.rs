@@ -22,9 +22,8 @@ pub enum Diffsol {
     Bdf(f64),
 }
 
-/// Part of the whole time that is too short to be followed: the crate treats a stop time this close as
-/// reached.
-const SHORT: f64 = 1e-12;
+/// Share of the whole time that is left out at the end: the crate treats a stop time this close as reached.
+const NEGLIGIBLE: f64 = 1e-12;
 
 impl From<DiffsolError> for Found {
     fn from(error: DiffsolError) -> Found {
@@ -37,7 +36,7 @@ pub fn followed(task: &Task, spring: Option<Spring>, how: Diffsol) -> Result<Log
     let (Diffsol::Tsit45(relative) | Diffsol::Bdf(relative)) = how;
     let course = Trajectory::new(task, spring, IntegratorKind::Rk45(relative), Locate::Ends);
     let (system, stage, first) = (course.system, Cell::new(course.stage), course.y);
-    let now = |t: f64, y: &[f64]| system.rate(stage.get(), t, &four(y));
+    let now = |t: f64, y: &[f64]| system.rate(stage.get(), t, &state_of(y));
     let mut problem = OdeBuilder::<NalgebraMat<f64>>::new()
         .h0(first_step(task, 0.0, &first))
         .rtol(relative)
@@ -51,7 +50,7 @@ pub fn followed(task: &Task, spring: Option<Spring>, how: Diffsol) -> Result<Log
             },
         )
         .init(|_, _, y| y.copy_from_slice(&first), first.len())
-        .root(|y, _, t, values| values.copy_from_slice(&falls(&system, stage.get(), t, &four(y))), 2)
+        .root(|y, _, t, values| values.copy_from_slice(&falls(&system, stage.get(), t, &state_of(y))), 2)
         .build()?;
     // The crate counts failures of Newton's method over the whole run and allows 50 by default. A failed step
     // is shortened in any case, and a step that is too short is still an error.
@@ -76,7 +75,7 @@ fn run<'a, E: OdeEquations<T = f64, V = NalgebraVec<f64>> + 'a>(
     let (system, task) = (now.system, now.system.task);
     let mut left = task.most;
     solver.set_stop_time(task.until)?;
-    while task.until - now.t > SHORT * task.until {
+    while task.until - now.t > NEGLIGIBLE * task.until {
         if left == 0 {
             return Err(task.stalled(now.t));
         }
@@ -84,7 +83,7 @@ fn run<'a, E: OdeEquations<T = f64, V = NalgebraVec<f64>> + 'a>(
         let before = falls(&system, now.stage, now.t, &now.y);
         match solver.step()? {
             OdeSolverStopReason::RootFound(time, which) if before[which] > 0.0 => {
-                now.meet(which, time, four(solver.interpolate(time)?.inner().as_slice()));
+                now.meet(which, time, state_of(solver.interpolate(time)?.inner().as_slice()));
                 if now.stage == Stage::Apart {
                     // A tiny gap, as in the crate's bouncing ball: a fall is not detected where the root
                     // function starts at or below zero.
@@ -104,7 +103,7 @@ fn run<'a, E: OdeEquations<T = f64, V = NalgebraVec<f64>> + 'a>(
             }
             _ => {}
         }
-        (now.t, now.y) = (solver.state().t, four(solver.state().y.inner().as_slice()));
+        (now.t, now.y) = (solver.state().t, state_of(solver.state().y.inner().as_slice()));
         if now.stage == Stage::Together {
             // The force varies with the excitation: its sign is tested at least eight times a cycle.
             let state = solver.state_mut();
@@ -114,7 +113,8 @@ fn run<'a, E: OdeEquations<T = f64, V = NalgebraVec<f64>> + 'a>(
     Ok(now.log)
 }
 
-fn four(y: &[f64]) -> [f64; 4] {
+/// A state of the crate as an array.
+fn state_of(y: &[f64]) -> [f64; 4] {
     std::array::from_fn(|i| y[i])
 }
 

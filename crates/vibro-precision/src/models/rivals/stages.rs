@@ -8,6 +8,7 @@ use crate::Found;
 /// Stage of a motion between two events.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Stage {
+    /// Not in contact.
     Apart,
     /// At rest against each other.
     Together,
@@ -27,6 +28,7 @@ pub(super) enum Guard {
 }
 
 impl Guard {
+    /// Value of the function at the time `t` in the state `y`.
     pub fn value(&self, task: &Task, t: f64, y: &[f64; 4]) -> f64 {
         match self {
             Guard::Linear(w, offset) => w.iter().zip(y).map(|(w, y)| w * y).sum::<f64>() + offset,
@@ -88,7 +90,7 @@ pub struct Trajectory<'a> {
     kind: IntegratorKind,
     locate: Locate,
     /// Approach speed in m/s below which masses that press each other stay together.
-    sticks: f64,
+    rest_speed: f64,
     /// Steps that may still be taken.
     left: u64,
     pub log: Log,
@@ -110,7 +112,7 @@ impl<'a> Trajectory<'a> {
             system: System { task, spring },
             kind,
             locate,
-            sticks: if task.rests { (0.02 * kind.relative()).sqrt() } else { f64::NEG_INFINITY },
+            rest_speed: if task.rests { (0.02 * kind.relative()).sqrt() } else { f64::NEG_INFINITY },
             left: task.most,
             log: Log::default(),
             t: 0.0,
@@ -150,7 +152,7 @@ impl<'a> Trajectory<'a> {
     }
 
     /// Logs the contact since the last impact, which ends at `until` in s, as a rest if it was long enough.
-    fn rested(&mut self, until: f64) {
+    fn log_rest(&mut self, until: f64) {
         let last = self.log.impacts.last();
         self.log.sticks.extend(self.system.spring.zip(last).and_then(|(c, from)| c.rest(from.0, until)));
     }
@@ -160,7 +162,8 @@ impl<'a> Trajectory<'a> {
         self.stage == Stage::Apart
     }
 
-    /// Continues with the next stage where guard `which` has fallen, at the time `t` and the state `y`.
+    /// Goes on to the next stage, after guard `which` has fallen at the time `t` in the state `y`; logs the
+    /// impact or rest.
     pub fn meet(&mut self, which: usize, t: f64, mut y: [f64; 4]) {
         let System { task, spring } = self.system;
         self.t = t;
@@ -173,7 +176,7 @@ impl<'a> Trajectory<'a> {
                 let approach = task.collide(&mut y);
                 self.log.impacts.push((t, approach));
                 let (rig, hold) = (&task.rig, task.hold(t, &y));
-                if approach < self.sticks && hold > 0.0 {
+                if approach < self.rest_speed && hold > 0.0 {
                     let v = (rig.m1 * y[1] + rig.m2 * y[3]) / (rig.m1 + rig.m2);
                     let apart = y[3] - y[1];
                     y = [y[0], v, y[0] - rig.gap, v];
@@ -200,7 +203,7 @@ impl<'a> Trajectory<'a> {
             }
             (Stage::Touching, _) => Stage::Released,
             (Stage::Released, 0) => {
-                self.rested(t);
+                self.log_rest(t);
                 Stage::Apart
             }
             (Stage::Released, _) => Stage::Touching,
@@ -221,7 +224,7 @@ pub fn events(
         course.meet(which, t, y);
     }
     if !course.apart() {
-        course.rested(f64::INFINITY);
+        course.log_rest(f64::INFINITY);
     }
     Ok(course.log)
 }

@@ -6,7 +6,8 @@ use crate::Found;
 use vibro_math::bisected;
 use vibro_math::runge_kutta::{Dop853, DormandPrince, Integrator, Step, Tolerance};
 
-/// Floor of x₁, v₁, x₂, v₂ in m and m/s for the relative tolerance: a smaller value may err as this one.
+/// Floor of x₁, v₁, x₂, v₂ in m and m/s for the relative tolerance: smaller values have the absolute error
+/// of this one.
 pub(super) const FLOOR: [f64; 4] = [1e-3, 0.05, 1e-3, 0.05];
 
 /// First step in s from `y` at `t`: a hundredth of a cycle. Where the masses part at w against a pressing
@@ -57,6 +58,7 @@ pub struct SolverStep {
     pub duration: f64,
     /// State at its end.
     pub end: [f64; 4],
+    /// State at its start, for steps without dense output.
     from: [f64; 4],
     dense: Option<Step<4>>,
 }
@@ -139,8 +141,8 @@ pub(super) fn rk4(f: &impl Fn(f64, &[f64; 4]) -> [f64; 4], t: f64, y: &[f64; 4],
 /// (s) and approach speed (m/s) of an impact within it.
 pub type Stride = fn(&Task, f64, &[f64; 4], f64) -> ([f64; 4], Option<(f64, f64)>);
 
-/// Simulates the motion with `n` steps per cycle. Masses count as resting against each other where impacts at
-/// most four steps apart continue for twenty steps or more.
+/// Follows the motion by a plain loop of `n` steps per cycle. Masses count as resting against each other
+/// where impacts at most four steps apart continue for twenty steps or more.
 pub fn marched(task: &Task, stride: Stride, n: f64) -> Result<Log, Found> {
     let h = task.cycle() / n;
     let steps = (task.until / h).ceil();
@@ -170,16 +172,16 @@ pub fn marched(task: &Task, stride: Stride, n: f64) -> Result<Log, Found> {
 pub fn euler(task: &Task, t: f64, y: &[f64; 4], h: f64) -> ([f64; 4], Option<(f64, f64)>) {
     let rate = task.pushed(t, y, 0.0);
     let [v1, v2] = [y[1] + h * rate[1], y[3] + h * rate[3]];
-    turned(task, t + h, [y[0] + h * v1, v1, y[2] + h * v2, v2])
+    with_impact(task, t + h, [y[0] + h * v1, v1, y[2] + h * v2, v2])
 }
 
 /// Classical Runge–Kutta of order 4.
 pub fn classical(task: &Task, t: f64, y: &[f64; 4], h: f64) -> ([f64; 4], Option<(f64, f64)>) {
-    turned(task, t + h, rk4(&|t: f64, y: &[f64; 4]| task.pushed(t, y, 0.0), t, y, h))
+    with_impact(task, t + h, rk4(&|t: f64, y: &[f64; 4]| task.pushed(t, y, 0.0), t, y, h))
 }
 
 /// Applies the impact law at the end of a step if the masses overlap and approach.
-fn turned(task: &Task, t: f64, mut y: [f64; 4]) -> ([f64; 4], Option<(f64, f64)>) {
+fn with_impact(task: &Task, t: f64, mut y: [f64; 4]) -> ([f64; 4], Option<(f64, f64)>) {
     let impact = (task.gap(&y) < 0.0 && y[1] > y[3]).then(|| (t, task.collide(&mut y)));
     (y, impact)
 }
