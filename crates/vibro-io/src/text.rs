@@ -7,6 +7,7 @@
 //! ([`rows`]), so that an error names line and column. Columns become records in [`records`].
 
 mod axis;
+mod cautions;
 mod clock;
 mod column;
 pub(crate) mod decoded;

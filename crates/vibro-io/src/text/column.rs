@@ -121,44 +121,6 @@ impl Column {
         })
     }
 
-    /// Number of rows for which each value is held, where nearly all are held as long: the sensor is slower
-    /// than the rows. Coarse digits are excluded: there, most steps are as small as the smallest.
-    pub fn held(&self) -> Option<usize> {
-        let values = self.values.opening();
-        let runs: Vec<&[f64]> = values.chunk_by(|a, b| a == b).collect();
-        let inner = runs.get(1..runs.len().saturating_sub(1)).filter(|inner| inner.len() >= FEWEST_RUNS)?;
-        let mut lengths: Vec<usize> = inner.iter().map(|run| run.len()).collect();
-        lengths.sort_unstable();
-        let n = lengths[lengths.len() / 2];
-        let alike = lengths.iter().filter(|length| length.abs_diff(n) <= usize::from(n > 2)).count();
-        let steps: Vec<f64> = inner.windows(2).map(|w| (w[1][0] - w[0][0]).abs()).collect();
-        let smallest = steps.iter().copied().fold(f64::INFINITY, f64::min);
-        let large = steps.iter().filter(|step| **step > 2.0 * smallest).count();
-        (n > 1 && 20 * alike >= 19 * lengths.len() && 2 * large > steps.len()).then_some(n)
-    }
-
-    /// The value by which missing values are marked, such as −9999, and how often it stands: one far beyond
-    /// all others.
-    pub fn missing_mark(&self) -> Option<(f64, usize)> {
-        let values = self.reals();
-        let is_mark = |v: &&f64| MISSING_MARKS.contains(&v.abs());
-        let mark = *values.iter().find(is_mark)?;
-        let others = values.iter().filter(|v| **v != mark && v.is_finite());
-        let largest = others.fold(f64::NEG_INFINITY, |largest: f64, v| largest.max(v.abs()));
-        let n = values.iter().filter(|v| **v == mark).count();
-        (2 * n < values.len() && FAR * largest <= mark.abs()).then_some((mark, n))
-    }
-
-    /// How many zeros at the end fill the column up: many in a row behind values that are hardly ever 0.
-    pub fn filled_with_zeros(&self) -> Option<usize> {
-        let values = self.reals();
-        let n = values.iter().rev().take_while(|v| **v == 0.0).count();
-        let before = &values[..values.len() - n];
-        let zeros = before.iter().filter(|v| **v == 0.0).count();
-        let fills = n >= FEWEST_ZEROS && FILLING * values.len() as f64 <= n as f64;
-        (fills && before.len() >= FEWEST_ZEROS && zeros as f64 <= RARE * before.len() as f64).then_some(n)
-    }
-
     /// Makes the magnitude of a response function complex, where the column behind it is its phase; says
     /// whether it is.
     pub fn take_phase(&mut self, behind: &Column) -> bool {
@@ -190,34 +152,3 @@ impl Column {
 /// name.
 const TURNS: usize = 64;
 const NUMBERED: [&str; 9] = ["channel", "chan", "ch", "sensor", "node", "device", "probe", "id", "kanal"];
-
-/// Magnitudes of the values by which programs mark missing ones.
-const MISSING_MARKS: [f64; 5] = [999.0, 9999.0, 99_999.0, 999_999.0, 9_999_999.0];
-
-/// Least ratio of such a mark to all other values: a measured value of all nines is near others.
-const FAR: f64 = 10.0;
-
-/// Fewest zeros, and least part of all values, that fill a record up: a record may end at a few by chance.
-const FEWEST_ZEROS: usize = 32;
-const FILLING: f64 = 0.02;
-
-/// Largest part of zeros before the filling: a signal with coarse digits rests at 0 more often.
-const RARE: f64 = 0.01;
-
-/// Fewest values, each of which stands several times, that show that this is how they are stored.
-const FEWEST_RUNS: usize = 20;
-
-/// Smallest part of the rows that repeat the row before, for a sensor that is read faster than it measures.
-const REPEATS: f64 = 0.05;
-
-/// Number of rows that repeat the row before in all columns, and number of all rows looked at. `None` unless
-/// they are single rows between rows that differ: a motion at rest or coarse digits repeat many in a row.
-pub fn repeats(table: &[Column]) -> Option<(usize, usize)> {
-    let measured = table.iter().filter(|column| !column.rises());
-    let columns: Vec<&[f64]> = measured.map(|column| column.values.opening()).collect();
-    let n = columns.iter().map(|values| values.len()).min().filter(|n| columns.len() > 1 && *n > 100)?;
-    let again = |i: usize| columns.iter().all(|values| values[i] == values[i - 1]);
-    let all = (1..n).filter(|i| again(*i)).count();
-    let alone = (2..n - 1).filter(|i| again(*i) && !again(i - 1) && !again(i + 1)).count();
-    (all as f64 > REPEATS * n as f64 && 10 * alone > 9 * all && 2 * all < n).then_some((all, n))
-}

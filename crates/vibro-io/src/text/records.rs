@@ -1,7 +1,8 @@
 //! Makes records from columns: finds the abscissa, applies units, joins complex parts.
 
 use super::axis::{PrintedAbscissa, choose};
-use super::column::{Column, repeats};
+use super::cautions;
+use super::column::Column;
 use super::decoded::Text;
 use super::dialect::Dialect;
 use super::header::Stated;
@@ -104,7 +105,7 @@ pub fn build(
     }
     let mut built = Vec::new();
     let table = made.joined(table, &axis, &mut of_axis)?;
-    of_axis.extend(made.said_of(&table, &axis));
+    of_axis.extend(cautions::of(&table, &axis, &made.stated, is_table));
     for (i, column) in table.into_iter().enumerate() {
         let sparse = column.sparse;
         let mut column = match sparse {
@@ -387,50 +388,6 @@ impl RecordContext<'_> {
     /// Whether the header states that the abscissa is a frequency and gives no step of one series.
     fn over_hertz(&self) -> bool {
         self.stated.lines_apart && !self.stated.of_one_series
-    }
-
-    /// What is to be said of the columns of values together.
-    fn said_of(&self, table: &[Column], axis: &Axis) -> Vec<Finding> {
-        let mut found = Vec::new();
-        let signal = table.iter().any(Column::may_be_signal);
-        let scales = self.stated.scales.iter().filter(|scale| signal || !scale.of_signal);
-        let scales: Vec<&str> = scales.map(|scale| scale.said.as_str()).collect();
-        if !scales.is_empty() {
-            found.push(Finding::caution(code::SCALE_IN_HEAD).name("scale", scales.join(", ")));
-        }
-        let even: Vec<String> =
-            table.iter().filter(|column| column.rises_evenly()).map(Column::label).collect();
-        if !even.is_empty() {
-            found.push(Finding::caution("columns-rise-evenly").name("columns", even.join(", ")));
-        }
-        let without = table.iter().filter(|column| column.name.unit.is_none()).count();
-        if let Some(unit) = self.stated.unit.as_deref().filter(|_| self.is_table && without > 1) {
-            found.push(Finding::caution("unit-for-all").name("unit", unit).count("n", without));
-        }
-        if let Some((n, all)) = repeats(table) {
-            found.push(Finding::caution("rows-repeat").count("n", n).count("all", all));
-        }
-        let marked = table.iter().filter_map(|column| Some((column.label(), column.missing_mark()?)));
-        found.extend(marked.map(|(label, (mark, n))| {
-            let marked = Finding::caution("missing-marked").name("column", label);
-            marked.number("mark", mark).count("n", n)
-        }));
-        let filled = table.iter().filter_map(|column| Some((column.label(), column.filled_with_zeros()?)));
-        found.extend(filled.map(|(label, n)| {
-            let filled = Finding::caution("filled-with-zeros").name("column", label).count("n", n);
-            match &axis.kind {
-                AxisKind::Time => filled.number("end", axis.at(axis.len().saturating_sub(n))),
-                _ => filled,
-            }
-        }));
-        let held = table.iter().filter_map(|column| Some((column.held()?, column.label())));
-        let held: Vec<(usize, String)> = held.collect();
-        for of_length in held.chunk_by(|a, b| a.0 == b.0) {
-            let labels: Vec<&str> = of_length.iter().map(|(_, label)| label.as_str()).collect();
-            let held = Finding::caution("values-held").count("n", of_length[0].0);
-            found.push(held.name("columns", labels.join(", ")));
-        }
-        found
     }
 
     /// Domain of `n` values, time or frequency, from the options or the header; `None` where neither tells.

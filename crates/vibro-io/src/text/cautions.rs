@@ -1,0 +1,121 @@
+//! Cautions on the values of a text: scales that are not applied, repeated and held values, marks of missing
+//! values, zeros that fill a record up.
+
+use super::column::Column;
+use super::header::Stated;
+use vibro_record::code;
+use vibro_record::{Axis, AxisKind, Finding};
+
+/// Magnitudes of the values by which programs mark missing ones.
+const MISSING_MARKS: [f64; 5] = [999.0, 9999.0, 99_999.0, 999_999.0, 9_999_999.0];
+
+/// Least ratio of such a mark to all other values: a measured value of all nines is near others.
+const FAR: f64 = 10.0;
+
+/// Fewest zeros, and least part of all values, that fill a record up: a record may end at a few by chance.
+const FEWEST_ZEROS: usize = 32;
+const FILLING: f64 = 0.02;
+
+/// Largest part of zeros before the filling: a signal with coarse digits rests at 0 more often.
+const RARE: f64 = 0.01;
+
+/// Fewest values, each of which stands several times, that show that this is how they are stored.
+const FEWEST_RUNS: usize = 20;
+
+/// Smallest part of the rows that repeat the row before, for a sensor that is read faster than it measures.
+const REPEATS: f64 = 0.05;
+
+/// Cautions on the columns of values of a text with this head, over `axis`.
+pub fn of(table: &[Column], axis: &Axis, stated: &Stated, is_table: bool) -> Vec<Finding> {
+    let mut found = Vec::new();
+    let signal = table.iter().any(Column::may_be_signal);
+    let scales = stated.scales.iter().filter(|scale| signal || !scale.of_signal);
+    let scales: Vec<&str> = scales.map(|scale| scale.said.as_str()).collect();
+    if !scales.is_empty() {
+        found.push(Finding::caution(code::SCALE_IN_HEAD).name("scale", scales.join(", ")));
+    }
+    let even: Vec<String> = table.iter().filter(|column| column.rises_evenly()).map(Column::label).collect();
+    if !even.is_empty() {
+        found.push(Finding::caution("columns-rise-evenly").name("columns", even.join(", ")));
+    }
+    let without = table.iter().filter(|column| column.name.unit.is_none()).count();
+    if let Some(unit) = stated.unit.as_deref().filter(|_| is_table && without > 1) {
+        found.push(Finding::caution("unit-for-all").name("unit", unit).count("n", without));
+    }
+    if let Some((n, all)) = repeats(table) {
+        found.push(Finding::caution("rows-repeat").count("n", n).count("all", all));
+    }
+    let marked = table.iter().filter_map(|column| Some((column.label(), column.missing_mark()?)));
+    found.extend(marked.map(|(label, (mark, n))| {
+        let marked = Finding::caution("missing-marked").name("column", label);
+        marked.number("mark", mark).count("n", n)
+    }));
+    let filled = table.iter().filter_map(|column| Some((column.label(), column.filled_with_zeros()?)));
+    found.extend(filled.map(|(label, n)| {
+        let filled = Finding::caution("filled-with-zeros").name("column", label).count("n", n);
+        match &axis.kind {
+            AxisKind::Time => filled.number("end", axis.at(axis.len().saturating_sub(n))),
+            _ => filled,
+        }
+    }));
+    let held = table.iter().filter_map(|column| Some((column.held()?, column.label())));
+    let held: Vec<(usize, String)> = held.collect();
+    for of_length in held.chunk_by(|a, b| a.0 == b.0) {
+        let labels: Vec<&str> = of_length.iter().map(|(_, label)| label.as_str()).collect();
+        let held = Finding::caution("values-held").count("n", of_length[0].0);
+        found.push(held.name("columns", labels.join(", ")));
+    }
+    found
+}
+
+impl Column {
+    /// Number of rows for which each value is held, where nearly all are held as long: the sensor is slower
+    /// than the rows. Coarse digits are excluded: there, most steps are as small as the smallest.
+    fn held(&self) -> Option<usize> {
+        let values = self.values.opening();
+        let runs: Vec<&[f64]> = values.chunk_by(|a, b| a == b).collect();
+        let inner = runs.get(1..runs.len().saturating_sub(1)).filter(|inner| inner.len() >= FEWEST_RUNS)?;
+        let mut lengths: Vec<usize> = inner.iter().map(|run| run.len()).collect();
+        lengths.sort_unstable();
+        let n = lengths[lengths.len() / 2];
+        let alike = lengths.iter().filter(|length| length.abs_diff(n) <= usize::from(n > 2)).count();
+        let steps: Vec<f64> = inner.windows(2).map(|w| (w[1][0] - w[0][0]).abs()).collect();
+        let smallest = steps.iter().copied().fold(f64::INFINITY, f64::min);
+        let large = steps.iter().filter(|step| **step > 2.0 * smallest).count();
+        (n > 1 && 20 * alike >= 19 * lengths.len() && 2 * large > steps.len()).then_some(n)
+    }
+
+    /// The value by which missing values are marked, such as −9999, and how often it stands: one far beyond
+    /// all others.
+    fn missing_mark(&self) -> Option<(f64, usize)> {
+        let values = self.reals();
+        let is_mark = |v: &&f64| MISSING_MARKS.contains(&v.abs());
+        let mark = *values.iter().find(is_mark)?;
+        let others = values.iter().filter(|v| **v != mark && v.is_finite());
+        let largest = others.fold(f64::NEG_INFINITY, |largest: f64, v| largest.max(v.abs()));
+        let n = values.iter().filter(|v| **v == mark).count();
+        (2 * n < values.len() && FAR * largest <= mark.abs()).then_some((mark, n))
+    }
+
+    /// How many zeros at the end fill the column up: many in a row behind values that are hardly ever 0.
+    fn filled_with_zeros(&self) -> Option<usize> {
+        let values = self.reals();
+        let n = values.iter().rev().take_while(|v| **v == 0.0).count();
+        let before = &values[..values.len() - n];
+        let zeros = before.iter().filter(|v| **v == 0.0).count();
+        let fills = n >= FEWEST_ZEROS && FILLING * values.len() as f64 <= n as f64;
+        (fills && before.len() >= FEWEST_ZEROS && zeros as f64 <= RARE * before.len() as f64).then_some(n)
+    }
+}
+
+/// Number of rows that repeat the row before in all columns, and number of all rows looked at. `None` unless
+/// they are single rows between rows that differ: a motion at rest or coarse digits repeat many in a row.
+fn repeats(table: &[Column]) -> Option<(usize, usize)> {
+    let measured = table.iter().filter(|column| !column.rises());
+    let columns: Vec<&[f64]> = measured.map(|column| column.values.opening()).collect();
+    let n = columns.iter().map(|values| values.len()).min().filter(|n| columns.len() > 1 && *n > 100)?;
+    let again = |i: usize| columns.iter().all(|values| values[i] == values[i - 1]);
+    let all = (1..n).filter(|i| again(*i)).count();
+    let alone = (2..n - 1).filter(|i| again(*i) && !again(i - 1) && !again(i + 1)).count();
+    (all as f64 > REPEATS * n as f64 && 10 * alone > 9 * all && 2 * all < n).then_some((all, n))
+}
