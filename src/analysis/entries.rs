@@ -1,8 +1,7 @@
 //! The tables of a campaign of one kind of record.
 
-use super::kind::Analysis;
+use super::kind::{Analysis, name_of};
 use super::recordings::{is_pattern, matching};
-use super::source::name_of;
 use crate::campaign::{Campaign, Entry, Fault};
 use crate::error::{Error, Result};
 use crate::record::shown;

@@ -3,9 +3,9 @@
 use super::answer::{Answer, left_out, unwritten};
 use super::headline::of_record;
 use super::kept::{AnswerCache, digest};
-use super::kind::{Analysis, AnalysisKind};
+use super::kind::{Analysis, AnalysisKind, name_of};
 use super::progress::Progress;
-use super::source::{Source, file_name, name_of};
+use super::source::{Source, file_name};
 use crate::campaign::{Campaign, Entry};
 use crate::error::{Error, Result};
 use crate::read::Digest;

@@ -3,7 +3,7 @@
 use super::answer::Answer;
 use super::job::Job;
 use super::named_file::NamedFile;
-use super::source::Source;
+use super::source::{Source, file_name};
 use crate::campaign::{Campaign, Entry, Fault};
 use crate::error::{Error, Result};
 use crate::report::files::Names;
@@ -92,6 +92,12 @@ pub(crate) struct AnalysisKind {
     pub(super) channels: fn(&Campaign) -> Result<Vec<Error>>,
     pub(super) records: fn(&Campaign) -> Result<Vec<NamedFile>>,
     pub(super) run: fn(&mut Job<'_>) -> Result<()>,
+}
+
+/// Name of a table for people: the stated name, else that of its file, else its section with its number.
+pub(crate) fn name_of<K: Analysis>(entry: &Entry<K>) -> String {
+    let name = K::stated_name(entry).or_else(|| entry.file.as_deref().map(file_name));
+    name.unwrap_or_else(|| format!("{} {}", K::SECTION, entry.number))
 }
 
 /// The file of a table, and other files that it names.

@@ -3,9 +3,8 @@
 use super::answer::left_out;
 use super::entries::{check, entries};
 use super::job::Job;
-use super::kind::{Analysis, AnalysisKind};
+use super::kind::{Analysis, AnalysisKind, name_of};
 use super::named_file::NamedFile;
-use super::source::name_of;
 use super::{decay, drill, drop, frf, impacts, pulse, spectrum, sweep};
 use crate::campaign::{Campaign, Entry, Fault};
 use crate::error::{Error, Result};

@@ -1,8 +1,7 @@
 //! Source of a record: a table of a campaign, or a command line.
 
-use super::kind::Analysis;
 use super::progress::Progress;
-use crate::campaign::{Channel, Entry, Reading};
+use crate::campaign::{Channel, Reading};
 use crate::error::Result;
 use crate::read::{Folder, Reader, Recording};
 use crate::record::{Trace, shown};
@@ -75,10 +74,4 @@ impl Source<'_> {
 /// The name of a file without its folder.
 pub fn file_name(path: &Path) -> String {
     shown(path.file_name().map_or(path, Path::new))
-}
-
-/// Name of a table for people: the stated name, else that of its file, else its section with its number.
-pub(crate) fn name_of<K: Analysis>(entry: &Entry<K>) -> String {
-    let name = K::stated_name(entry).or_else(|| entry.file.as_deref().map(file_name));
-    name.unwrap_or_else(|| format!("{} {}", K::SECTION, entry.number))
 }

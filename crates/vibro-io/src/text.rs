@@ -18,6 +18,7 @@ mod head_number;
 mod header;
 mod headings;
 mod lines;
+mod name_line;
 pub(crate) mod names;
 mod near_number;
 mod numbers;

@@ -19,6 +19,7 @@
 
 mod axis;
 mod climb;
+mod driven_scene;
 mod findings;
 mod motions;
 mod question;
@@ -39,9 +40,9 @@ use super::rig::Rig;
 use super::scales;
 use super::scene::Scene;
 use climb::Climb;
+use driven_scene::{DrivenScene, curved, is_curved, keys};
 use question::Answer;
 use serde::Serialize;
-use stage::{DrivenScene, curved, is_curved, keys};
 use vibro_record::{Error, Finding, Result};
 
 /// The rung that is good enough for a scene, and how that was found.

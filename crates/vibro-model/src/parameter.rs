@@ -4,7 +4,7 @@ use super::excitation::{Excitation, Sine};
 use super::least::{NumberRange, number};
 use super::rig::Rig;
 use serde::{Deserialize, Serialize};
-use vibro_record::Result;
+use vibro_record::{Error, Result};
 
 /// A parameter of the rig or of its excitation. Maps vary them; fits determine those that a campaign can
 /// name.
@@ -160,6 +160,22 @@ impl Parameter {
             _ => self.place(rig)?,
         } = value;
         Some(())
+    }
+}
+
+impl Rig {
+    /// Checks that the numbers are possible.
+    ///
+    /// # Errors
+    /// If a mass or stiffness is not above 0, a damping is negative, the restitution is outside 0 to 1, or a
+    /// value is not finite; `m2` may be infinite.
+    pub fn check(&self) -> Result<()> {
+        self.fault().map_or(Ok(()), |(_, error)| Err(error))
+    }
+
+    /// The first impossible value: its key, and the error.
+    pub fn fault(&self) -> Option<(&'static str, Error)> {
+        Parameter::of_rig().find_map(|p| Some((p.name(), p.check(p.counting(self)?).err()?)))
     }
 }
 

@@ -2,7 +2,6 @@
 
 use super::body::Body;
 use super::flow::State;
-use super::parameter::Parameter;
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
 use vibro_math::Oscillator;
@@ -47,20 +46,6 @@ impl Rig {
     /// The rig of the thesis; its damping was estimated, its restitution is that of its closed-form examples.
     pub fn thesis() -> Rig {
         Rig { m1: 0.125, m2: 0.094, k1: 135.0, k2: 128.0, c1: 0.1, c2: 0.1, gap: 1e-3, restitution: 0.7 }
-    }
-
-    /// Checks that the numbers are possible.
-    ///
-    /// # Errors
-    /// If a mass or stiffness is not above 0, a damping is negative, the restitution is outside 0 to 1, or a
-    /// value is not finite; `m2` may be infinite.
-    pub fn check(&self) -> Result<()> {
-        self.fault().map_or(Ok(()), |(_, error)| Err(error))
-    }
-
-    /// The first impossible value: its key, and the error.
-    pub fn fault(&self) -> Option<(&'static str, Error)> {
-        Parameter::of_rig().find_map(|p| Some((p.name(), p.check(p.counting(self)?).err()?)))
     }
 
     /// Whether the passive mass is infinite: a wall.

@@ -4,7 +4,7 @@ use super::header::Stated;
 use super::lines::{Fields, Line, Separator, fields};
 use super::names::Name;
 use super::preamble::{Preamble, UNIT, key};
-use super::unit_words::{is_unit_row, unit_word};
+use super::unit_words::is_unit_row;
 use crate::assemble::kind_of;
 use crate::number;
 use std::borrow::Cow;
@@ -60,7 +60,7 @@ pub fn names_in(
         return None;
     }
     // `Second,Volt` below a preamble are units without names.
-    let units: Option<Vec<Name>> = lower.iter().map(|(_, n)| unit_word(n)).collect();
+    let units: Option<Vec<Name>> = lower.iter().map(|(_, n)| Name::of_unit(n)).collect();
     // `V,V` are units without names.
     let first = lower[0].1.as_ref();
     let alike =
@@ -121,7 +121,7 @@ pub fn rate_of_columns(line: &Line, separator: Separator) -> Option<String> {
 pub fn is_title(line: &Fields, width: usize, preamble: &Preamble) -> bool {
     let alone = !line[0].1.is_empty() && line.iter().filter(|(_, f)| !f.is_empty()).count() == 1;
     let keyed = line.len() > width && Preamble::is_of_columns(&line[0].1);
-    keyed || alone && (width > 1 || (preamble.names_columns() && unit_word(&line[0].1).is_none()))
+    keyed || alone && (width > 1 || (preamble.names_columns() && Name::of_unit(&line[0].1).is_none()))
 }
 
 /// The fields of a line above the row `values`, without the first `skipped` and without a blank last one

@@ -13,7 +13,7 @@ use super::dialect::Dialect;
 use super::lines::{Fields, Line, Lines, Separator, fields, is_torn};
 use super::near_number::{plain_form, unit_of};
 use super::table::beginning;
-use super::{clock, names};
+use super::{clock, name_line, names};
 use crate::format::Format;
 use crate::number;
 use crate::options::Options;
@@ -81,7 +81,7 @@ pub fn detect(text: &Text, options: &Options) -> Result<Dialect> {
     // and column.
     let torn = |l: &&Line| l.remark.is_none() && is_torn(l.text, separator, cells.len());
     let named = above.len() - above.iter().rev().take_while(torn).count();
-    if named < above.len() && names::above(&header[..named], cells.len(), separator).is_some() {
+    if named < above.len() && name_line::above(&header[..named], cells.len(), separator).is_some() {
         first = &above[named];
         header.truncate(named);
     }
@@ -91,7 +91,7 @@ pub fn detect(text: &Text, options: &Options) -> Result<Dialect> {
     // A first column that numbers the rows often has no name.
     let number = |line: &Line| number::parse(fields(line.text, separator).ok()?.first()?.1.as_bytes());
     let counted = || rows.windows(2).all(|w| number(&w[0]).map(|n| n + 1.0) == number(&w[1]));
-    let named = |columns| names::above(&header, columns, separator);
+    let named = |columns| name_line::above(&header, columns, separator);
     let unnumbered = || named(columns.checked_sub(1).filter(|n| *n > 0 && counted())?);
     let behind = |names: Vec<names::Name>| [vec![names::Name::default()], names].concat();
     Ok(Dialect {

@@ -1,9 +1,8 @@
 //! Reads units as column headers spell them.
 
-use super::names::Name;
 use crate::number;
 use vibro_record::Scaling;
-use vibro_record::units::{Quantity, Unit, spelled};
+use vibro_record::units::{Quantity, Unit};
 
 /// Words in place of a unit above a counter.
 pub(super) const COUNTERS: [&str; 6] = ["sequence", "samples", "points", "no.", "rn", "#"];
@@ -46,13 +45,6 @@ pub(crate) fn amplitude(unit: &str) -> (&str, Option<Scaling>) {
 /// Whether the unit is an angle over a time: 1/(2π) takes rad/s to Hz.
 pub(super) fn is_angular(unit: &str) -> bool {
     Unit::parse(unit).is_some_and(|u| u.quantity() == Quantity::AngularVelocity)
-}
-
-/// A unit written in place of a name: `Second`, `Volts`; `None` for other words.
-pub(crate) fn unit_word(field: &str) -> Option<Name> {
-    let unit = symbol(field.trim());
-    let word = unit != field.trim() || spelled(unit).is_some();
-    word.then(|| Name { name: String::new(), unit: Some(unit.to_owned()) })
 }
 
 /// Whether a row of fields holds units only. All are blank, known or in brackets. Or the first is known, and

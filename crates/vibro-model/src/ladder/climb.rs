@@ -1,10 +1,10 @@
 //! Compares the answer of each rung with those above, and chooses the lowest that is good enough.
 
+use super::driven_scene::{DrivenScene, is_curved, keys};
 use super::motions::{CurrentMotion, Motions};
 use super::question::{Answer, Change};
 use super::reading::Settling;
 use super::rung::{Model, Need, Needed, Rung};
-use super::stage::{DrivenScene, is_curved, keys};
 use super::{Choice, Sensitivity};
 use crate::law::Law;
 use crate::law::conversion;

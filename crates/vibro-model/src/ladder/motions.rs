@@ -1,9 +1,9 @@
 //! The known motions of a rig at one excitation, and which of them it is in.
 
+use super::driven_scene::{DrivenScene, timed};
 use super::question::{APART, Answer, Question};
 use super::reading::{MotionReader, Reading, Settling};
 use super::rung::Model;
-use super::stage::{DrivenScene, timed};
 use super::starts::{Approach, Followed, several, starts};
 use crate::flow::State;
 use crate::motion::Motion;

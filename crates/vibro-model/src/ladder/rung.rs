@@ -1,8 +1,8 @@
 //! A rung of the ladder: a model with its checks and its answer.
 
+use super::driven_scene::keys;
 use super::question::{Answer, Change};
 use super::reading::{Reading, Settling};
-use super::stage::keys;
 use crate::scene::Scene;
 use serde::Serialize;
 use vibro_record::{Error, Finding};

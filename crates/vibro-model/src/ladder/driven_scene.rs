@@ -1,0 +1,52 @@
+//! A scene at one excitation, and what it states of its contact.
+
+use super::question::Question;
+use crate::excitation::Excitation;
+use crate::law::Law;
+use crate::scene::{ContactKeys, Scene};
+use std::time::Instant;
+use vibro_record::{Error, Result};
+
+/// Exponent of the force over the indentation of two curved bodies (Hertz).
+pub const HERTZ: f64 = 1.5;
+
+/// Result of `work` and its computing time in ns; NaN where there is no clock.
+pub fn timed<T>(work: impl FnOnce() -> T) -> (T, f64) {
+    let begun = (!cfg!(target_family = "wasm")).then(Instant::now);
+    let done = work();
+    (done, begun.map_or(f64::NAN, |begun| begun.elapsed().as_nanos() as f64))
+}
+
+/// A scene at one excitation.
+#[derive(Debug, Clone, Copy)]
+pub struct DrivenScene<'a> {
+    pub scene: &'a Scene,
+    pub excitation: &'a Excitation,
+    pub question: &'a Question,
+}
+
+/// Keys of the contact; all unknown where there is none.
+pub fn keys(scene: &Scene) -> ContactKeys {
+    scene.contact.unwrap_or_default()
+}
+
+/// Whether the stated contact is no linear spring: its exponent is not 1.
+pub fn is_curved(scene: &Scene) -> bool {
+    keys(scene).exponent.is_some_and(|n| n != 1.0)
+}
+
+/// The contact law of curved bodies that the scene states. Without a stated damping, it is that which gives
+/// the rig's restitution at the approach speed `speed` (m/s).
+///
+/// # Errors
+/// If the stiffness is missing, or a number is impossible.
+pub fn curved(scene: &Scene, speed: f64) -> Result<Law> {
+    let keys = keys(scene);
+    let exponent = keys.exponent.unwrap_or(HERTZ);
+    let stiffness = keys.stiffness.ok_or_else(|| Error::refused("contact.stiffness is not known"))?;
+    let law = match keys.damping {
+        Some(damping) => Law::HuntCrossley { stiffness, exponent, damping },
+        None => Law::hunt_crossley(stiffness, exponent, scene.rig.restitution, speed)?,
+    };
+    law.check().map(|()| law)
+}
