@@ -7,7 +7,7 @@ use vibroimpact::Result;
 use vibroimpact::analysis;
 use vibroimpact::analysis::figures;
 use vibroimpact::measure::drill::{AngleOrigin, Beam};
-use vibroimpact::measure::pulse::two_times;
+use vibroimpact::measure::pulse::{PulseOptions, two_times};
 use vibroimpact::measure::response::ResponseOptions;
 use vibroimpact::measure::restitution::Drop;
 use vibroimpact::measure::waterfall::waterfall;
@@ -68,7 +68,7 @@ pub fn numbers() -> Result<Sheet> {
         why,
     ));
     for (run, to_peak, xi, frequency) in [(1, 6.64e-6, "0.181", "25.0"), (2, 6.25e-6, "0.207", "24.6")] {
-        let found = two_times(to_peak, 18.0e-6, None, None)?;
+        let found = two_times(to_peak, 18.0e-6, None, &PulseOptions::default())?;
         let why = "a closed form in the place of a search by steps";
         claims.push(Claim::number(
             format!("ξ of the contact, run {run}"),

@@ -1,0 +1,273 @@
+//! The six programs of appendix A.2 as they are printed: jsnew, jsdnew and jsdtw under a sine, jinew, jidnew
+//! and jidtw under impulses. Each slip of theirs can be taken out, which tells what it does.
+
+use crate::scene::{grid, hertz, rig, under_sine};
+use crate::sheet::{Claim, Sheet};
+use num_complex::Complex64;
+use std::f64::consts::{PI, TAU};
+use vibroimpact::Result;
+use vibroimpact::figure::{AxisSpec, Figure, Ink, Legend, Plot, Series, Stroke};
+use vibroimpact::model::{Green, Rig};
+
+/// What is printed and is not right.
+#[derive(Clone, Copy, Default)]
+pub struct Slips {
+    /// A² − Δ² is taken as 0 below 1e-6 m², which is Δ².
+    pub threshold: bool,
+    /// χ̇₁(T⁻) + χ̇₂(T⁻) in units of −1/(2M), where it is set to a number: 1 is right without dampers.
+    pub slopes: Option<f64>,
+    /// J with M in the place of M(1 + R).
+    pub exchange: bool,
+    /// sin φ with Ω₁² − ω² in the place of its square over ω²; or τ as φ/ω in the place of φ/Ω₁.
+    pub phase: bool,
+}
+
+/// A program: a sine of amplitude `size` (N), or impulses of `size` (N s) without the damper c₁.
+pub struct Program {
+    pub rig: Rig,
+    pub sine: bool,
+    pub size: f64,
+    pub slips: Slips,
+}
+
+/// What it gives at one frequency ratio. Numbers are complex where it takes the root or the arcsine of what
+/// has none; Matlab draws their real part.
+pub struct Printed {
+    pub impulse: Complex64,
+    /// Largest displacements in m, that of mass 2 counted from mass 1.
+    pub largest: [f64; 2],
+    /// |x₁ − x₂ − Δ| at the impact in m.
+    pub miss: f64,
+    /// Time from the impulse to the impact over the period.
+    pub timing: f64,
+}
+
+impl Program {
+    /// Runs it at ν, which under a sine is ω over the damped natural frequency.
+    pub fn at(&self, nu: f64) -> Result<Printed> {
+        let rig = if self.sine { self.rig } else { Rig { c1: 0.0, ..self.rig } };
+        let natural = (rig.k1 / rig.m1).sqrt();
+        // Without c₁ under impulses, so that this is Ω₁ there.
+        let omega = nu * (natural.powi(2) - (rig.c1 / rig.m1 / 2.0).powi(2)).sqrt();
+        let period = TAU / omega;
+        let [first, second] = rig.oscillators();
+        let [a, b] = [Green::new(rig.m1, first, period)?, Green::new(rig.m2, second, period)?];
+        let reduced = rig.reduced_mass();
+        let slopes = self.slips.slopes.map_or(a.slope_before + b.slope_before, |n| -n / (2.0 * reduced));
+        let exchange = if self.slips.exchange { reduced } else { rig.exchange() };
+        // The same quadratic for both: A and ω, or 2FA₁|sin(Ω₁T/2)| and Ω₁.
+        let turn = natural * period;
+        let unit = 1.0 / (2.0 * rig.m1 * natural * (1.0 - turn.cos()));
+        let (amplitude, rate) = if self.sine {
+            (self.size * rig.receptances(omega)[0].norm(), omega)
+        } else {
+            (self.size * unit * (2.0 * (1.0 - turn.cos())).sqrt(), natural)
+        };
+        let (c, p) = (a.start + b.start, (1.0 / exchange + slopes) / rate);
+        let excess = amplitude.powi(2) - rig.gap.powi(2);
+        let excess = if self.slips.threshold && excess.abs() < 1e-6 { 0.0 } else { excess };
+        let root = Complex64::from((amplitude * c).powi(2) + p * p * excess).sqrt();
+        let impulse = (root - rig.gap * c) / (p * p + c * c);
+        let impulse = if impulse.re < 0.0 { Complex64::default() } else { impulse };
+
+        let p = (1.0 / rig.exchange() + slopes) / rate;
+        let sine = if self.sine {
+            let off = natural.powi(2) - omega.powi(2);
+            let off = if self.slips.phase { off } else { (off / omega).powi(2) };
+            -impulse * p * omega * Complex64::from(rig.c1.powi(2) + rig.m1.powi(2) * off).sqrt() / self.size
+        } else {
+            let opened = (rig.gap + impulse * c) / (2.0 * self.size * unit);
+            opened - impulse * p * turn.sin() / (2.0 * self.size * unit * (1.0 - turn.cos()))
+        };
+        let hit = |phase: Complex64| self.driven(phase, 0.0, (omega, natural, unit, amplitude)) - impulse * a.start;
+        let met = |phase: &Complex64| (hit(*phase) - impulse * b.start - rig.gap).norm();
+        let two = [PI - sine.asin(), sine.asin()];
+        let two = if sine.re < 0.0 { [(-sine).asin() + PI, TAU - (-sine).asin()] } else { two };
+        let phase = if met(&two[0]) < met(&two[1]) { two[0] } else { two[1] };
+        let mut largest = [hit(phase).norm(), (impulse * b.start + rig.gap).norm()];
+        for i in 1..=100 {
+            let t = f64::from(i) * period / 100.0;
+            let x = self.driven(phase, t, (omega, natural, unit, amplitude)) - impulse * a.at(t).0;
+            largest[0] = largest[0].max(x.norm());
+            largest[1] = largest[1].max((impulse * b.at(t).0 + rig.gap).norm());
+        }
+        let lead = phase.re / if self.slips.phase { omega } else { natural };
+        Ok(Printed { impulse, largest, miss: met(&phase), timing: lead / period })
+    }
+
+    /// Displacement of mass 1 without impacts, `t` after the impact.
+    fn driven(&self, phase: Complex64, t: f64, (omega, natural, unit, amplitude): (f64, f64, f64, f64)) -> Complex64 {
+        if self.sine {
+            return amplitude * (phase + omega * t).cos();
+        }
+        let (period, lead) = (TAU / omega, phase / if self.slips.phase { omega } else { natural });
+        let since = lead + t;
+        let since = if since.re <= period { since } else { since - period };
+        self.size * unit * ((natural * since).sin() + (natural * (period - since)).sin())
+    }
+}
+
+/// Frequencies of the programs, from `from` to `to`, with their places of largest J and of all peaks of x₁.
+fn peaks(nu: &[f64], value: impl Fn(f64) -> f64) -> Vec<f64> {
+    let all: Vec<f64> = nu.iter().map(|nu| value(*nu)).collect();
+    let inner = all.windows(3).zip(nu.iter().skip(1));
+    inner.filter(|(w, _)| w[1] > w[0] && w[1] > w[2]).map(|(_, nu)| *nu).collect()
+}
+
+fn told(nu: &[f64]) -> String {
+    let all: Vec<String> = nu.iter().map(|nu| format!("{nu:.2}")).collect();
+    if all.is_empty() { "none".to_owned() } else { all.join(", ") }
+}
+
+fn sine(restitution: f64, damper: f64, size: f64, slips: Slips) -> Program {
+    Program { rig: Rig { c1: damper, c2: damper, ..rig(restitution) }, sine: true, size, slips }
+}
+
+pub fn impulses(restitution: f64, c2: f64, size: f64, slips: Slips) -> Program {
+    Program { rig: Rig { c1: 0.0, c2, ..rig(restitution) }, sine: false, size, slips }
+}
+
+const JSNEW: Slips = Slips { threshold: true, slopes: None, exchange: false, phase: false };
+const JSDNEW: Slips = Slips { exchange: true, phase: true, ..JSNEW };
+const JIDNEW: Slips = Slips { slopes: Some(2.0), phase: true, ..JSNEW };
+
+fn impulse(program: &Program, nu: f64) -> f64 {
+    program.at(nu).map_or(f64::NAN, |p| p.impulse.re)
+}
+
+fn largest(program: &Program, nu: f64) -> f64 {
+    program.at(nu).map_or(f64::NAN, |p| p.largest[0])
+}
+
+pub fn sheet() -> Result<Sheet> {
+    let mut claims = of_sine()?;
+    claims.extend(of_impulses()?);
+    let (near, all) = (grid(0.9, 1.2, 601), grid(0.7501, 2.4901, 88));
+    let line = |nu: &[f64], program: &Program, of: fn(&Program, f64) -> f64| -> Vec<f64> {
+        nu.iter().map(|nu| of(program, *nu)).map(|v| if v > 0.0 { v } else { f64::NAN }).collect()
+    };
+    let series = |name: &str, nth, nu: &[f64], y: Vec<f64>| {
+        let stroke = if nth == 0 { Stroke::Solid } else { Stroke::Dashed };
+        Series::line(name, nu.to_vec(), y).ink(Ink::Nth(nth)).stroke(stroke)
+    };
+    let x1 = |slips| line(&near, &sine(0.7, 0.1, 0.5, slips), largest);
+    let j = |slips| line(&all, &impulses(1.0, 0.0, 0.009, slips), impulse);
+    let axis = |label: &str, unit: &str| AxisSpec::new(label, unit).log();
+    let figure = Figure::double("Programs of appendix A.2")
+        .height(85.0)
+        .columns(2)
+        .panel(
+            Plot::new(crate::scene::ratio(0.9, 1.2), axis("Largest x₁", "m"))
+                .title("(a) jsdnew, figure 3.6")
+                .with(series("as printed", 0, &near, x1(JSDNEW)))
+                .with(series("sin φ put right", 1, &near, x1(Slips { phase: false, ..JSDNEW })))
+                .with(series("M(1 + R), too", 2, &near, x1(JSNEW)))
+                .legend(Legend::Above),
+        )
+        .panel(
+            Plot::new(crate::scene::ratio(0.75, 2.5), axis("Impulse J", "N s"))
+                .title("(b) jinew, figure 3.10")
+                .with(series("as printed", 0, &all, j(JIDNEW)))
+                .with(series("−1/(2m₁) − 1/(2m₂)", 1, &all, j(Slips { slopes: Some(1.0), ..JIDNEW })))
+                .legend(Legend::Above),
+        )
+        .caption(
+            "(a) Largest x₁ under a sine of 0.5 N, R = 0.7, by jsdnew. (b) Impulse under impulses of 0.009 N s, R = 1, c₂ = 0, by jinew.",
+        );
+    Ok(Sheet::new("programs", "Figures 3.6, 3.10 and appendix A.2: the programs as printed", figure, claims))
+}
+
+fn of_sine() -> Result<Vec<Claim>> {
+    let mut claims = Vec::new();
+    let steps = grid(1.2, 2.9, 171);
+    for force in [0.05, 0.1, 0.5, 0.9] {
+        let program = sine(1.0, 0.1, force, JSNEW);
+        let best = steps.iter().copied().max_by(|a, b| impulse(&program, *a).total_cmp(&impulse(&program, *b)));
+        let why = "its steps are 0.01; the place of χ = 0 does not move with the force, which the threshold puts in the place of the peak";
+        let why = if force < 0.5 { why } else { "its steps are 0.01" };
+        let what = format!("3.4, jsnew as printed, R 1, F₀ {force} N: ν of the clapping resonance");
+        claims.push(Claim::number(what, "2.13", best.unwrap_or(f64::NAN), (2, ""), why));
+    }
+    let open = sine(1.0, 0.1, 0.05, Slips { threshold: false, ..JSNEW }).at(2.12)?.impulse;
+    claims.push(Claim::told(
+        "3.4, jsnew without its threshold, F₀ 0.05 N: J at ν 2.12",
+        "–",
+        format!("{:.3} + {:.3}i N s", open.re, open.im),
+        true,
+        "complex: no motion, and the real part that Matlab draws has its peak there, too",
+    ));
+    let near = grid(0.9001, 1.1901, 30);
+    for (slips, what, thesis, why) in [
+        (JSDNEW, "as printed", "1, and another towards 1.12", "the motions have no peak there: sin φ has Ω₁² − ω² in the place of (Ω₁² − ω²)²/ω², and a parenthesis is missing"),
+        (Slips { phase: false, ..JSDNEW }, "with sin φ put right", "–", "J is computed with M, sin φ with M(1 + R)"),
+        (JSNEW, "with M(1 + R), too", "–", "the grazing resonance alone: the peaks are slips, and not masses that pass through each other"),
+    ] {
+        let program = sine(0.7, 0.1, 0.5, slips);
+        let all = peaks(&near, |nu| largest(&program, nu));
+        let miss = near.iter().map(|nu| program.at(*nu).map_or(0.0, |p| p.miss)).fold(0.0, f64::max);
+        claims.push(Claim::told(
+            format!("3.6, jsdnew {what}: peaks of x₁ at ν"),
+            thesis,
+            format!("{}; contact missed by {:.2} mm at most", told(&all), 1e3 * miss),
+            thesis == "–",
+            why,
+        ));
+    }
+    for (figure, nu, force) in [("3.8", 2.131, 0.5), ("3.9", 1.0501, 0.05)] {
+        let printed = sine(0.7, 0.0, force, Slips { slopes: Some(2.0), ..JSNEW }).at(nu)?.impulse.re;
+        let undamped = Rig { c1: 0.0, c2: 0.0, ..rig(0.7) };
+        let right = under_sine(&undamped, force, nu).first().map_or(f64::NAN, |o| o.impulse);
+        let why = "without dampers it has −1/(2M) twice for −1/(2m₁) − 1/(2m₂); near |A| = Δ its threshold, too";
+        claims.push(Claim::number(
+            format!("{figure}, jsdtw as printed, R 0.7, c 0, F₀ {force} N, ν {nu}: J"),
+            &format!("{:.3}", 1e3 * printed),
+            1e3 * right,
+            (3, "mN s"),
+            why,
+        ));
+    }
+    Ok(claims)
+}
+
+fn of_impulses() -> Result<Vec<Claim>> {
+    let masses = Slips { slopes: Some(1.0), ..JIDNEW };
+    let [printed, right] = [JIDNEW, masses].map(|slips| impulse(&impulses(1.0, 0.0, 0.009, slips), 2.1301));
+    let all = grid(0.7501, 2.9901, 113);
+    let miss = |slips| {
+        let program = impulses(0.7, 0.1, 0.009, slips);
+        all.iter().map(|nu| program.at(*nu).map_or(0.0, |p| p.miss)).fold(0.0, f64::max)
+    };
+    let [slip, none] = [masses, Slips { phase: false, ..masses }].map(miss);
+    let over_time = |phase| impulses(0.7, 0.1, 0.005, Slips { threshold: false, phase, ..masses }).at(1.501);
+    let [slow, fast] = [over_time(true)?, over_time(false)?];
+    Ok(vec![
+        Claim::told(
+            "3.10, jinew as printed, R 1, c₂ 0: J at ν 2.1301",
+            "a large peak",
+            format!("{:.4} mN s", 1e3 * printed),
+            printed > 0.1,
+            "it has −1/(2M) twice, as jidnew has: the clapping peak is lost, so figure 3.10 was not made by it",
+        ),
+        Claim::told(
+            "3.10, with −1/(2m₁) − 1/(2m₂), as jidtw has",
+            "a large peak",
+            format!("{right:.2} N s"),
+            right > 0.1,
+            "as a root of 3.42; it is no motion (next section)",
+        ),
+        Claim::told(
+            "3.13 to 3.15, jidnew: contact missed by",
+            "0",
+            format!("{:.2} mm with τ = φ/ω, {:.2} mm with φ/Ω₁", 1e3 * slip, 1e3 * none),
+            slip < 1e-5,
+            "3.43 and 3.44 give Ω₁τ, not ωτ; the rest is c₂ in χ̇₂(T⁻)",
+        ),
+        Claim::told(
+            "jidtw as printed, F 0.005 N s, ν 1.501, R 0.7: τ",
+            "0 < τ < T",
+            format!("{:.3} T, with φ/Ω₁ {:.3} T", slow.timing, fast.timing),
+            fast.timing < 1.0,
+            &format!("the slip moves a root that is none into the period, where it misses the contact by {:.2} mm", 1e3 * slow.miss),
+        ),
+    ])
+}
