@@ -1,6 +1,6 @@
 //! The antiresonance of figures 3.13 to 3.15, and where x₁ is least in truth.
 
-use crate::impulse::IMPULSE;
+use crate::impulse::{IMPULSE, without};
 use crate::programs::{JIDNEW, Slips, impulses, largest as largest_of};
 use crate::scene::{accepted, add_orbits, grid, hertz, ratio, real, rig, under_impulses, under_sine};
 use crate::sheet::{Claim, Sheet};
@@ -52,6 +52,14 @@ pub fn sheet() -> Result<Sheet> {
         let [a, b] = s.largest.map(|x| 1e3 * x);
         format!("ν {:.2}: x₁ {a:.2} mm, x₂ {b:.2} mm, impacts/cycles {}", s.nu, s.pattern)
     };
+    let [from, to] = without(&rig);
+    claims.push(Claim::told(
+        "R 0.7, c₁ and c₂ 0.1: ν without a motion of one impact a cycle",
+        "none",
+        format!("{from:.4} to {to:.4}"),
+        from > to,
+        "",
+    ));
     let what = "motion from rest near ν 1.75, R 0.7, c₁ and c₂ 0.1";
     let why = "x₁ is as large as the gap, and no motion has one impact a cycle";
     claims.push(Claim::told(what, "x₁ near 0", near.map_or_else(String::new, told), near.is_none(), why));

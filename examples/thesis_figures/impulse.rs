@@ -31,7 +31,7 @@ pub fn exists(rig: &Rig, nu: f64) -> bool {
 }
 
 /// Borders in ν of the range around 1.5 without any motion of one impact a cycle.
-fn without(rig: &Rig) -> [f64; 2] {
+pub fn without(rig: &Rig) -> [f64; 2] {
     [1.05, 2.45].map(|end| border(1.5, end, |nu| !exists(rig, nu)))
 }
 
@@ -70,7 +70,7 @@ fn impulses() -> Result<Sheet> {
     }
     let figure = Figure::double("Impulse over frequency under impulses").height(95.0).panel(plot).caption(
         "Impulse of all motions with one impact a cycle under an impulse of 0.009 N s a cycle, c₁ = 0. Coloured: those that can be and are stable; \
-         thin and grey: the others.",
+         thin and grey: the others, such as those without losses, which are neutral.",
     );
     Ok(Sheet::new("impulse", "Figures 3.10 to 3.12: impulses, impulse over frequency", figure, claims))
 }

@@ -336,9 +336,8 @@ fn reaction() -> Result<Sheet> {
     let [peak, rms, impulse]: [(f64, f64); 3] =
         [(|r| r.peak) as Part, |r| r.rms, |r| r.impulse].map(|value| top(value, 3.0, 14.0));
     let grazing = highest(&swept.up, 4.0, 8.0).0;
-    let [before, there, after] =
-        [(4.0, grazing - 0.3), (grazing - 0.01, grazing + 0.01), (grazing + 0.3, 8.0)]
-            .map(|(from, to)| top(|r| r.rms, from, to));
+    let near = |off: f64| top(|r| r.rms, grazing + off - 0.01, grazing + off + 0.01);
+    let [before, there, after] = [-0.5, 0.0, 0.5].map(near);
     let clapping = highest(&swept.up, 8.0, 14.0).0;
     let claims = vec![
         Claim::told(
@@ -352,11 +351,11 @@ fn reaction() -> Result<Sheet> {
             "RMS force at the first resonance, going up",
             "reduced",
             format!(
-                "{:.2} N at {:.2} Hz; {:.2} N at {:.2} Hz below, {:.2} N at {:.2} Hz above",
-                there.0, there.1, before.0, before.1, after.0, after.1
+                "{:.2} N at {:.2} Hz, {:.2} N before, {:.2} N after",
+                there.0, there.1, before.0, after.0
             ),
-            there.0 < before.0 || there.0 < after.0,
-            "",
+            there.0 < before.0.min(after.0),
+            "x₁ and the force have their peaks together; before and after is 0.5 Hz away",
         ),
         Claim::told(
             "peak force and impulse a cycle, going up, largest",
