@@ -1,7 +1,7 @@
 //! The antiresonance of figures 3.13 to 3.15, and where x₁ is least in truth.
 
 use crate::impulse::{IMPULSE, without};
-use crate::programs::{JIDNEW, Slips, impulses, largest as largest_of};
+use crate::programs::{JIDNEW, Program, impulses, largest as largest_of};
 use crate::scene::{accepted, add_orbits, grid, hertz, ratio, real, rig, under_impulses, under_sine};
 use crate::sheet::{Claim, Sheet};
 use vibroimpact::Result;
@@ -70,26 +70,36 @@ pub fn sheet() -> Result<Sheet> {
     claims.push(of_sine());
     claims.extend(printed());
     let find = |nu: f64| under_impulses(&rig, IMPULSE, nu);
-    let mut plot =
-        Plot::new(ratio(1.0, 2.4), AxisSpec::new("Largest displacement", "mm").log().limits(0.5, 50.0))
-            .legend(Legend::Above);
-    let outside = spurious(0.7, 0.1, &nu)?;
-    plot = plot.with(
-        Series::points("x₁ of 3.42 to 3.44, τ outside (0, T)", outside.0, outside.1)
-            .ink(Ink::Nth(3))
-            .marker(Marker::Cross),
-    );
-    plot = add_orbits(plot, "x₁ of orbits", 0, &grid(1.0, 2.4, 1121), find, |o| 1e3 * of_orbit(o)[0]);
+    let fine = grid(1.0, 2.4, 1121);
+    let (at, timings, x1) = spurious(&nu)?;
+    let crosses = |name: &str, y: &[f64]| {
+        Series::points(name, at.clone(), y.to_vec()).ink(Ink::Nth(3)).marker(Marker::Cross)
+    };
+    let time = AxisSpec::new("Time τ to the impact in cycles", "").limits(0.0, 2.0);
+    let when = Plot::new(ratio(1.0, 2.4), time)
+        .title("(a) time from impulse to impact")
+        .with(crosses("", &timings))
+        .with(Series::horizontal("", 1.0));
+    let when = add_orbits(when, "", 0, &fine, find, |o| o.timing / o.period());
+    let mut size = Plot::new(ratio(1.0, 2.4), AxisSpec::new("Largest value", "mm").log().limits(0.5, 20.0))
+        .title("(b) displacements")
+        .legend(Legend::Above)
+        .with(crosses("x₁ of 3.42 to 3.44, τ outside (0, T)", &x1));
+    size = add_orbits(size, "x₁ of orbits", 0, &fine, find, |o| 1e3 * of_orbit(o)[0]);
     for (i, name, nth, marker) in
         [(0, "x₁ from rest", 0, Marker::OpenCircle), (1, "x₂ from rest", 1, Marker::Square)]
     {
         let y: Vec<f64> = all.iter().map(|s| 1e3 * s.largest[i]).collect();
-        plot = plot.with(Series::points(name, nu.clone(), y).ink(Ink::Nth(nth)).marker(marker));
+        size = size.with(Series::points(name, nu.clone(), y).ink(Ink::Nth(nth)).marker(marker));
     }
-    let figure = Figure::double("The antiresonance under impulses").height(100.0).panel(plot.with(Series::vertical("thesis", 1.75))).caption(
-        "Largest displacement under impulses of 0.009 N s, R = 0.7, c₁ = c₂ = 0.1. Crosses: what the equations of the thesis give with τ outside \
-         0 < τ < T, c₁ = 0. Line: orbits with one impact a cycle. Open marks: the motion 2000 cycles after rest.",
-    );
+    let figure = Figure::double("The antiresonance under impulses")
+        .height(150.0)
+        .panel(when.legend(Legend::Hidden))
+        .panel(size.with(Series::vertical("thesis", 1.75)))
+        .caption(
+            "Impulses of 0.009 N s, R = 0.7, c₁ = c₂ = 0.1. Crosses: what the equations of the thesis give with τ outside 0 < τ < T, c₁ = 0. Lines: orbits \
+             with one impact a cycle, grey where they cannot be seen. Open marks: the motion 2000 cycles after rest.",
+        );
     Ok(Sheet::new(
         "antiresonance",
         "Figures 3.13 to 3.15: the antiresonance that is no motion",
@@ -99,21 +109,18 @@ pub fn sheet() -> Result<Sheet> {
 }
 
 /// The equations as they are meant: χ̇ and τ put right.
-fn meant(restitution: f64, c2: f64) -> crate::programs::Program {
-    impulses(restitution, c2, IMPULSE, Slips::default())
+fn meant(restitution: f64, c2: f64) -> Program {
+    impulses(restitution, c2, IMPULSE, &[])
 }
 
-/// ν and largest x₁ in mm of the roots with τ outside 0 < τ < T.
-fn spurious(restitution: f64, c2: f64, nu: &[f64]) -> Result<(Vec<f64>, Vec<f64>)> {
-    let mut found = (Vec::new(), Vec::new());
-    for nu in nu.iter().map(|nu| nu + 1e-4) {
-        let root = meant(restitution, c2).at(nu)?;
-        if root.impulse.norm() > 0.0 && !(0.0..1.0).contains(&root.timing) {
-            found.0.push(nu);
-            found.1.push(1e3 * root.largest[0]);
-        }
-    }
-    Ok(found)
+/// ν, τ/T and largest x₁ in mm of the roots of figure 3.15 with τ outside 0 < τ < T.
+fn spurious(nu: &[f64]) -> Result<(Vec<f64>, Vec<f64>, Vec<f64>)> {
+    let program = meant(0.7, 0.1);
+    let all = nu.iter().map(|nu| Ok((nu + 1e-4, program.at(nu + 1e-4)?))).collect::<Result<Vec<_>>>()?;
+    let outside = all.iter().filter(|(_, r)| r.impulse.norm() > 0.0 && !(0.0..1.0).contains(&r.timing));
+    let rows = outside.map(|(nu, root)| (*nu, (root.timing, 1e3 * root.largest[0])));
+    let (at, (timings, x1)) = rows.unzip();
+    Ok((at, timings, x1))
 }
 
 fn of_roots() -> Result<Vec<Claim>> {

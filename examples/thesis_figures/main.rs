@@ -43,7 +43,7 @@ fn main() -> Result<()> {
 
 /// All sheets, under the headings of the document.
 fn chapters() -> Result<Vec<(&'static str, Vec<Sheet>)>> {
-    let mut closed = vec![impulse::wall()?];
+    let mut closed = vec![impulse::wall()];
     closed.extend(sine::sheets()?);
     closed.push(programs::sheet()?);
     closed.extend(verdicts::sheets()?);
@@ -54,7 +54,7 @@ fn chapters() -> Result<Vec<(&'static str, Vec<Sheet>)>> {
     Ok(vec![
         ("Chapter 3: the closed form", closed),
         ("Chapter 4: simulations", simulated),
-        ("Chapter 5: the rig", vec![motions::patterns()?, numbers::spectra()?, numbers::rig()?]),
+        ("Chapter 5: the rig", vec![motions::patterns()?, numbers::spectra()?, numbers::rig()]),
         ("Chapter 6: the hammer drill", vec![numbers::drill()?]),
     ])
 }

@@ -10,27 +10,27 @@ use vibroimpact::figure::{AxisSpec, Figure, Ink, Legend, Plot, Series, Stroke};
 use vibroimpact::model::{Green, Rig};
 
 /// What is printed and is not right.
-#[derive(Clone, Copy, Default)]
-pub struct Slips {
+#[derive(Clone, Copy, PartialEq)]
+pub enum Slip {
     /// A² − Δ² is taken as 0 below 1e-6 m², which is Δ².
-    pub threshold: bool,
-    /// χ̇₁(T⁻) + χ̇₂(T⁻) in units of −1/(2M), where it is set to a number: 1 is right without dampers.
-    pub slopes: Option<f64>,
-    /// J with M in the place of M(1 + R).
-    pub exchange: bool,
-    /// sin φ with Ω₁² − ω² in the place of its square over ω²; or τ as φ/ω in the place of φ/Ω₁.
-    pub phase: bool,
-    /// The response to the impulses taken a period earlier at all times, since one `if` decides for all
-    /// frequencies.
-    pub earlier: bool,
+    Threshold,
+    /// χ̇₁(T⁻) + χ̇₂(T⁻) is so many times −1/(2M), 1 being right without dampers.
+    Slopes(f64),
+    /// J has M in the place of M(1 + R).
+    Exchange,
+    /// sin φ has Ω₁² − ω² in the place of its square over ω²; or τ is φ/ω in the place of φ/Ω₁.
+    Phase,
+    /// The impulse is taken a period earlier at all times, since one `if` decides for all frequencies.
+    Earlier,
 }
+use Slip::{Earlier, Exchange, Phase, Slopes, Threshold};
 
 /// A program: a sine of amplitude `size` (N), or impulses of `size` (N s) without the damper c₁.
 pub struct Program {
-    pub rig: Rig,
-    pub sine: bool,
-    pub size: f64,
-    pub slips: Slips,
+    rig: Rig,
+    sine: bool,
+    size: f64,
+    slips: &'static [Slip],
 }
 
 /// What it gives at one frequency ratio. Numbers are complex where it takes the root or the arcsine of what
@@ -45,80 +45,111 @@ pub struct Printed {
     pub timing: f64,
 }
 
+/// The motions that it adds up at one frequency.
+struct Parts {
+    omega: f64,
+    natural: f64,
+    /// χ₁, χ₂ and the sum of their slopes before the impact.
+    green: [Green; 2],
+    slopes: f64,
+    /// A₁ of the thesis under impulses.
+    unit: f64,
+    /// A and ω under a sine; 2FA₁|sin(Ω₁T/2)| and Ω₁ under impulses, which have the same quadratic for J.
+    amplitude: f64,
+    rate: f64,
+}
+
 impl Program {
-    /// Runs it at ν, which under a sine is ω over the damped natural frequency.
-    pub fn at(&self, nu: f64) -> Result<Printed> {
-        let rig = if self.sine { self.rig } else { Rig { c1: 0.0, ..self.rig } };
+    fn has(&self, slip: Slip) -> bool {
+        self.slips.contains(&slip)
+    }
+
+    fn parts(&self, nu: f64) -> Result<Parts> {
+        let rig = &self.rig;
         let natural = (rig.k1 / rig.m1).sqrt();
-        // Without c₁ under impulses, so that this is Ω₁ there.
+        // ν counts the damped natural frequency; c₁ is 0 under impulses.
         let omega = nu * (natural.powi(2) - (rig.c1 / rig.m1 / 2.0).powi(2)).sqrt();
         let period = TAU / omega;
         let [first, second] = rig.oscillators();
-        let [a, b] = [Green::new(rig.m1, first, period)?, Green::new(rig.m2, second, period)?];
-        let reduced = rig.reduced_mass();
-        let slopes = self.slips.slopes.map_or(a.slope_before + b.slope_before, |n| -n / (2.0 * reduced));
-        let exchange = if self.slips.exchange { reduced } else { rig.exchange() };
-        // The same quadratic for both: A and ω, or 2FA₁|sin(Ω₁T/2)| and Ω₁.
-        let turn = natural * period;
-        let unit = 1.0 / (2.0 * rig.m1 * natural * (1.0 - turn.cos()));
+        let green = [Green::new(rig.m1, first, period)?, Green::new(rig.m2, second, period)?];
+        let stated = self.slips.iter().find_map(|s| if let Slopes(n) = s { Some(n) } else { None });
+        let slopes =
+            stated.map_or(green[0].slope_before + green[1].slope_before, |n| -n / (2.0 * rig.reduced_mass()));
+        let opening = 1.0 - (natural * period).cos();
+        let unit = 1.0 / (2.0 * rig.m1 * natural * opening);
         let (amplitude, rate) = if self.sine {
             (self.size * rig.receptances(omega)[0].norm(), omega)
         } else {
-            (self.size * unit * (2.0 * (1.0 - turn.cos())).sqrt(), natural)
+            (self.size * unit * (2.0 * opening).sqrt(), natural)
         };
-        let (c, p) = (a.start + b.start, (1.0 / exchange + slopes) / rate);
-        let excess = amplitude.powi(2) - rig.gap.powi(2);
-        let excess = if self.slips.threshold && excess.abs() < 1e-6 { 0.0 } else { excess };
-        let root = Complex64::from((amplitude * c).powi(2) + p * p * excess).sqrt();
-        let impulse = (root - rig.gap * c) / (p * p + c * c);
-        let impulse = if impulse.re < 0.0 { Complex64::default() } else { impulse };
+        Ok(Parts { omega, natural, green, slopes, unit, amplitude, rate })
+    }
 
-        let p = (1.0 / rig.exchange() + slopes) / rate;
-        let sine = if self.sine {
+    /// J: the root with the positive sign, 0 where its real part is below 0.
+    fn exchanged(&self, parts: &Parts) -> Complex64 {
+        let exchange = if self.has(Exchange) { self.rig.reduced_mass() } else { self.rig.exchange() };
+        let c = parts.green[0].start + parts.green[1].start;
+        let p = (1.0 / exchange + parts.slopes) / parts.rate;
+        let excess = parts.amplitude.powi(2) - self.rig.gap.powi(2);
+        let excess = if self.has(Threshold) && excess.abs() < 1e-6 { 0.0 } else { excess };
+        let root = Complex64::from((parts.amplitude * c).powi(2) + p * p * excess).sqrt();
+        let impulse = (root - self.rig.gap * c) / (p * p + c * c);
+        if impulse.re < 0.0 { Complex64::default() } else { impulse }
+    }
+
+    /// sin φ, or sin Ω₁τ.
+    fn sine_of_phase(&self, parts: &Parts, impulse: Complex64) -> Complex64 {
+        let (rig, p) = (&self.rig, 1.0 / self.rig.exchange() + parts.slopes);
+        let (omega, natural) = (parts.omega, parts.natural);
+        if self.sine {
             let off = natural.powi(2) - omega.powi(2);
-            let off = if self.slips.phase { off } else { (off / omega).powi(2) };
-            -impulse * p * omega * Complex64::from(rig.c1.powi(2) + rig.m1.powi(2) * off).sqrt() / self.size
-        } else {
-            let opened = (rig.gap + impulse * c) / (2.0 * self.size * unit);
-            opened - impulse * p * turn.sin() / (2.0 * self.size * unit * (1.0 - turn.cos()))
-        };
-        let hit =
-            |phase: Complex64| self.driven(phase, 0.0, (omega, natural, unit, amplitude)) - impulse * a.start;
-        let met = |phase: &Complex64| (hit(*phase) - impulse * b.start - rig.gap).norm();
-        let two = [PI - sine.asin(), sine.asin()];
-        let two = if sine.re < 0.0 { [(-sine).asin() + PI, TAU - (-sine).asin()] } else { two };
-        let phase = if met(&two[0]) < met(&two[1]) { two[0] } else { two[1] };
-        let mut largest = [hit(phase).norm(), (impulse * b.start + rig.gap).norm()];
-        for i in 1..=100 {
-            let t = f64::from(i) * period / 100.0;
-            let x = self.driven(phase, t, (omega, natural, unit, amplitude)) - impulse * a.at(t).0;
-            largest[0] = largest[0].max(x.norm());
-            largest[1] = largest[1].max((impulse * b.at(t).0 + rig.gap).norm());
+            let off = if self.has(Phase) { off } else { (off / omega).powi(2) };
+            return -impulse * p * Complex64::from(rig.c1.powi(2) + rig.m1.powi(2) * off).sqrt() / self.size;
         }
-        let lead = phase.re / if self.slips.phase { omega } else { natural };
-        Ok(Printed { impulse, largest, miss: met(&phase), timing: lead / period })
+        let (c, turn) = (parts.green[0].start + parts.green[1].start, TAU * natural / omega);
+        let opened = rig.gap + impulse * c - impulse * p / natural * turn.sin() / (1.0 - turn.cos());
+        opened / (2.0 * self.size * parts.unit)
+    }
+
+    /// Runs it at ν.
+    pub fn at(&self, nu: f64) -> Result<Printed> {
+        let parts = self.parts(nu)?;
+        let [a, b] = &parts.green;
+        let impulse = self.exchanged(&parts);
+        let sine = self.sine_of_phase(&parts, impulse);
+        let passive = |t: f64| impulse * b.at(t).0 + self.rig.gap;
+        let active = |phase: Complex64, t: f64| self.driven(&parts, phase, t) - impulse * a.at(t).0;
+        let met = |phase: Complex64| (active(phase, 0.0) - passive(0.0)).norm();
+        let [one, other] = if sine.re < 0.0 {
+            [(-sine).asin() + PI, TAU - (-sine).asin()]
+        } else {
+            [PI - sine.asin(), sine.asin()]
+        };
+        let phase = if met(one) < met(other) { one } else { other };
+        let period = TAU / parts.omega;
+        let times: Vec<f64> = (0..=100).map(|i| f64::from(i) * period / 100.0).collect();
+        let top = |x: &dyn Fn(f64) -> Complex64| times.iter().map(|t| x(*t).norm()).fold(0.0, f64::max);
+        let largest = [top(&|t| active(phase, t)), top(&passive)];
+        let lead = phase.re / if self.has(Phase) { parts.omega } else { parts.natural };
+        Ok(Printed { impulse, largest, miss: met(phase), timing: lead / period })
     }
 
     /// Displacement of mass 1 without impacts, `t` after the impact.
-    fn driven(
-        &self,
-        phase: Complex64,
-        t: f64,
-        (omega, natural, unit, amplitude): (f64, f64, f64, f64),
-    ) -> Complex64 {
+    fn driven(&self, parts: &Parts, phase: Complex64, t: f64) -> Complex64 {
+        let &Parts { omega, natural, unit, amplitude, .. } = parts;
         if self.sine {
             return amplitude * (phase + omega * t).cos();
         }
-        let (period, lead) = (TAU / omega, phase / if self.slips.phase { omega } else { natural });
+        let (period, lead) = (TAU / omega, phase / if self.has(Phase) { omega } else { natural });
         let since = lead + t;
         // At the impact it is not taken into the period.
-        let inside = t == 0.0 || since.re <= period && !self.slips.earlier;
+        let inside = t == 0.0 || since.re <= period && !self.has(Earlier);
         let since = if inside { since } else { since - period };
         self.size * unit * ((natural * since).sin() + (natural * (period - since)).sin())
     }
 }
 
-/// Frequencies of the programs, from `from` to `to`, with their places of largest J and of all peaks of x₁.
+/// Places of the peaks of a value over ν.
 fn peaks(nu: &[f64], value: impl Fn(f64) -> f64) -> Vec<f64> {
     let all: Vec<f64> = nu.iter().map(|nu| value(*nu)).collect();
     let inner = all.windows(3).zip(nu.iter().skip(1));
@@ -130,18 +161,17 @@ fn told(nu: &[f64]) -> String {
     if all.is_empty() { "none".to_owned() } else { all.join(", ") }
 }
 
-pub fn sine(restitution: f64, damper: f64, size: f64, slips: Slips) -> Program {
+pub fn sine(restitution: f64, damper: f64, size: f64, slips: &'static [Slip]) -> Program {
     Program { rig: Rig { c1: damper, c2: damper, ..rig(restitution) }, sine: true, size, slips }
 }
 
-pub fn impulses(restitution: f64, c2: f64, size: f64, slips: Slips) -> Program {
+pub fn impulses(restitution: f64, c2: f64, size: f64, slips: &'static [Slip]) -> Program {
     Program { rig: Rig { c1: 0.0, c2, ..rig(restitution) }, sine: false, size, slips }
 }
 
-pub const JSNEW: Slips =
-    Slips { threshold: true, slopes: None, exchange: false, phase: false, earlier: false };
-const JSDNEW: Slips = Slips { exchange: true, phase: true, ..JSNEW };
-pub const JIDNEW: Slips = Slips { slopes: Some(2.0), phase: true, earlier: true, ..JSNEW };
+pub const JSNEW: &[Slip] = &[Threshold];
+const JSDNEW: &[Slip] = &[Threshold, Exchange, Phase];
+pub const JIDNEW: &[Slip] = &[Threshold, Slopes(2.0), Phase, Earlier];
 
 pub fn impulse(program: &Program, nu: f64) -> f64 {
     program.at(nu).map_or(f64::NAN, |p| p.impulse.re)
@@ -172,7 +202,7 @@ pub fn sheet() -> Result<Sheet> {
             Plot::new(crate::scene::ratio(0.9, 1.2), axis("Largest x₁", "m"))
                 .title("(a) jsdnew, figure 3.6")
                 .with(series("as printed", 0, &near, x1(JSDNEW)))
-                .with(series("sin φ put right", 1, &near, x1(Slips { phase: false, ..JSDNEW })))
+                .with(series("sin φ put right", 1, &near, x1(&[Threshold, Exchange])))
                 .with(series("M(1 + R), too", 2, &near, x1(JSNEW)))
                 .legend(Legend::Above),
         )
@@ -180,7 +210,7 @@ pub fn sheet() -> Result<Sheet> {
             Plot::new(crate::scene::ratio(0.75, 2.5), axis("Impulse J", "N s"))
                 .title("(b) jinew, figure 3.10")
                 .with(series("as printed", 0, &all, j(JIDNEW)))
-                .with(series("−1/(2m₁) − 1/(2m₂)", 1, &all, j(Slips { slopes: Some(1.0), ..JIDNEW })))
+                .with(series("−1/(2m₁) − 1/(2m₂)", 1, &all, j(&[Threshold, Slopes(1.0), Phase, Earlier])))
                 .legend(Legend::Above),
         )
         .caption(
@@ -201,7 +231,7 @@ fn of_sine() -> Result<Vec<Claim>> {
         let what = format!("3.4, jsnew as printed, R 1, F₀ {force} N: ν of the clapping resonance");
         claims.push(Claim::number(what, "2.13", best.unwrap_or(f64::NAN), (2, ""), why));
     }
-    let open = sine(1.0, 0.1, 0.05, Slips { threshold: false, ..JSNEW }).at(2.12)?.impulse;
+    let open = sine(1.0, 0.1, 0.05, &[]).at(2.12)?.impulse;
     claims.push(Claim::told(
         "3.4, jsnew without its threshold, F₀ 0.05 N: J at ν 2.12",
         "–",
@@ -217,12 +247,7 @@ fn of_sine() -> Result<Vec<Claim>> {
             "1, and another towards 1.123",
             "the motions have no peak there: sin φ has Ω₁² − ω² in the place of (Ω₁² − ω²)²/ω², and a parenthesis is missing",
         ),
-        (
-            Slips { phase: false, ..JSDNEW },
-            "with sin φ put right",
-            "–",
-            "J is computed with M, sin φ with M(1 + R)",
-        ),
+        (&[Threshold, Exchange], "with sin φ put right", "–", "J is computed with M, sin φ with M(1 + R)"),
         (
             JSNEW,
             "with M(1 + R), too",
@@ -242,7 +267,7 @@ fn of_sine() -> Result<Vec<Claim>> {
         ));
     }
     for (figure, nu, force) in [("3.8", 2.131, 0.5), ("3.9", 1.0501, 0.05)] {
-        let printed = sine(0.7, 0.0, force, Slips { slopes: Some(2.0), ..JSNEW }).at(nu)?.impulse.re;
+        let printed = sine(0.7, 0.0, force, &[Threshold, Slopes(2.0)]).at(nu)?.impulse.re;
         let undamped = Rig { c1: 0.0, c2: 0.0, ..rig(0.7) };
         let right = under_sine(&undamped, force, nu).first().map_or(f64::NAN, |o| o.impulse);
         let why = "without dampers it has −1/(2M) twice in the place of −1/(2m₁) − 1/(2m₂); near A = Δ its threshold acts, too";
@@ -254,16 +279,16 @@ fn of_sine() -> Result<Vec<Claim>> {
 }
 
 fn of_impulses() -> Result<Vec<Claim>> {
-    let masses = Slips { slopes: Some(1.0), ..JIDNEW };
+    let masses: &[Slip] = &[Threshold, Slopes(1.0), Phase, Earlier];
     let [printed, right] = [JIDNEW, masses].map(|slips| impulse(&impulses(1.0, 0.0, 0.009, slips), 2.1301));
     let all = grid(0.7501, 2.9901, 113);
-    let miss = |slips| {
+    let miss = |slips: &'static [Slip]| {
         let program = impulses(0.7, 0.1, 0.009, slips);
         all.iter().map(|nu| program.at(*nu).map_or(0.0, |p| p.miss)).fold(0.0, f64::max)
     };
-    let [slip, none] = [masses, Slips { phase: false, ..masses }].map(miss);
-    let over_time = |phase| impulses(0.7, 0.1, 0.005, Slips { threshold: false, phase, ..masses }).at(1.501);
-    let [slow, fast] = [over_time(true)?, over_time(false)?];
+    let [slip, none] = [masses, &[Threshold, Slopes(1.0), Earlier]].map(miss);
+    let over_time = |slips| impulses(0.7, 0.1, 0.005, slips).at(1.501);
+    let [slow, fast] = [over_time(&[Slopes(1.0), Phase])?, over_time(&[Slopes(1.0)])?];
     Ok(vec![
         Claim::told(
             "3.10, jinew as printed, R 1, c₂ 0: J at ν 2.1301",
