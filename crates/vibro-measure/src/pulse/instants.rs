@@ -10,8 +10,8 @@ use vibro_record::{Error, Finding, Result};
 /// cases.
 const RESOLVED: f64 = 3.0;
 
-/// Ratio of the frequencies at which a contact behind a low-pass is looked for: 199 of them reach 16 000 times
-/// the first.
+/// Ratio of the frequencies at which a contact behind a low-pass is looked for: 199 of them reach 16 000
+/// times the first.
 const FINER: f64 = 1.05;
 
 /// A Kelvin–Voigt contact from the time to its largest force and its duration, both in s.
@@ -223,7 +223,7 @@ mod tests {
         assert!(two_times(1.0, 3.0, Some(-1.0), &plain()).is_err());
     }
 
-    /// The same runs behind the low-pass of 30 kHz that they were measured with: that ends later than they do.
+    /// The same runs behind the low-pass of 30 kHz that they were measured with, which ends later than they.
     #[test]
     fn a_low_pass_that_is_as_long_leaves_no_contact() {
         for peak in [6.64e-6, 6.25e-6] {
