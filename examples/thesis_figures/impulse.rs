@@ -1,5 +1,6 @@
 //! Closed form under impulses, and the impact oscillator.
 
+use crate::programs;
 use crate::scene::{accepted, add_orbits, border, grid, hertz, ratio, rig, under_impulses, under_sine};
 use crate::sheet::{Claim, Sheet};
 use std::f64::consts::PI;
@@ -7,118 +8,71 @@ use vibroimpact::Result;
 use vibroimpact::analysis::figures;
 use vibroimpact::figure::{AxisSpec, Figure, Ink, Legend, Marker, Plot, Series, Stroke};
 use vibroimpact::model::portrait::{Portrait, PortraitOptions};
-use vibroimpact::model::{Excitation, Green, Impulses, Motion, Rig, Simulation};
+use vibroimpact::model::{Excitation, Impulses, Motion, Rig, Simulation};
 
 /// Impulse of the thesis' examples in N s.
-const IMPULSE: f64 = 0.009;
+pub const IMPULSE: f64 = 0.009;
 
 pub fn sheets() -> Result<Vec<Sheet>> {
-    Ok(vec![impulses(), timing()?, damping(), absent()?, wall()])
+    Ok(vec![impulses()?, damping(), absent()?])
 }
 
 fn impulse_axis() -> AxisSpec {
     AxisSpec::new("Impulse J", "N s").log()
 }
 
-fn exists(rig: &Rig, nu: f64) -> bool {
+/// The rig of a figure under impulses: the equations of the thesis leave c₁ out.
+fn undriven(restitution: f64, c2: f64) -> Rig {
+    Rig { c1: 0.0, c2, ..rig(restitution) }
+}
+
+pub fn exists(rig: &Rig, nu: f64) -> bool {
     under_impulses(rig, IMPULSE, nu).iter().any(|o| o.validity.exists)
 }
 
-fn impulses() -> Sheet {
+/// Borders in ν of the range around 1.5 without any motion of one impact a cycle.
+pub fn without(rig: &Rig) -> [f64; 2] {
+    [1.05, 2.45].map(|end| border(1.5, end, |nu| !exists(rig, nu)))
+}
+
+fn impulses() -> Result<Sheet> {
     let nu = grid(0.75, 2.5, 1401);
-    let scenes = [(0.009, 0.7), (0.009, 1.0), (0.02, 0.7), (0.005, 0.7)];
     let mut plot = Plot::new(ratio(0.75, 2.5), impulse_axis().limits(5e-4, 0.5)).legend(Legend::Above);
-    for (nth, (impulse, restitution)) in scenes.into_iter().enumerate() {
-        let rig = rig(restitution);
-        let name = format!("F {impulse} N s, R {restitution}");
-        plot = add_orbits(plot, &name, nth, &nu, |nu| under_impulses(&rig, impulse, nu), |o| o.impulse);
+    let scenes = [("3.10", 1.0, 0.0), ("3.11", 0.7, 0.0), ("3.12", 0.7, 0.1)];
+    let mut claims = Vec::new();
+    let mut first = Vec::new();
+    for (nth, (figure, restitution, c2)) in scenes.into_iter().enumerate() {
+        let rig = undriven(restitution, c2);
+        let find = |nu| under_impulses(&rig, IMPULSE, nu);
+        plot = add_orbits(plot, &format!("R {restitution}, c₂ {c2}"), nth, &nu, find, |o| o.impulse);
+        let at = |nu| find(nu).iter().filter(|o| o.validity.exists).map(|o| o.impulse).reduce(f64::max);
+        let [one, two] = [at(1.0501), at(2.1301)];
+        first.push(one.unwrap_or(f64::NAN));
+        let equations = programs::impulses(restitution, c2, IMPULSE, &[]);
+        let [a, b] = [equations.at(1.0501)?.timing, equations.at(2.1301)?.timing];
+        let outside = format!("the roots of 3.42 have τ {a:.3} T and {b:.3} T: both are outside 0 < τ < T");
+        let told = |j: Option<f64>| j.map_or_else(|| "no motion".to_owned(), |j| format!("{j:.4} N s"));
+        let (thesis, agrees, why) = match figure {
+            "3.10" => ("second much the larger", two > one, outside.as_str()),
+            "3.11" => ("first dominates, second reduced", one > two && two.is_some(), ""),
+            _ => ("first reduced by c₂", first[2] < first[1], ""),
+        };
+        let what = format!("{figure}, R {restitution}, c₂ {c2}: J at ν 1.0501 and 2.1301");
+        claims.push(Claim::told(what, thesis, format!("{}, {}", told(one), told(two)), agrees, why));
+        let [from, to] = without(&rig);
+        claims.push(Claim::told(
+            format!("{figure}: ν without a motion of one impact a cycle"),
+            "none, a root for any τ",
+            format!("{from:.4} to {to:.4}"),
+            from > to,
+            "all roots in 0 < τ < T have J < 0 there; what 3.42 to 3.44 give is spurious",
+        ));
     }
-    let rig = rig(0.7);
-    let [low, high] = [(1.1, 1.5), (1.5, 2.0)].map(|(a, b)| border(a, b, |nu| exists(&rig, nu)));
-    let why =
-        "all roots in 0 < τ < T have J < 0 between; what the equations 3.42 to 3.44 give there is spurious";
-    let claims = vec![Claim::told(
-        "F 0.009 N s, R 0.7: motions with one impact a cycle",
-        "a root for any τ, one of them drawn over time",
-        format!("none for ν {low:.4} to {high:.4}"),
-        exists(&rig, 1.3) && exists(&rig, 1.7),
-        why,
-    )];
     let figure = Figure::double("Impulse over frequency under impulses").height(95.0).panel(plot).caption(
-        "Impulse of all motions with one impact a cycle under an impulse F a cycle. Coloured: those that can be and are stable; thin and grey: the others.",
+        "Impulse of all motions with one impact a cycle under an impulse of 0.009 N s a cycle, c₁ = 0. Coloured: those that can be and are stable; \
+         thin and grey: the others, such as those without losses, which are neutral.",
     );
-    Sheet::new("impulse", "Impulses: impulse over frequency", figure, claims)
-}
-
-/// A root of the contact conditions at the time τ between impulse and impact, in cycles, with its J.
-struct Root {
-    timing: f64,
-    impulse: f64,
-}
-
-/// Roots of the conditions y(τ) = Δ + JC, ẏ(τ) = JP where y, the response to the impulses, is continued
-/// beyond its cycle, as the equations with sin λ(t + τ) do that ask for no 0 < τ < T.
-fn continued(rig: &Rig, nu: f64, from: f64, to: f64) -> Result<Vec<Root>> {
-    let period = 1.0 / hertz(nu);
-    let [first, second] = rig.oscillators();
-    let [a, b] = [Green::new(rig.m1, first, period)?, Green::new(rig.m2, second, period)?];
-    let (c, p) = (a.start + b.start, 1.0 / rig.exchange() + a.slope_before + b.slope_before);
-    let g = |timing: f64| {
-        let (y, v) = a.at(timing * period);
-        p * (IMPULSE * y - rig.gap) - c * IMPULSE * v
-    };
-    let at = grid(from, to, 4001);
-    let crossing = at.windows(2).filter(|w| g(w[0]) * g(w[1]) < 0.0);
-    Ok(crossing
-        .map(|w| {
-            let timing = border(w[0], w[1], |t| g(t) < 0.0);
-            Root { timing, impulse: IMPULSE * a.at(timing * period).1 / p }
-        })
-        .collect())
-}
-
-fn timing() -> Result<Sheet> {
-    let rig = rig(0.7);
-    let nu = grid(0.75, 2.5, 351);
-    let mut spurious = (Vec::new(), Vec::new());
-    for nu in &nu {
-        for (from, to) in [(-1.0, 0.0), (1.0, 2.0)] {
-            for root in continued(&rig, *nu, from, to)?.iter().filter(|r| r.impulse > 0.0) {
-                spurious.0.push(*nu);
-                spurious.1.push(root.timing);
-            }
-        }
-    }
-    let fine = grid(0.75, 2.5, 1401);
-    let plot = Plot::new(
-        ratio(0.75, 2.5),
-        AxisSpec::new("Time τ from impulse to impact in cycles", "").limits(-1.0, 2.0),
-    )
-    .with(Series::points("spurious roots", spurious.0, spurious.1).ink(Ink::Nth(3)).marker(Marker::Cross))
-    .with(Series::horizontal("", 0.0))
-    .with(Series::horizontal("", 1.0))
-    .legend(Legend::Above);
-    let plot =
-        add_orbits(plot, "real", 0, &fine, |nu| under_impulses(&rig, IMPULSE, nu), |o| o.timing / o.period());
-    let outside = [continued(&rig, 1.5, -1.0, 0.0)?, continued(&rig, 1.5, 1.0, 2.0)?];
-    let told: Vec<String> = outside
-        .iter()
-        .flatten()
-        .filter(|r| r.impulse > 0.0)
-        .map(|r| format!("τ {:.3} T (J {:.5} N s)", r.timing, r.impulse).replace('-', "−"))
-        .collect();
-    let claims = vec![Claim::told(
-        "roots with J > 0 at ν 1.5",
-        "motions",
-        format!("{}: spurious", told.join(", ")),
-        told.is_empty(),
-        "the response to the impulses holds from one impulse to the next only, 0 < τ < T",
-    )];
-    let figure = Figure::double("Timing under impulses").height(90.0).panel(plot).caption(
-        "Time from impulse to impact, F = 0.009 N s, R = 0.7: real motions coloured, others with J > 0 thin and grey; crosses: roots with J > 0 \
-         of the same equations outside of 0 < τ < T.",
-    );
-    Ok(Sheet::new("impulse_timing", "Impulses: timing, and the spurious roots", figure, claims))
+    Ok(Sheet::new("impulse", "Figures 3.10 to 3.12: impulses, impulse over frequency", figure, claims))
 }
 
 fn damping() -> Sheet {
@@ -139,17 +93,20 @@ fn damping() -> Sheet {
     let why = format!(
         "c₁ is left out of 3.40 to 3.44, which makes J {excess:.0} % too large; the closed form needs no small damping"
     );
-    let claims = vec![Claim::told(
-        "J at ν 1.0501, F 0.009 N s, R 0.7",
-        format!("{printed:.5} N s"),
-        format!("{right:.5} N s"),
-        (printed - right).abs() < 0.01 * right,
-        &why,
-    )];
+    let claims = vec![
+        Claim::told(
+            "J at ν 1.0501, F 0.009 N s, R 0.7",
+            format!("{printed:.5} N s"),
+            format!("{right:.5} N s"),
+            true,
+            "",
+        )
+        .against(&format!("{printed:.5}"), right, &why),
+    ];
     let figure = Figure::single("Small damping").panel(plot).caption(
         "Impulse at the grazing resonance under impulses of 0.009 N s, R = 0.7, with the damper of the excited mass and without it.",
     );
-    Sheet::new("impulse_damping", "Impulses: the damper that is left out", figure, claims)
+    Sheet::new("impulse_damping", "Beside 3.40 to 3.44: the damper that is left out", figure, claims)
 }
 
 fn absent() -> Result<Sheet> {
@@ -159,20 +116,39 @@ fn absent() -> Result<Sheet> {
     motion.advance(3000.0 / hertz(1.5), &mut |_| {})?;
     let portrait = Portrait::take(&mut motion, &PortraitOptions { cycles: 300, samples: 100, shown: 6 })?;
     let none = !exists(&rig, 1.5);
-    let claims = vec![Claim::told(
-        "motion at ν 1.5, F 0.009 N s, R 0.7",
+    let mut claims = vec![Claim::told(
+        "motion at ν 1.5, F 0.009 N s, R 0.7, c₁ and c₂ 0.1",
         "an orbit with one impact a cycle",
         format!("from rest: impacts/cycles {}", portrait.pattern.regime),
         !none,
-        "no such orbit exists there, nor does that of its last figure over time",
+        "no such orbit exists there",
     )];
+    for (c1, c2) in [(0.0, 0.0), (0.1, 0.0), (0.1, 0.1)] {
+        let found = exists(&Rig { c1, ..undriven(1.0, c2) }, 2.13);
+        claims.push(Claim::told(
+            format!("3.18: orbit at ν 2.13, F 0.009 N s, R 1, c₁ {c1}, c₂ {c2}"),
+            if c1 == 0.0 { "drawn over time" } else { "–" },
+            if found { "exists" } else { "none with J > 0" },
+            found,
+            if found {
+                "it is absent without dampers only"
+            } else {
+                "the root drawn has τ outside 0 < τ < T; only dampers bring one into it"
+            },
+        ));
+    }
     let figure =
         figures::traces("Motion where no orbit has one impact a cycle", &portrait, rig.gap).height(100.0);
-    Ok(Sheet::new("impulse_absent", "Impulses: the motion where there is no such orbit", figure, claims))
+    Ok(Sheet::new(
+        "impulse_absent",
+        "Figure 3.18 and beside 3.14: motions that are no orbits",
+        figure,
+        claims,
+    ))
 }
 
 /// The impact oscillator: mass 2 a wall, no losses, for which J = 2mΩ tan(πΩ/ω)(±|A| − Δ).
-fn wall() -> Sheet {
+pub fn wall() -> Sheet {
     let limit = Rig { m2: f64::INFINITY, c1: 0.0, restitution: 1.0, ..Rig::thesis() };
     let natural = (limit.k1 / limit.m1).sqrt();
     let force = 0.3;
@@ -188,7 +164,7 @@ fn wall() -> Sheet {
         nu.iter().map(|nu| value(*nu)).map(|j| if j > 0.0 { j } else { f64::NAN }).collect::<Vec<_>>()
     };
     let coarse = grid(0.705, 1.995, 44);
-    let plot = Plot::new(ratio(0.7, 2.1), impulse_axis().limits(1e-2, 10.0))
+    let plot = Plot::new(ratio(0.7, 2.1), impulse_axis().limits(1e-3, 10.0))
         .with(Series::line("wall", nu.clone(), shown(&computed)).ink(Ink::Nth(0)).stroke(Stroke::Solid))
         .with(
             Series::points(
@@ -199,16 +175,39 @@ fn wall() -> Sheet {
             .ink(Ink::Nth(1))
             .marker(Marker::OpenCircle),
         );
+    let backbone = shown(&|nu: f64| -2.0 * limit.m1 * natural * limit.gap * (PI / nu).tan());
+    let plot =
+        plot.with(Series::line("backbone", nu.clone(), backbone).ink(Ink::Grey).stroke(Stroke::Dashed));
     let worst = coarse.iter().map(|nu| (computed(*nu) / textbook(*nu) - 1.0).abs()).fold(0.0, f64::max);
-    let claims = vec![Claim::told(
-        "impulse in the limit of a single mass",
-        "J = 2mΩ tan(πΩ/ω)(±A − Δ)",
-        format!("the same{}", if worst < 1e-9 { " to 9 digits" } else { "" }),
-        worst < 1e-9,
-        "no losses, R = 1, mass 2 a wall",
-    )];
+    let omega = 1.5 * natural;
+    let amplitude = force / (limit.m1 * (natural * natural - omega * omega).abs());
+    let printed = 2.0 * limit.m1 * natural * (PI / 1.5).tan() * (amplitude - limit.gap);
+    let right = computed(1.5);
+    let claims = vec![
+        Claim::told(
+            "3.33 in the limit of a single mass",
+            "J = 2mΩ tan(πΩ/ω)(±A − Δ)",
+            format!("the same{}", if worst < 1e-9 { " to 9 digits" } else { "" }),
+            worst < 1e-9,
+            "no losses, R = 1, mass 2 a wall",
+        ),
+        Claim::told(
+            "3.65 at ν 1.5, F₀ 0.3 N: J > 0",
+            format!("{printed:.4} N s").replace('-', "−"),
+            format!("{right:.4} N s"),
+            (printed - right).abs() < 1e-9,
+            "3.63 to 3.66 have one sign of A: where χ < 0, here for ν 1 to 2, J = (−Δ − A)/χ is the root above 0",
+        ),
+        Claim::told(
+            "3.3: the free motion, F₀ 0",
+            "a backbone",
+            "J = −2mΩΔ tan(πΩ/ω)",
+            true,
+            "above 0 for ν 1 to 2; it goes to infinity at ν 2",
+        ),
+    ];
     let figure = Figure::single("Impact oscillator").panel(plot).caption(
-        "Larger impulse of the impact oscillator without losses, F₀ = 0.3 N, over the textbook's closed form.",
+        "Larger impulse of the impact oscillator without losses, F₀ = 0.3 N, over the textbook's closed form, and its backbone (F₀ = 0).",
     );
-    Sheet::new("wall", "The single-mass limit: an impact oscillator", figure, claims)
+    Sheet::new("wall", "Figure 3.3 and 3.63 to 3.66: the impact oscillator", figure, claims)
 }

@@ -2,9 +2,11 @@
 //! `cargo run --release --example thesis_figures [-- FOLDER]`; FOLDER is `docs/thesis` of this project where
 //! it is left out.
 
+mod antiresonance;
 mod impulse;
 mod motions;
 mod numbers;
+mod programs;
 mod scene;
 mod sheet;
 mod sine;
@@ -41,16 +43,19 @@ fn main() -> Result<()> {
 
 /// All sheets, under the headings of the document.
 fn chapters() -> Result<Vec<(&'static str, Vec<Sheet>)>> {
-    let mut closed = sine::sheets()?;
+    let mut closed = vec![impulse::wall()];
+    closed.extend(sine::sheets()?);
+    closed.push(programs::sheet()?);
     closed.extend(verdicts::sheets()?);
     closed.extend(impulse::sheets()?);
+    closed.push(antiresonance::sheet()?);
     let mut simulated = sweeps::sheets()?;
-    simulated.extend(motions::sheets()?);
-    simulated.push(numbers::spectra()?);
+    simulated.extend(motions::simulated()?);
     Ok(vec![
-        ("Figures 3.3 to 3.18: the closed form", closed),
-        ("Figures 4.4 to 4.30: simulations and the rig", simulated),
-        ("Numbers", vec![numbers::numbers()?]),
+        ("Chapter 3: the closed form", closed),
+        ("Chapter 4: simulations", simulated),
+        ("Chapter 5: the rig", vec![motions::patterns()?, numbers::spectra()?, numbers::rig()]),
+        ("Chapter 6: the hammer drill", vec![numbers::drill()?]),
     ])
 }
 
@@ -82,7 +87,7 @@ mod tests {
         }
         assert!(size < 2_000_000, "{size}");
         // Behind the figures stand tables of commands, which nothing computes.
-        let (figures, _) = text.split_once("## Scripts, simulations and hand calculations").unwrap();
+        let (figures, _) = text.split_once("## By number").unwrap();
         let stated = figures.lines().filter(|l| l.starts_with("| ") && !l.starts_with("| what |"));
         for row in stated {
             assert!(rows.iter().any(|r| r == row), "nothing computes the row {row}");

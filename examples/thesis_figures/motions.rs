@@ -7,42 +7,63 @@ use vibroimpact::analysis::figures;
 use vibroimpact::figure::{AxisSpec, Figure, Ink, Legend, Marker, Plot, Series};
 use vibroimpact::model::portrait::{Portrait, PortraitOptions};
 use vibroimpact::model::regime::regime;
-use vibroimpact::model::{Chirp, Compliant, Excitation, Motion, Regime, Rig, Simulation, Sine, State};
+use vibroimpact::model::{
+    Chirp, Compliant, Excitation, Motion, Pulses, Regime, Rig, Simulation, Sine, State,
+};
 use vibroimpact::{Error, Result};
 
-pub fn sheets() -> Result<Vec<Sheet>> {
-    let mut all = vec![eleven()?, irregular()?];
-    for (name, title, hz, in_phase) in [
-        ("motion_grazing", "Motion at the grazing resonance, sweeping up", 5.5, true),
-        ("motion_clapping", "Motion at the clapping resonance, sweeping up", 10.4, false),
+/// Motions that chapter 4 draws over time.
+pub fn simulated() -> Result<Vec<Sheet>> {
+    let sine = |force| Excitation::Sine(Sine { force, frequency: 3.0 });
+    let pulses = |force| Excitation::Pulse(Pulses { force, width: 0.01, frequency: 3.0 });
+    let mut all = vec![eleven()?];
+    let missed = "its grazing resonance is at 5.58 Hz here";
+    for (name, title, hz, excitation, in_phase, why) in [
+        ("motion_missed", "Figure 4.20: motion at 4.66 Hz, sine of 0.1 N", 4.66, sine(0.1), true, missed),
+        ("motion_grazing", "Beside 4.20: motion at 5.5 Hz, sine of 0.1 N", 5.5, sine(0.1), true, ""),
+        ("motion_pulses", "Figure 4.21: motion at 5.66 Hz, pulses of 0.5 N", 5.66, pulses(0.5), true, ""),
+        ("motion_clapping", "Figure 4.22: motion at 10.61 Hz, sine of 0.2 N", 10.61, sine(0.2), false, ""),
+        (
+            "motion_hammering",
+            "Figure 4.23: motion at 10.72 Hz, pulses of 0.6 N",
+            10.72,
+            pulses(0.6),
+            false,
+            "",
+        ),
     ] {
-        all.push(swept_to(name, title, hz, in_phase)?);
+        let (figure, claim) = swept_to(title, hz, &excitation, in_phase, why)?;
+        all.push(Sheet::new(name, title, figure, vec![claim.only_with("this force")]));
     }
     Ok(all)
 }
 
-/// The motion that a sweep up with a sine of 0.1 N has at `hz`.
-fn swept_to(name: &'static str, title: &'static str, hz: f64, in_phase: bool) -> Result<Sheet> {
+/// The motion that a sweep up from 3 Hz has at `hz`.
+fn swept_to(
+    title: &str,
+    hz: f64,
+    excitation: &Excitation,
+    in_phase: bool,
+    why: &str,
+) -> Result<(Figure, Claim)> {
     let rig = Rig::thesis();
-    let start = 3.0;
-    let sine = Excitation::Sine(Sine { force: 0.1, frequency: start });
-    let mut motion = Compliant::new(&rig, &sine, CONTACT, State::REST, 0.0)?;
-    Chirp::new(0.02).advance(&mut motion, (hz - start) / 0.02, &mut |_| {})?;
+    let mut motion = Compliant::new(&rig, excitation, CONTACT, State::REST, 0.0)?;
+    Chirp::new(0.02).advance(&mut motion, (hz - 3.0) / 0.02, &mut |_| {})?;
     motion.advance(motion.time() + 300.0 / hz, &mut |_| {})?;
     let portrait = Portrait::take(&mut motion, &PortraitOptions { cycles: 40, samples: 150, shown: 4 })?;
     let product: f64 = portrait.states.iter().map(|s| s.x1 * s.x2).sum();
     let squares = |of: fn(&State) -> f64| portrait.states.iter().map(|s| of(s).powi(2)).sum::<f64>().sqrt();
     let alike = product / squares(|s| s.x1) / squares(|s| s.x2);
-    let claims = vec![Claim::told(
+    let claim = Claim::told(
         format!("motion of both masses at {hz} Hz"),
         if in_phase { "in phase" } else { "out of phase" },
         format!("correlation of x₁ and x₂ {alike:.2}, impacts/cycles {}", portrait.pattern.regime)
             .replace('-', "−"),
         (alike > 0.0) == in_phase,
-        "",
-    )];
+        why,
+    );
     let figure = figures::traces(title, &portrait, rig.gap).height(100.0);
-    Ok(Sheet::new(name, title, figure, claims))
+    Ok((figure, claim))
 }
 
 fn eleven() -> Result<Sheet> {
@@ -71,7 +92,7 @@ fn eleven() -> Result<Sheet> {
         ),
     ];
     let figure = figures::traces("Motion at 11.1 Hz", &portrait, rig.gap).height(100.0);
-    Ok(Sheet::new("motion_11hz", "The motion at 11.1 Hz with classical impacts", figure, claims))
+    Ok(Sheet::new("motion_11hz", "Figure 4.4: the motion at 11.1 Hz with classical impacts", figure, claims))
 }
 
 /// Regime at a frequency in Hz, from rest.
@@ -80,7 +101,8 @@ fn settled(restitution: f64, force: f64, frequency: f64) -> Result<Regime> {
     Ok(regime(&mut motion, 3000, 300)?.regime)
 }
 
-fn irregular() -> Result<Sheet> {
+/// Impact patterns of the rig, figures 5.2 and 5.3.
+pub fn patterns() -> Result<Sheet> {
     let (restitution, force) = (0.98, 0.3);
     let mut figure = Figure::double("Impacts at 5.61 and 7.49 Hz").height(75.0).columns(2);
     let mut claims = Vec::new();
@@ -111,19 +133,18 @@ fn irregular() -> Result<Sheet> {
         for restitution in [0.7, 0.2112] {
             others.push(format!("{} with R {restitution}", settled(restitution, force, hz)?));
         }
-        let why =
-            format!("with R {restitution} and {force} N, which are not stated ({} )", others.join(", "))
-                .replace(" )", ")");
-        claims.push(Claim::told(
-            format!("impacts at {hz} Hz"),
-            thesis,
-            format!("impacts/cycles {found}"),
-            agrees,
-            &why,
-        ));
+        let here = format!("impacts/cycles {found}; {}", others.join(", "));
+        let figure = if hz < 7.0 { "5.2" } else { "5.3" };
+        let claim = Claim::told(format!("{figure}: impacts at {hz} Hz"), thesis, here, agrees, "");
+        claims.push(claim.only_with(&format!("R {restitution} and {force} N")));
     }
     let figure = figure.caption(
         "Approach speed from impact to impact, sine of 0.3 N, R = 0.98, after 3000 cycles from rest.",
     );
-    Ok(Sheet::new("motion_irregular", "Impact patterns at 5.61 and 7.49 Hz", figure, claims))
+    Ok(Sheet::new(
+        "motion_irregular",
+        "Figures 5.2 and 5.3: impact patterns at 5.61 and 7.49 Hz",
+        figure,
+        claims,
+    ))
 }

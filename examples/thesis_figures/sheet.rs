@@ -45,7 +45,8 @@ pub struct Claim {
 }
 
 impl Claim {
-    /// A claim in words; `agrees` is what the computation says of it.
+    /// A claim in words; `agrees` is what the computation says of it. Where the thesis says nothing, there is
+    /// nothing to agree with.
     pub fn told(
         what: impl Into<String>,
         thesis: impl Into<String>,
@@ -53,28 +54,57 @@ impl Claim {
         agrees: bool,
         why: &str,
     ) -> Claim {
+        let thesis = thesis.into();
         let verdict = match (agrees, why) {
+            (true, why) if thesis == "–" => why.to_owned(),
             (true, "") => "agrees".to_owned(),
             (true, why) => format!("agrees: {why}"),
+            (false, "") => "does not".to_owned(),
             (false, why) => format!("does not, because {why}"),
         };
-        Claim { what: what.into(), thesis: thesis.into(), here: here.into(), verdict }
+        Claim { what: what.into(), thesis, here: here.into(), verdict }
     }
 
-    /// A number of the thesis, with which `here` agrees within `tolerance`; shown in `unit` with so many
-    /// decimals.
+    /// A number of the thesis: `here` agrees where it rounds to it, and else differs by so many per cent;
+    /// shown in `unit` with so many decimals.
     pub fn number(
         what: impl Into<String>,
         thesis: &str,
         here: f64,
         (decimals, unit): (usize, &str),
-        tolerance: f64,
         why: &str,
     ) -> Claim {
-        let stated: f64 = thesis.parse().unwrap_or(f64::NAN);
-        let agrees = (here - stated).abs() <= tolerance;
         let with = |number: &str| format!("{number} {unit}").trim_end().to_owned();
-        Claim::told(what, with(thesis), with(&format!("{here:.decimals$}")), agrees, why)
+        let shown = with(&format!("{here:.decimals$}"));
+        Claim::told(what, with(thesis), shown, true, "").against(thesis, here, why)
+    }
+
+    /// The verdict on `here` by the number that the thesis prints.
+    pub fn against(self, printed: &str, here: f64, why: &str) -> Claim {
+        let stated: f64 = printed.parse().unwrap_or(f64::NAN);
+        let decimals = printed.split_once('.').map_or(0, |(_, digits)| digits.len());
+        // A shade more than half of the last digit, so that a tie rounds to either side.
+        let agrees = (here - stated).abs() <= 0.500_001 * 10f64.powi(-(decimals as i32));
+        let percent = 100.0 * (here / stated - 1.0);
+        let digits = usize::from(percent.abs() < 10.0);
+        let differs = if percent > 1000.0 {
+            format!("differs by a factor of {:.0}", here / stated)
+        } else {
+            format!("differs by {percent:+.digits$} %").replace('-', "−")
+        };
+        let verdict = if agrees { "agrees" } else { &differs };
+        let verdict = if why.is_empty() { verdict.to_owned() } else { format!("{verdict}: {why}") };
+        Claim { verdict, ..self }
+    }
+
+    /// The claim holds only with `values`, which the thesis does not state.
+    pub fn only_with(mut self, values: &str) -> Claim {
+        self.verdict = self.verdict.replacen(
+            "agrees",
+            &format!("only with {values}, which the thesis does not state"),
+            1,
+        );
+        self
     }
 
     /// The number is not the thesis' own but that of an independent computation of the same case: it stands

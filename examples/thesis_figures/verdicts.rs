@@ -1,12 +1,13 @@
 //! Where the energy rule of the thesis accepts what is unstable or impossible, and what real motions look
 //! like.
 
-use crate::scene::{accepted, grid, ratio, real, rig, under_sine};
+use crate::impulse::IMPULSE;
+use crate::scene::{accepted, grid, hertz, ratio, real, rig, under_sine};
 use crate::sheet::{Claim, Sheet};
 use ndarray::Array2;
 use vibroimpact::analysis::figures;
 use vibroimpact::figure::{AxisSpec, Figure, Heatmap, Ink, Legend, Plot, Series};
-use vibroimpact::model::{ChangeKind, Excitation, Loss, Orbit, Sine, response};
+use vibroimpact::model::{ChangeKind, Excitation, Impulses, Loss, Orbit, Rig, Sine, orbits_of, response};
 use vibroimpact::{Error, Result};
 
 pub fn sheets() -> Result<Vec<Sheet>> {
@@ -75,7 +76,12 @@ fn multipliers() -> Result<Sheet> {
     let figure = Figure::single("Multipliers").height(70.0).panel(plot).caption(
         "Largest Floquet multiplier of the motions that the energy rule accepts and in which the masses do not pass through each other, R = 1.",
     );
-    Ok(Sheet::new("verdict_multipliers", "The positive root is not always stable", figure, claims))
+    Ok(Sheet::new(
+        "verdict_multipliers",
+        "Beside 3.54: the positive root is not always stable",
+        figure,
+        claims,
+    ))
 }
 
 fn inadmissible() -> Result<Sheet> {
@@ -91,7 +97,12 @@ fn inadmissible() -> Result<Sheet> {
         orbit.validity.admissible,
         why,
     )];
-    Ok(Sheet::new("verdict_inadmissible", "A positive root that is no motion", figure, claims))
+    Ok(Sheet::new(
+        "verdict_inadmissible",
+        "Figures 3.5 and 3.6: a positive root that is no motion",
+        figure,
+        claims,
+    ))
 }
 
 /// Angle in degrees by which x₂ leads x₁ at the excitation frequency, −180 to 180.
@@ -99,31 +110,65 @@ fn lead(orbit: &Orbit) -> f64 {
     (orbit.fundamental[1] / orbit.fundamental[0]).arg().to_degrees()
 }
 
+/// Both masses over time at a resonance, in the thesis' parameters.
+struct Trace {
+    name: &'static str,
+    title: &'static str,
+    nu: f64,
+    excitation: Excitation,
+    in_phase: bool,
+}
+
 fn traces() -> Result<Vec<Sheet>> {
-    let rig = rig(0.7);
-    let scenes = [
-        ("trace_grazing", "Time traces at the grazing resonance", 1.05, "in phase", "x₂ follows x₁"),
+    let rig = Rig { c1: 0.0, c2: 0.0, ..rig(0.7) };
+    let sine = |force, nu| Excitation::Sine(Sine { force, frequency: hertz(nu) });
+    let train = |nu| Excitation::Impulse(Impulses { impulse: IMPULSE, frequency: hertz(nu) });
+    let all = [
         (
             "trace_clapping",
-            "Time traces at the clapping resonance",
-            2.0,
-            "out of phase",
-            "x₂ goes against x₁",
+            "Figure 3.8: clapping resonance over time, sine of 0.5 N",
+            2.13,
+            sine(0.5, 2.13),
+            false,
         ),
+        (
+            "trace_grazing",
+            "Figure 3.9: grazing resonance over time, sine of 0.05 N",
+            1.05,
+            sine(0.05, 1.05),
+            true,
+        ),
+        ("impulse_grazing", "Figure 3.16: grazing resonance over time, impulses", 1.05, train(1.05), true),
+        ("impulse_clapping", "Figure 3.17: clapping resonance over time, impulses", 2.13, train(2.13), false),
     ];
-    scenes
-        .into_iter()
-        .map(|(name, title, nu, thesis, why)| {
-            let orbit = one(0.7, 0.5, nu)?;
-            let lead = lead(&orbit);
-            let agrees = real(&orbit) && (lead.abs() < 90.0) == (thesis == "in phase");
-            let what = format!("motion of both masses at ν {nu}, F₀ 0.5 N, R 0.7");
-            let here =
-                format!("phase of x₂ to x₁ {lead:.0}°, {}", orbit.validity.stability()).replace('-', "−");
-            let figure = figures::orbit(title, &rig, &orbit).height(70.0);
-            Ok(Sheet::new(name, title, figure, vec![Claim::told(what, thesis, here, agrees, why)]))
-        })
-        .collect()
+    let all =
+        all.map(|(name, title, nu, excitation, in_phase)| Trace { name, title, nu, excitation, in_phase });
+    all.into_iter().map(|trace| traced(&rig, &trace)).collect()
+}
+
+fn traced(rig: &Rig, trace: &Trace) -> Result<Sheet> {
+    let found = orbits_of(rig, &trace.excitation, 1)?.orbits;
+    let orbit = accepted(&found).ok_or_else(|| Error::refused(format!("no motion at ν {}", trace.nu)))?;
+    let lead = lead(orbit);
+    let agrees = real(orbit) && (lead.abs() < 90.0) == trace.in_phase;
+    let [first, second] = orbit.peak_to_peak.map(|p| 500.0 * p);
+    let here = format!(
+        "phase of x₂ to x₁ {lead:.0}°, amplitudes {first:.2} and {second:.2} mm, {}",
+        orbit.validity.stability()
+    );
+    let claim = Claim::told(
+        format!("motion of both masses at ν {}, R 0.7, c₁ and c₂ 0", trace.nu),
+        match (trace.in_phase, trace.name) {
+            (true, _) => "in phase",
+            (false, "trace_clapping") => "out of phase, x₁ the larger",
+            (false, _) => "out of phase",
+        },
+        here.replace('-', "−"),
+        agrees,
+        "",
+    );
+    let figure = figures::orbit(trace.title, rig, orbit).height(70.0);
+    Ok(Sheet::new(trace.name, trace.title, figure, vec![claim]))
 }
 
 fn branches() -> Result<Sheet> {
@@ -140,7 +185,12 @@ fn branches() -> Result<Sheet> {
         "a sweep down finds the other motion",
     )];
     let figure = figures::branches("Response with all its branches", &found).height(125.0);
-    Ok(Sheet::new("branches", "Response with its branches and the backbone", figure, claims))
+    Ok(Sheet::new(
+        "branches",
+        "Beside 4.11 to 4.15: response with its branches and the backbone",
+        figure,
+        claims,
+    ))
 }
 
 /// What becomes of the root that the energy rule accepts.
@@ -193,5 +243,5 @@ fn regions() -> Result<Sheet> {
         real == accepted,
         "the rule is necessary, not sufficient",
     )];
-    Ok(Sheet::new("regions", "Regions of existence and stability", figure, claims))
+    Ok(Sheet::new("regions", "Beside 3.54: regions of existence and stability", figure, claims))
 }

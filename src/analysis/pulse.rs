@@ -64,9 +64,8 @@ impl Keys {
                 None => Error::usage("neither a file nor two times", expected),
             });
         }
-        let clash = if file { (first(&times), "a file") } else { (first(&low_pass), "two times") };
-        if let (Some(key), beside) = clash {
-            return Err(Error::usage(format!("{key} beside {beside}"), "one of them").setting(key));
+        if let (Some(key), true) = (first(&times), file) {
+            return Err(Error::usage(format!("{key} beside a file"), "one of them").setting(key));
         }
         self.instrument().map(drop).map_err(|e| e.setting(first(&low_pass).unwrap_or("order")))
     }
@@ -75,13 +74,17 @@ impl Keys {
         Instrument::stated(self.low_pass.map(LowPass::corner), self.order)
     }
 
+    fn options(&self) -> Result<PulseOptions> {
+        Ok(PulseOptions { instrument: self.instrument()?, mass: self.mass })
+    }
+
     /// The contact from two times.
     ///
     /// # Errors
     /// If the times are impossible.
     pub fn times(&self, name: &str) -> Result<Answer> {
         let (peak, duration) = self.time_to_peak.zip(self.duration).unwrap_or((f64::NAN, f64::NAN));
-        shown(name, &two_times(peak, duration, self.std, self.mass)?)
+        shown(name, &two_times(peak, duration, self.std, &self.options()?)?)
     }
 
     /// The contact of a record.
@@ -91,7 +94,7 @@ impl Keys {
     pub fn measure(&self, source: &Source<'_>) -> Result<Answer> {
         let recording = source.recording()?;
         let trace = source.trace(&recording)?;
-        let found = pulse(&trace, &PulseOptions { instrument: self.instrument()?, mass: self.mass })?;
+        let found = pulse(&trace, &self.options()?)?;
         let mut answer = shown(source.name, &found)?;
         answer.add("", &recording.findings);
         answer.add("", &trace.meta.findings);

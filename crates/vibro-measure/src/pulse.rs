@@ -6,14 +6,16 @@
 
 mod contact;
 mod fit;
+mod instants;
 mod low_pass;
 mod normalised;
 mod result;
 mod ringing;
 
 pub use contact::KelvinVoigt;
+pub use instants::two_times;
 pub use low_pass::LowPass;
-pub use result::{ContactModel, PulseCurve, PulseFit, PulsePicture, PulseResult, two_times};
+pub use result::{ContactModel, PulseCurve, PulseFit, PulsePicture, PulseResult};
 
 use super::Estimate;
 use super::residuals::NO_SUPPORT;

@@ -247,7 +247,8 @@ fn two_times_with_their_uncertainty() {
         // The peak by bisection of the slope's sign.
         let peak = border(0.0, last, |t| contact(truth, omega, t + 1e-12) > contact(truth, omega, t - 1e-12));
         let std = last * noise.between(0.001, 0.01);
-        let found = two_times(peak + std * noise.normal(), last + std * noise.normal(), Some(std), None)
+        let [first, second] = [peak, last].map(|t| t + std * noise.normal());
+        let found = two_times(first, second, Some(std), &PulseOptions::default())
             .unwrap_or_else(|e| panic!("seed {seed}: {e}"));
         // No more can be had from two times: the bound is their own uncertainty carried over.
         xi.add(&found.xi, truth, found.xi.std.expect("a std"));

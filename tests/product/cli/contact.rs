@@ -21,6 +21,14 @@ fn two_times() {
     assert!((answer["xi"]["value"].as_f64().unwrap() - 0.20668).abs() < 0.5e-5, "{answer}");
     assert!(answer["xi"]["std"].as_f64().unwrap() > 0.0 && answer["initial_velocity"].is_null());
     assert!(answer["stiffness"]["unit"] == "N/m" && answer["fits"].as_array().unwrap().is_empty());
+    // The low-pass of 30 kHz alone has its first zero at 1/(√2·30 kHz), 23.6 µs.
+    let behind =
+        ["pulse", "--time-to-peak", "6.25e-6", "--duration", "18e-6", "--low-pass", "30000", "--order", "2"];
+    let answer = json(&behind);
+    assert!(
+        answer["xi"]["value"].is_null() && answer["warnings"].to_string().contains("23.6 µs"),
+        "{answer}"
+    );
     let swapped = complaint(&["pulse", "--time-to-peak", "18e-6", "--duration", "6.25e-6"], 1);
     assert!(swapped.contains("swapped"), "{swapped}");
     complaint(&["pulse", "--time-to-peak", "18e-6"], 2);

@@ -6,9 +6,9 @@ use crate::mean::mixture;
 use crate::residuals::NO_SUPPORT;
 use serde::Serialize;
 use std::collections::BTreeMap;
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::TAU;
 use std::sync::LazyLock;
-use vibro_record::{Error, Finding, Result};
+use vibro_record::Finding;
 
 /// A model of a contact.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -257,75 +257,6 @@ pub(super) fn contact_estimates(
     })
 }
 
-/// ρ counts as resolved from 0 beyond this many of its standard uncertainties: a true 0 passes in 1 of 740
-/// cases.
-const RESOLVED: f64 = 3.0;
-
-/// A Kelvin–Voigt contact from the time to its largest force and its duration, both in s.
-///
-/// With ρ = time to peak / duration: θ = π(1 − 2ρ)/(2(3 − 2ρ)), ξ = sin θ, f = (π − 2θ)/(2πt cos θ) with the
-/// duration t. `std` is the standard uncertainty of each of the two times, taken as independent; `mass` in kg
-/// gives stiffness and damping. Every contact of ξ ≥ 1/2 has its peak at the onset: where ρ is not resolved
-/// from 0, no uncertainty is stated.
-///
-/// ```
-/// use vibro_measure::pulse::two_times;
-/// let run = two_times(6.64e-6, 18.0e-6, None, None)?;
-/// let text = format!("{:.5} {:.0} {:.3}", run.xi.value, run.frequency.value, run.restitution.value);
-/// assert_eq!(text, "0.18107 24971 0.600");
-/// # Ok::<(), vibro_record::Error>(())
-/// ```
-///
-/// # Errors
-/// If a time is not above 0, or the peak lies in the second half of the pulse, where no such contact has it.
-pub fn two_times(
-    time_to_peak: f64,
-    duration: f64,
-    std: Option<f64>,
-    mass: Option<f64>,
-) -> Result<PulseResult> {
-    for (name, value) in [("time to peak", time_to_peak), ("duration", duration)] {
-        if !(value.is_finite() && value > 0.0) {
-            return Err(Error::usage(format!("a {name} of {value} s"), "a finite time above 0"));
-        }
-    }
-    let rho = time_to_peak / duration;
-    if rho >= 0.5 {
-        let why = format!(
-            "time to peak / duration is ρ = {rho:.4}: a contact of spring and damper has its peak in the first half of the pulse (ρ < 1/2); the times may be swapped"
-        );
-        let hint = "count both times from the onset of the pulse";
-        return Err(Error::refused(why).hint(hint).setting("time_to_peak").setting("duration"));
-    }
-    // Two instants cannot show whether the contact is one of spring and damper.
-    let mut findings = vec![Finding::note("pulse-two-instants")];
-    let mut variance = f64::NAN;
-    if let Some(std) = std {
-        if !(std.is_finite() && std >= 0.0) {
-            return Err(Error::usage(format!("a standard uncertainty of {std} s"), "a time of 0 or more"));
-        }
-        let spread = std / duration * (1.0 + rho * rho).sqrt();
-        if rho > RESOLVED * spread {
-            variance = std * std;
-        } else {
-            let least = damping(rho + 2.0 * spread);
-            let near = Finding::doubt("pulse-ratio-near-zero").number("rho", rho).number("std", spread);
-            findings.push(near.number("xi", least));
-        }
-    }
-    let contact = |times: &[f64]| KelvinVoigt::lasting(times[1], damping(times[0] / times[1]));
-    let covariance = |i: usize, j: usize| if i == j { variance } else { 0.0 };
-    let times = [time_to_peak, duration];
-    contact_estimates((&times, &times), covariance, contact, mass, 2, "closed form from two times")
-        .map(|estimates| {
-            // Without an uncertainty of the times ξ cannot be called consistent with zero.
-            let known = estimates.xi.std.is_some();
-            findings.extend(undamped(&estimates.xi).filter(|_| known));
-            PulseResult { findings, ..estimates }
-        })
-        .ok_or_else(|| Error::refused("the two times belong to no contact"))
-}
-
 /// Half-width of the interval of ξ where it has no uncertainty: the low-pass of an unknown instrument moves
 /// ξ by about this much.
 pub(super) const UNKNOWN: f64 = 0.1;
@@ -339,86 +270,4 @@ pub(super) fn undamped(xi: &Estimate) -> Option<Finding> {
         None => (UNKNOWN, found.number("allowed", UNKNOWN)),
     };
     (xi.value < reach).then_some(found)
-}
-
-/// ξ of a contact with the ratio `rho` of time to peak to duration.
-fn damping(rho: f64) -> f64 {
-    (PI * (1.0 - 2.0 * rho) / (2.0 * (3.0 - 2.0 * rho))).sin()
-}
-
-#[cfg(test)]
-mod two_times {
-    use super::*;
-    use vibro_math::Noise;
-
-    /// The two runs of the thesis, to the digits to which they are known.
-    #[test]
-    fn the_two_runs() {
-        for (peak, xi, frequency, restitution) in
-            [(6.64e-6, 0.18107, 24_971.0, 0.600), (6.25e-6, 0.20668, 24_628.0, 0.562)]
-        {
-            let found = two_times(peak, 18e-6, None, Some(0.43)).unwrap();
-            assert!((found.xi.value - xi).abs() < 0.5e-5, "{found:?}");
-            assert!((found.frequency.value - frequency).abs() < 0.5, "{found:?}");
-            assert!((found.restitution.value - restitution).abs() < 0.5e-3);
-            let (k, c) = (found.stiffness.unwrap().value, found.damping.unwrap().value);
-            // k = mω², c = 2ξmω: c²/(4km) = ξ².
-            assert!((c / (2.0 * (k * 0.43).sqrt()) - found.xi.value).abs() < 1e-12);
-            assert!(found.xi.std.is_none());
-        }
-    }
-
-    /// dξ/dρ = −cos θ · 2π/(3 − 2ρ)².
-    #[test]
-    fn the_uncertainty_is_that_of_the_derivative() {
-        let (peak, end, std) = (6.64e-6, 18e-6, 1e-8);
-        let found = two_times(peak, end, Some(std), None).unwrap();
-        let rho = peak / end;
-        let slope = found.xi.value.asin().cos() * 2.0 * PI / (3.0 - 2.0 * rho).powi(2);
-        let expected = slope * std / end * (1.0 + rho * rho).sqrt();
-        // Central differences with a step of ε^⅓.
-        assert!((found.xi.std.unwrap() / expected - 1.0).abs() < 1e-6, "{found:?} {expected}");
-    }
-
-    #[test]
-    fn times_of_no_contact_are_refused() {
-        let swapped = two_times(18e-6, 6.64e-6, None, None).unwrap_err();
-        assert!(swapped.to_string().contains("swapped") && swapped.exit_code() == 1, "{swapped}");
-        assert!(two_times(9e-6, 18e-6, None, None).unwrap_err().to_string().contains("swapped"));
-        for (a, b) in [(0.0, 1.0), (-1.0, 1.0), (1.0, f64::NAN), (f64::INFINITY, 1.0)] {
-            assert_eq!(two_times(a, b, None, None).unwrap_err().exit_code(), 2);
-        }
-        assert!(two_times(1.0, 3.0, Some(-1.0), None).is_err());
-    }
-
-    /// At both ends of the range of ρ: no uncertainty is stated where ξ may be anything from 1/2 up, and
-    /// stated uncertainties cover the error.
-    #[test]
-    fn near_the_ends_what_is_stated_holds() {
-        let std = 0.005;
-        for xi in [0.0, 0.003, 0.02, 0.2, 0.45, 0.48, 0.49, 0.495, 0.6, 0.8] {
-            let contact = KelvinVoigt::new(xi, 1.0).unwrap();
-            let (peak, end) = (contact.time_to_peak().unwrap_or(0.0), contact.duration());
-            let (mut stated, mut beyond, mut withheld) = (0, 0, 0);
-            for seed in 0..1000 {
-                let mut noise = Noise::new(seed);
-                let [a, b] = [peak, end].map(|t| t + std * end * noise.normal());
-                let Ok(found) = two_times(a, b, Some(std * end), None) else { continue };
-                if let Some(u) = found.xi.std {
-                    stated += 1;
-                    beyond += usize::from((found.xi.value - xi).abs() > 3.0 * u);
-                    continue;
-                }
-                withheld += 1;
-                assert!(found.findings.iter().any(|f| f.code == "pulse-ratio-near-zero"));
-                assert!(found.frequency.std.is_none());
-            }
-            println!("seeds 0 to 999, ξ = {xi}: {beyond} of {stated} beyond, {withheld} withheld");
-            // Expected are 2.7 of 1000 normal errors beyond 3 standard uncertainties, and more than 11 in
-            // one run of 10 000. For ρ = 0 half of the answers are above 0: 1.35 are expected beyond
-            // RESOLVED, and more than 7 in one run of 10 000.
-            assert!(beyond <= if xi < 0.5 { 11 } else { 7 }, "{xi}: {beyond}");
-            assert!(if xi < 0.46 { withheld == 0 } else { xi < 0.49 || withheld > 100 }, "{xi}: {withheld}");
-        }
-    }
 }

@@ -34,7 +34,7 @@ const WHOLE: EstimationMethod<Pulse> = EstimationMethod::Own("whole pulse", |p| 
 /// ξ from two times with an uncertainty, as from `vibro pulse --peak --end`.
 const TWO_TIMES: EstimationMethod<Pulse> = EstimationMethod::Own("two times", |p| {
     let [peak, end, std] = p.times;
-    let found = two_times(peak, end, Some(std), None)?;
+    let found = two_times(peak, end, Some(std), &PulseOptions::default())?;
     Ok(EstimatorAnswer::found(&found.xi, &found.findings))
 });
 

@@ -1,0 +1,171 @@
+//! The antiresonance of figures 3.13 to 3.15, and where x₁ is least in truth.
+
+use crate::impulse::{IMPULSE, without};
+use crate::programs::{JIDNEW, Program, impulses, largest as largest_of};
+use crate::scene::{accepted, add_orbits, grid, hertz, ratio, real, rig, under_impulses, under_sine};
+use crate::sheet::{Claim, Sheet};
+use vibroimpact::Result;
+use vibroimpact::figure::{AxisSpec, Figure, Ink, Legend, Marker, Plot, Series};
+use vibroimpact::model::portrait::{Portrait, PortraitOptions};
+use vibroimpact::model::{Excitation, Impulses, Motion, Orbit, Rig, Simulation, State};
+
+/// Where the antiresonance is looked for: between the resonances.
+const BETWEEN: (f64, f64) = (1.1, 2.1);
+
+/// A motion that a rig has after 2000 cycles from rest.
+struct Settled {
+    nu: f64,
+    /// Largest displacements in m.
+    largest: [f64; 2],
+    pattern: String,
+}
+
+/// Largest displacements of both masses, each from its own rest.
+fn largest<'a>(states: impl Iterator<Item = &'a State>) -> [f64; 2] {
+    states.fold([0.0, 0.0], |[a, b], s| [a.max(s.x1.abs()), b.max(s.x2.abs())])
+}
+
+fn of_orbit(orbit: &Orbit) -> [f64; 2] {
+    let states: Vec<State> = (0..200).map(|i| orbit.state(f64::from(i) / 200.0 * orbit.period())).collect();
+    largest(states.iter())
+}
+
+fn settled(rig: &Rig, nu: f64) -> Result<Settled> {
+    let frequency = hertz(nu);
+    let train = Excitation::Impulse(Impulses { impulse: IMPULSE, frequency });
+    let mut motion = Simulation::new(rig, &train)?;
+    motion.advance(2000.0 / frequency, &mut |_| {})?;
+    let portrait = Portrait::take(&mut motion, &PortraitOptions { cycles: 200, samples: 60, shown: 200 })?;
+    let pattern = portrait.pattern.regime.to_string();
+    Ok(Settled { nu, largest: largest(portrait.states.iter()), pattern })
+}
+
+pub fn sheet() -> Result<Sheet> {
+    let rig = rig(0.7);
+    let nu = grid(1.0, 2.4, 141);
+    let all = nu.iter().map(|nu| settled(&rig, *nu)).collect::<Result<Vec<Settled>>>()?;
+    let mut claims = of_roots()?;
+    let inside = |nu: f64| (BETWEEN.0..=BETWEEN.1).contains(&nu);
+    let near = all.iter().min_by(|a, b| (a.nu - 1.75).abs().total_cmp(&(b.nu - 1.75).abs()));
+    let least = all.iter().filter(|s| inside(s.nu)).min_by(|a, b| a.largest[0].total_cmp(&b.largest[0]));
+    let told = |s: &Settled| {
+        let [a, b] = s.largest.map(|x| 1e3 * x);
+        format!("ν {:.2}: x₁ {a:.2} mm, x₂ {b:.2} mm, impacts/cycles {}", s.nu, s.pattern)
+    };
+    let [from, to] = without(&rig);
+    claims.push(Claim::told(
+        "R 0.7, c₁ and c₂ 0.1: ν without a motion of one impact a cycle",
+        "none",
+        format!("{from:.4} to {to:.4}"),
+        from > to,
+        "",
+    ));
+    let what = "motion from rest near ν 1.75, R 0.7, c₁ and c₂ 0.1";
+    let why = "x₁ is as large as the gap, and no motion has one impact a cycle";
+    claims.push(Claim::told(what, "x₁ near 0", near.map_or_else(String::new, told), near.is_none(), why));
+    let what = "the same: least x₁ between the resonances";
+    let at = least.map_or(f64::NAN, |s| s.nu);
+    let here = least.map_or_else(String::new, told);
+    claims.push(Claim::told(what, "ν 1.75", here, true, "").against("1.75", at, "here x₁ is least in truth"));
+    claims.push(of_sine());
+    claims.extend(printed());
+    let find = |nu: f64| under_impulses(&rig, IMPULSE, nu);
+    let fine = grid(1.0, 2.4, 1121);
+    let (at, timings, x1) = spurious(&nu)?;
+    let crosses = |name: &str, y: &[f64]| {
+        Series::points(name, at.clone(), y.to_vec()).ink(Ink::Nth(3)).marker(Marker::Cross)
+    };
+    let time = AxisSpec::new("Time τ to the impact in cycles", "").limits(0.0, 2.0);
+    let when = Plot::new(ratio(1.0, 2.4), time)
+        .title("(a) time from impulse to impact")
+        .with(crosses("", &timings))
+        .with(Series::horizontal("", 1.0));
+    let when = add_orbits(when, "", 0, &fine, find, |o| o.timing / o.period());
+    let mut size = Plot::new(ratio(1.0, 2.4), AxisSpec::new("Largest value", "mm").log().limits(0.5, 20.0))
+        .title("(b) displacements")
+        .legend(Legend::Above)
+        .with(crosses("x₁ of 3.42 to 3.44, τ outside (0, T)", &x1));
+    size = add_orbits(size, "x₁ of orbits", 0, &fine, find, |o| 1e3 * of_orbit(o)[0]);
+    for (i, name, nth, marker) in
+        [(0, "x₁ from rest", 0, Marker::OpenCircle), (1, "x₂ from rest", 1, Marker::Square)]
+    {
+        let y: Vec<f64> = all.iter().map(|s| 1e3 * s.largest[i]).collect();
+        size = size.with(Series::points(name, nu.clone(), y).ink(Ink::Nth(nth)).marker(marker));
+    }
+    let figure = Figure::double("The antiresonance under impulses")
+        .height(150.0)
+        .panel(when.legend(Legend::Hidden))
+        .panel(size.with(Series::vertical("thesis", 1.75)))
+        .caption(
+            "Impulses of 0.009 N s, R = 0.7, c₁ = c₂ = 0.1. Crosses: what the equations of the thesis give with τ outside 0 < τ < T, c₁ = 0. Lines: orbits \
+             with one impact a cycle, grey where they cannot be seen. Open marks: the motion 2000 cycles after rest.",
+        );
+    Ok(Sheet::new(
+        "antiresonance",
+        "Figures 3.13 to 3.15: the antiresonance that is no motion",
+        figure,
+        claims,
+    ))
+}
+
+/// The equations as they are meant: χ̇ and τ put right.
+fn meant(restitution: f64, c2: f64) -> Program {
+    impulses(restitution, c2, IMPULSE, &[])
+}
+
+/// ν, τ/T and largest x₁ in mm of the roots of figure 3.15 with τ outside 0 < τ < T.
+fn spurious(nu: &[f64]) -> Result<(Vec<f64>, Vec<f64>, Vec<f64>)> {
+    let program = meant(0.7, 0.1);
+    let all = nu.iter().map(|nu| Ok((nu + 1e-4, program.at(nu + 1e-4)?))).collect::<Result<Vec<_>>>()?;
+    let outside = all.iter().filter(|(_, r)| r.impulse.norm() > 0.0 && !(0.0..1.0).contains(&r.timing));
+    let rows = outside.map(|(nu, root)| (*nu, (root.timing, 1e3 * root.largest[0])));
+    let (at, (timings, x1)) = rows.unzip();
+    Ok((at, timings, x1))
+}
+
+fn of_roots() -> Result<Vec<Claim>> {
+    let mut claims = Vec::new();
+    for (figure, restitution, c2) in [("3.13", 1.0, 0.0), ("3.14", 0.7, 0.0), ("3.15", 0.7, 0.1)] {
+        let root = meant(restitution, c2).at(1.75)?;
+        claims.push(Claim::told(
+            format!("{figure}, R {restitution}, c₂ {c2}: τ of the root of 3.42 to 3.44 at ν 1.75"),
+            "0 < τ < T",
+            format!("{:.3} T, J {:.4} N s, x₁ {:.2} mm", root.timing, root.impulse.re, 1e3 * root.largest[0]),
+            (0.0..1.0).contains(&root.timing),
+            "the response to the impulses is continued beyond its cycle: there is no such motion",
+        ));
+    }
+    Ok(claims)
+}
+
+/// The least x₁ between the resonances under a sine, figure 3.7.
+fn of_sine() -> Claim {
+    let rig = rig(0.7);
+    let all = grid(BETWEEN.0, BETWEEN.1, 1001);
+    let orbits = all.iter().filter_map(|nu| {
+        accepted(&under_sine(&rig, 0.5, *nu)).filter(|o| real(o)).map(|o| (*nu, of_orbit(o)))
+    });
+    let (at, [first, second]) =
+        orbits.min_by(|a, b| a.1[0].total_cmp(&b.1[0])).unwrap_or((f64::NAN, [f64::NAN; 2]));
+    Claim::told(
+        "3.7, sine of 0.5 N: least x₁ between the resonances",
+        "x₂ larger there",
+        format!("ν {at:.2}: x₁ {:.2} mm, x₂ {:.2} mm", 1e3 * first, 1e3 * second),
+        second > first,
+        "under a sine the orbits exist",
+    )
+}
+
+/// Where jidnew as printed has the least x₁ between the resonances.
+fn printed() -> Vec<Claim> {
+    let scenes = [("3.13", 1.0, 0.0), ("3.14", 0.7, 0.0), ("3.15", 0.7, 0.1)];
+    let between = || grid(0.7501, 2.9901, 113).into_iter().filter(|nu| (BETWEEN.0..=BETWEEN.1).contains(nu));
+    let of = |(figure, restitution, c2)| {
+        let program = impulses(restitution, c2, IMPULSE, JIDNEW);
+        let x1 = |nu: &f64| largest_of(&program, *nu);
+        let at = between().min_by(|a, b| x1(a).total_cmp(&x1(b))).unwrap_or(f64::NAN);
+        let why = format!("x₁ {:.2} mm: the figure was drawn by another program", 1e3 * x1(&at));
+        Claim::number(format!("{figure}, jidnew as printed: ν of the notch of x₁"), "1.75", at, (2, ""), &why)
+    };
+    scenes.map(of).into()
+}
