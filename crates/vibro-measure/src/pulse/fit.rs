@@ -2,6 +2,7 @@
 
 use super::ringing::Ringing;
 use super::{ContactModel, KelvinVoigt, LowPass};
+use crate::converter::{hidden, rounding};
 use crate::mean::{average, scatter};
 use crate::residuals::{Whiteness, aicc, student};
 use vibro_math::{Fit, least_squares};
@@ -17,6 +18,8 @@ pub(super) struct Samples<'a> {
     pub places: Vec<usize>,
     pub times: Vec<f64>,
     pub values: Vec<f64>,
+    /// Step of the converter, over the height; 0 where values are not rounded.
+    pub quantum: f64,
     /// Ringing after the pulse, which may occur within it, too.
     pub rings: Option<Ringing>,
 }
@@ -109,7 +112,7 @@ impl Samples<'_> {
     /// The best fit of a model, from a coarse search over onset and shape. The prior of each free exponent
     /// counts as one sample.
     pub fn fit(&self, model: ContactModel) -> Result<FittedPulse> {
-        let (starts, noise) = (self.starts(model)?, self.noise());
+        let (starts, noise) = (self.starts(model)?, self.noise().0);
         let corner = self.filter.map(|f| f.corner);
         let mut from: Vec<(Vec<f64>, Option<usize>)> = Vec::new();
         if model != ContactModel::KelvinVoigt || corner.is_some() {
@@ -176,16 +179,35 @@ impl Samples<'_> {
             let student = student(fitted.fit.degrees_of_freedom()).unwrap_or(f64::NAN);
             let inside = (fitted.end() - fitted.fit.parameters[0]) / self.step;
             let rings = self.rings.map_or(1.0, |rings| rings.widening(inside, fitted.fit.variance()));
+            self.round(&mut fitted.fit);
             fitted.widening = Some(fitted.whiteness.inflation * student * rings.sqrt());
         }
         fitted
     }
 
-    /// Standard deviation of the record well before the pulse, over the pulse's height; at least [`DIGITS`].
-    fn noise(&self) -> f64 {
+    /// Adds the rounding of a baseline whose noise is below a step of the converter to the covariance of a fit:
+    /// a flat baseline hides rounding within the pulse, and is off itself by as much at all its samples.
+    fn round(&self, fit: &mut Fit) {
+        let (noise, hidden) = self.noise();
+        let variance = fit.variance();
+        if hidden == 0.0 || variance <= 0.0 {
+            return;
+        }
+        // Parameters change by C_ib/C_bb for a change of the baseline b.
+        let slopes = fit.cofactor.column(1) / fit.cofactor[(1, 1)];
+        let baseline = &slopes * slopes.transpose() * (hidden * hidden / variance);
+        fit.cofactor *= (noise * noise / variance).max(1.0);
+        fit.cofactor += baseline;
+    }
+
+    /// Standard deviation of the noise well before the pulse, over the pulse's height, at least [`DIGITS`];
+    /// and what rounding adds to the baseline.
+    fn noise(&self) -> (f64, f64) {
         let begins = -0.5 - self.delay();
         let before = &self.values[..self.times.partition_point(|t| *t < begins)];
-        if before.len() < 8 { DIGITS } else { scatter(before).max(DIGITS) }
+        let scatter = if before.len() < 8 { 0.0 } else { scatter(before) };
+        let hidden = hidden(scatter, self.quantum);
+        (scatter.hypot(hidden).max(DIGITS), hidden)
     }
 
     /// Whether the residuals within the contact exceed those before it by more than chance: then the contact
@@ -202,7 +224,8 @@ impl Samples<'_> {
         // The parameters absorb noise within the contact: they take its degrees of freedom.
         let free = inside.1 - fit.parameters.len() as f64;
         let chance = SURE * fitted.whiteness.inflation * (2.0 / free.max(1.0) + 2.0 / before.1).sqrt();
-        free >= 1.0 && before.1 >= 8.0 && inside.0 / free > (1.0 + chance) * before.0 / before.1
+        let noise = (before.0 / before.1).max(rounding(self.quantum).powi(2));
+        free >= 1.0 && before.1 >= 8.0 && inside.0 / free > (1.0 + chance) * noise
     }
 
     /// Whether the residuals around the onset have more than twice the variance of the others, and more than
@@ -216,7 +239,7 @@ impl Samples<'_> {
             *part = (part.0 + r * r, part.1 + 1.0);
         }
         let limit = (1.0 + SURE * (2.0_f64 / near.1).sqrt()).max(2.0);
-        near.0 / near.1 > limit * far.0 / far.1
+        near.0 / near.1 > limit * (far.0 / far.1).max(rounding(self.quantum).powi(2))
     }
 
     /// The fit from one first guess; `None` where it does not converge.

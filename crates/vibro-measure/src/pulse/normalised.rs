@@ -5,6 +5,7 @@ use super::result::{PulseCurve, PulseFit, PulsePicture, propagated};
 use super::ringing::Ringing;
 use super::{ContactModel, KelvinVoigt, LowPass};
 use crate::Estimate;
+use crate::converter::{rounding, step};
 use crate::mean::average;
 use crate::swings;
 use std::collections::BTreeMap;
@@ -80,7 +81,8 @@ impl<'a> Normalised<'a> {
         let times = places.iter().map(|i| self.time(*i)).collect();
         let values = places.iter().map(|i| self.trace.values[*i] / self.height).collect();
         let (step, filter) = (self.step / self.length, self.filter.as_ref());
-        Samples { step, filter, places, times, values, rings: None }
+        let quantum = self.found.quantum / self.height;
+        Samples { step, filter, places, times, values, quantum, rings: None }
     }
 
     /// The samples to be fitted: the pulse with a baseline on both sides, or only before it where the record
@@ -113,7 +115,7 @@ impl<'a> Normalised<'a> {
         let left: Vec<f64> = model.iter().zip(&after.values).map(|(m, v)| v - m).collect();
         let mean = average(&left);
         let rms = average(&left.iter().map(|d| d * d).collect::<Vec<f64>>()).sqrt();
-        let inside = (fitted.fit.sum_of_squares() / n as f64).sqrt().max(1e-6);
+        let inside = (fitted.fit.sum_of_squares() / n as f64).sqrt().max(rounding(first.quantum)).max(1e-6);
         let restless = left.len() >= 4 && rms > RESTLESS * inside;
         let level = !restless || mean.abs() <= LEVEL * rms;
         if restless {
@@ -251,6 +253,8 @@ pub(super) struct Located {
     pub low: usize,
     /// Indices of the samples of a flat top.
     pub clipped: Vec<usize>,
+    /// Step of the converter.
+    pub quantum: f64,
 }
 
 /// Samples by which a flat top must be longer than three round ones.
@@ -282,7 +286,8 @@ pub(super) fn locate(values: &[f64]) -> Result<Located> {
     // 1.4826: from the median of absolute values to the standard deviation of a normal distribution. √2:
     // from the standard deviation of a difference to that of a value.
     let differences = values.windows(2).map(|w| (w[1] - w[0]).abs());
-    let noise = 1.4826 * median(differences).max(0.0) / f64::sqrt(2.0);
+    let quantum = step(&sorted);
+    let noise = (1.4826 * median(differences).max(0.0) / f64::sqrt(2.0)).max(rounding(quantum));
     let far = |v: &f64| if v.is_finite() { (v - baseline).abs() } else { -1.0 };
     let peak = (0..values.len()).max_by(|a, b| far(&values[*a]).total_cmp(&far(&values[*b]))).unwrap_or(0);
     let height = values[peak] - baseline;
@@ -313,7 +318,7 @@ pub(super) fn locate(values: &[f64]) -> Result<Located> {
     let run = (to + 1 - from) as f64;
     let is_flat = flat(run, flanks.1 - flanks.0, depth / height.abs());
     let clipped = if is_flat { (from..=to).collect() } else { Vec::new() };
-    let located = Located { baseline, height, flanks, low, clipped };
+    let located = Located { baseline, height, flanks, low, clipped, quantum };
     match swings::back_and_forth(values, baseline, height, flanks) {
         Some(rings) => Err(rings),
         None => Ok(located),

@@ -1,4 +1,5 @@
 use super::*;
+use vibro_math::Noise;
 use vibro_record::units::Unit;
 use vibro_record::{Axis, Meta, Severity};
 
@@ -61,6 +62,46 @@ fn all_that_follows_from_a_pulse() {
     // white residuals.
     assert_eq!(models, ["kelvin-voigt", "hertz", "hunt-crossley"]);
     assert!(result.fits[1..].iter().all(|f| f.aicc > result.fits[0].aicc + 10.0), "{:?}", result.fits);
+}
+
+/// ξ of draws of 8 bits whose noise is this part of the peak, over their uncertainties.
+fn of_eight_bits(draws: u64, part: f64) -> Vec<f64> {
+    let contact = KelvinVoigt::new(0.18, 10e3).unwrap();
+    let peak = contact.unbounded(contact.time_to_peak().unwrap());
+    let step = peak / 110.0;
+    let draw = |seed: u64| {
+        let mut noise = Noise::new(seed);
+        let (onset, offset) = (160e-6 + DT * noise.uniform(), noise.uniform() - 0.5);
+        let value = |i: i32| {
+            let t = f64::from(i) * DT - onset;
+            let pulse = if t >= 0.0 && t <= contact.duration() { contact.unbounded(t) } else { 0.0 };
+            ((pulse + part * peak * noise.normal()) / step + offset).round() * step
+        };
+        let options = PulseOptions { instrument: Instrument::Flat, mass: None };
+        let result = pulse(&trace((0..400).map(value).collect(), "m/s²"), &options).unwrap();
+        assert!(!says(&result, "pulse-unexplained") && !says(&result, "pulse-clipped"), "{seed}");
+        (result.xi.value - 0.18) / result.xi.std.unwrap()
+    };
+    (0..draws).map(draw).collect()
+}
+
+/// The noise is below a step: the baseline is flat, and rounding in the pulse is no other law.
+#[test]
+fn a_flat_baseline_of_eight_bits_is_no_doubt_of_the_contact() {
+    for part in [0.0, 1e-3] {
+        assert!(of_eight_bits(4, part).iter().all(|off| off.abs() < 5.0), "{part}");
+    }
+}
+
+#[test]
+#[ignore = "Monte Carlo: cargo test --release -- --ignored"]
+fn uncertainties_of_eight_bits_cover_the_truth() {
+    for part in [0.0, 1e-3, 2e-3] {
+        let off = of_eight_bits(200, part);
+        let within = off.iter().filter(|off| off.abs() < 1.96).count();
+        // 95 % of 200 less three standard deviations, √(200·0.95·0.05) = 3.1.
+        assert!(within >= 180, "{part}: {within}");
+    }
 }
 
 #[test]
