@@ -5,6 +5,7 @@ use super::{ContactModel, KelvinVoigt, LowPass};
 use crate::converter::{hidden, rounding};
 use crate::mean::{average, scatter};
 use crate::residuals::{Whiteness, aicc, student};
+use nalgebra::{DMatrix, DVector};
 use vibro_math::{Fit, least_squares};
 use vibro_record::{Error, Result};
 
@@ -56,6 +57,9 @@ const LEAD: f64 = 0.08;
 /// Half-width of the finer grid of onsets around a first guess, in durations of the contact: one and a half
 /// steps of the coarse grid.
 const REACH: f64 = 1.5 * LEAD;
+
+/// Onsets between two samples over which a fit is averaged.
+const ONSETS: u32 = 32;
 
 /// Most samples that the search for a first guess uses; of more, every n-th is taken.
 const COARSE: usize = 48;
@@ -155,6 +159,7 @@ impl Samples<'_> {
         let fits = from.into_iter().filter_map(|(start, first)| self.from(model, noise, &start, first));
         let mut fits: Vec<((bool, f64), FittedPulse)> = fits.map(|fit| (held(&fit), fit)).collect();
         fits.sort_by(|(a, _), (b, _)| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
+        self.between_samples(&mut fits);
         let mut fits = fits.into_iter().map(|((outside, _), fit)| self.judged(fit, outside));
         let Some(mut best) = fits.next() else {
             return Err(Error::refused(format!("the fit of the model {} does not converge", model.name())));
@@ -168,6 +173,49 @@ impl Samples<'_> {
             }
         }
         Ok(best)
+    }
+
+    /// Replaces the best of the `fits` whose onsets lie between different samples by the mean over all onsets
+    /// between any of these, each as likely as its sum of squares makes it. For an onset x the others of the
+    /// parameters p with cofactor C are p + C_i0/C_00 (x − p_0): the jump of the force tells between which
+    /// samples the contact begins, and this tells more of the onset, and by it of ξ, than the shape does.
+    fn between_samples(&self, fits: &mut [((bool, f64), FittedPulse)]) {
+        let Some(((false, _), FittedPulse { fit: best, first: Some(_), .. })) = fits.first() else { return };
+        let variance = best.variance().max(self.noise().1.powi(2)).max(f64::EPSILON.powi(2));
+        // Logarithm of the weight, parameters, and index of the fit.
+        let mut onsets: Vec<(f64, DVector<f64>, usize)> = Vec::new();
+        for (index, (_, fitted)) in fits.iter().enumerate().filter(|(_, ((outside, _), _))| !outside) {
+            let (fit, Some(first)) = (&fitted.fit, fitted.first) else { continue };
+            let (from, to) = (self.times[first - 1], self.times[first]);
+            let slopes = fit.cofactor.column(0) / fit.cofactor[(0, 0)];
+            onsets.extend((0..ONSETS).map(|k| {
+                let off = from + (to - from) * (f64::from(k) + 0.5) / f64::from(ONSETS) - fit.parameters[0];
+                let squares = fit.sum_of_squares() + off * off / fit.cofactor[(0, 0)];
+                let width = (to - from).ln();
+                let p = DVector::from_column_slice(&fit.parameters) + &slopes * off;
+                (width - 0.5 * squares / variance, p, index)
+            }));
+        }
+        let most = onsets.iter().map(|o| o.0).fold(f64::NEG_INFINITY, f64::max);
+        onsets.iter_mut().for_each(|o| o.0 = (o.0 - most).exp());
+        let total: f64 = onsets.iter().map(|o| o.0).sum();
+        let n = best.parameters.len();
+        let mean = onsets.iter().fold(DVector::zeros(n), |sum, (w, p, _)| sum + p * (w / total));
+        let cofactor = onsets.iter().fold(DMatrix::zeros(n, n), |sum, (w, p, index)| {
+            let own = &fits[*index].1.fit.cofactor;
+            let column = own.column(0);
+            let off = p - &mean;
+            let given = own - column * column.transpose() / own[(0, 0)];
+            sum + (given + &off * off.transpose() / variance) * (w / total)
+        });
+        let first = self.times.partition_point(|t| *t < mean[0]);
+        let p = mean.as_slice();
+        let Some(model) = self.model(ContactModel::KelvinVoigt, p, &self.times, Some(first)) else { return };
+        let fitted = &mut fits[0].1;
+        fitted.fit.parameters = p.to_vec();
+        fitted.fit.residuals = self.values.iter().zip(model).map(|(v, m)| v - m).collect();
+        fitted.fit.cofactor = cofactor;
+        fitted.first = Some(first);
     }
 
     /// Tests the residuals of a fit for whiteness, and sets the factor of its uncertainties, unless its

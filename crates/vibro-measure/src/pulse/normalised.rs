@@ -228,9 +228,12 @@ impl<'a> Normalised<'a> {
         let si = |times: &[f64], values: &[f64]| {
             times.iter().zip(values).map(|(t, v)| (self.seconds(*t), v * self.height)).collect()
         };
+        let all = self.samples(from..to);
         let curve = |fit: &FittedPulse| {
             let points = si(&times, &fit.at(samples, &times)?);
-            Some(PulseCurve { model: fit.model, points, residuals: si(&samples.times, &fit.fit.residuals) })
+            let model = fit.at(samples, &all.times)?;
+            let left: Vec<f64> = all.values.iter().zip(model).map(|(v, m)| v - m).collect();
+            Some(PulseCurve { model: fit.model, points, residuals: si(&all.times, &left) })
         };
         PulsePicture {
             quantity: (self.trace.meta.quantity.name(), self.trace.meta.unit.symbol().to_owned()),
@@ -286,8 +289,8 @@ pub(super) fn locate(values: &[f64]) -> Result<Located> {
     // 1.4826: from the median of absolute values to the standard deviation of a normal distribution. √2:
     // from the standard deviation of a difference to that of a value.
     let differences = values.windows(2).map(|w| (w[1] - w[0]).abs());
+    let noise = 1.4826 * median(differences).max(0.0) / f64::sqrt(2.0);
     let quantum = step(&sorted);
-    let noise = (1.4826 * median(differences).max(0.0) / f64::sqrt(2.0)).max(rounding(quantum));
     let far = |v: &f64| if v.is_finite() { (v - baseline).abs() } else { -1.0 };
     let peak = (0..values.len()).max_by(|a, b| far(&values[*a]).total_cmp(&far(&values[*b]))).unwrap_or(0);
     let height = values[peak] - baseline;
@@ -311,7 +314,7 @@ pub(super) fn locate(values: &[f64]) -> Result<Located> {
     let cross = |a: usize, b: usize| a as f64 + (0.5 - part(a)) / (part(b) - part(a)) * (b as f64 - a as f64);
     let low = (after..values.len()).find(|i| part(*i) < 0.2).unwrap_or(after);
     let flanks = (cross(before, before + 1), cross(after - 1, after));
-    let depth = BAND * noise;
+    let depth = BAND * noise.max(rounding(quantum));
     let near = |i: &usize| height.abs() * (1.0 - part(*i)) <= depth;
     let from = (before..=peak).rev().take_while(near).last().unwrap_or(peak);
     let to = (peak..after).take_while(near).last().unwrap_or(peak);
