@@ -120,6 +120,17 @@ fn a_sine_of_few_counts_that_is_clipped_is_named() {
     assert_eq!(std.iter().filter(|none| **none).count(), 1, "{std:?}");
 }
 
+/// The force grows or falls by up to 2 % within each step: ζ of H(iω + ε) is off by ε/ω.
+#[test]
+fn a_force_that_drifts_within_its_steps_moves_no_mode() {
+    let Some((_root, path)) = unpacked("sweep_drift_46") else { return };
+    let campaign = format!("{}#up", text(&path.join("campaign.toml")));
+    let (code, answer, _) = vibro(&["modal", &campaign]);
+    let zeta = &answer["modes"][0]["zeta"];
+    assert!(code == 0 && off(zeta, 0.00800776) < 4.0, "{zeta}");
+    assert!(zeta["std"].as_f64().unwrap() < 1e-6, "{zeta}");
+}
+
 /// 40, 600 and 1100 Hz on the axes of a handle, sampled at 5120 Hz: a_hv by the formula of ISO 5349-1.
 #[test]
 fn a_handle_sampled_slowly_is_weighted_without_warping() {

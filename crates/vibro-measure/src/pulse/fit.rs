@@ -177,7 +177,7 @@ impl Samples<'_> {
 
     /// Replaces the best of the `fits` whose onsets lie between different samples by the mean over all onsets
     /// between any of these, each as likely as its sum of squares makes it. For an onset x the others of the
-    /// parameters p with cofactor C are p + C_i0/C_00 (x − p_0): the jump of the force tells between which
+    /// parameters pᵢ with cofactor C are pᵢ + Cᵢ₀/C₀₀ (x − p₀): the jump of the force tells between which
     /// samples the contact begins, and this tells more of the onset, and by it of ξ, than the shape does.
     fn between_samples(&self, fits: &mut [((bool, f64), FittedPulse)]) {
         let Some(((false, _), FittedPulse { fit: best, first: Some(_), .. })) = fits.first() else { return };
@@ -197,7 +197,9 @@ impl Samples<'_> {
             }));
         }
         let most = onsets.iter().map(|o| o.0).fold(f64::NEG_INFINITY, f64::max);
-        onsets.iter_mut().for_each(|o| o.0 = (o.0 - most).exp());
+        for onset in &mut onsets {
+            onset.0 = (onset.0 - most).exp();
+        }
         let total: f64 = onsets.iter().map(|o| o.0).sum();
         let n = best.parameters.len();
         let mean = onsets.iter().fold(DVector::zeros(n), |sum, (w, p, _)| sum + p * (w / total));
