@@ -120,6 +120,31 @@ fn a_sine_of_few_counts_that_is_clipped_is_named() {
     assert_eq!(std.iter().filter(|none| **none).count(), 1, "{std:?}");
 }
 
+/// The force grows or falls by up to 2 % within each step: ζ of H(iω + ε) is off by ε/ω.
+#[test]
+fn a_force_that_drifts_within_its_steps_moves_no_mode() {
+    let Some((_root, path)) = unpacked("sweep_drift_46") else { return };
+    let campaign = format!("{}#up", text(&path.join("campaign.toml")));
+    let (code, answer, _) = vibro(&["modal", &campaign]);
+    let zeta = &answer["modes"][0]["zeta"];
+    assert!(code == 0 && off(zeta, 0.00800776) < 4.0, "{zeta}");
+    assert!(zeta["std"].as_f64().unwrap() < 1e-6, "{zeta}");
+}
+
+/// 40, 600 and 1100 Hz on the axes of a handle, sampled at 5120 Hz: a_hv by the formula of ISO 5349-1.
+#[test]
+fn a_handle_sampled_slowly_is_weighted_without_warping() {
+    let Some((_root, path)) = unpacked("handle_5120.wav") else { return };
+    let options = "--velocity 1 --sensitivity 7 --beam-angle 0 --beam-from axis --handle-sensitivity 100 \
+                   --handle 2 --handle 3 --handle 4 --exposure 2";
+    let mut arguments = vec!["drill", text(&path)];
+    arguments.extend(options.split_whitespace());
+    let (code, answer, _) = vibro(&arguments);
+    let a_hv = &answer["exposure"]["a_hv"];
+    assert!(code == 0 && off(a_hv, 4.3272) < 4.0, "{a_hv}");
+    assert!(a_hv["std"].as_f64().unwrap() < 0.005, "{a_hv}");
+}
+
 /// What an attack made hang, panic or take its time.
 #[test]
 fn inputs_of_an_attack_are_answered_or_refused_soon() {

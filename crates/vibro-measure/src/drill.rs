@@ -44,6 +44,7 @@ pub use turns::Edge;
 pub(crate) use turns::{Edges, Numbered};
 
 use crate::Estimate;
+use crate::converter::{analogue_step, rounding};
 use crate::exposure::exposure;
 use crate::mean::{Mean, scatter};
 use cycles::Cycles;
@@ -261,7 +262,7 @@ impl Marks {
         let last = velocity.len().saturating_sub(1) as f64;
         edges.at.iter_mut().for_each(|edge| *edge += delay);
         edges.at.retain(|edge| (0.0..=last).contains(edge));
-        let std = edges.std(survey::noise(reference));
+        let std = edges.std(survey::noise(reference).max(rounding(analogue_step(reference))));
         Ok(Marks { std, sharp: edges.sharp, others: 0, at: edges.at })
     }
 

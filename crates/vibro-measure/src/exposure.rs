@@ -1,11 +1,11 @@
-//! Hand-arm vibration: the weighting `W_h` of ISO 5349-1 as a digital filter, `a_hv` and A(8).
+//! Hand-arm vibration: the weighting `W_h` of ISO 5349-1 on the lines of a spectrum, `a_hv` and A(8).
 
 use super::Estimate;
 use super::mean::{Mean, average};
 use num_complex::Complex64;
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 use vibro_record::{Error, Finding, Result};
-use vibro_signal::filter::{Analogue, Filter};
+use vibro_signal::fft::Transform;
 
 /// Corners of the band limitation in Hz (ISO 5349-1:2001, table A.1).
 const BAND: [f64; 2] = [6.310, 1258.9];
@@ -22,23 +22,18 @@ const SPAN: f64 = 1.0;
 /// Duration in s after which the weighting has settled: its slowest pole falls by e^(−π √2 · 6.31 · t), e⁻¹⁴
 /// in this time.
 const SETTLED: f64 = 0.5;
+/// Least length of the parts that are weighted at once, in [`SETTLED`].
+const PART: usize = 16;
 
-/// The weighting at a frequency in Hz, by the formula of the standard.
+/// The weighting at a frequency in Hz, by the formula of the standard: high-pass, low-pass, transition from
+/// acceleration to velocity.
 pub fn weighting(frequency: f64) -> Complex64 {
     let s = Complex64::new(0.0, TAU * frequency);
-    let polynomial = |p: &[f64; 3]| p[0] + s * (p[1] + s * p[2]);
-    analogue().iter().map(|section| polynomial(&section.b) / polynomial(&section.a)).product()
-}
-
-/// Numerators and denominators in rising powers of s: high-pass, low-pass, transition.
-fn analogue() -> [Analogue; 3] {
     let [w1, w2] = BAND.map(|f| TAU * f);
     let w3 = TAU * TRANSITION;
-    [
-        Analogue { b: [0.0, 0.0, 1.0], a: [w1 * w1, w1 / BAND_Q, 1.0], exact: BAND[0] },
-        Analogue { b: [w2 * w2, 0.0, 0.0], a: [w2 * w2, w2 / BAND_Q, 1.0], exact: BAND[1] },
-        Analogue { b: [w3 * w3, w3, 0.0], a: [w3 * w3, w3 / TRANSITION_Q, 1.0], exact: TRANSITION },
-    ]
+    let section = |w: f64, q: f64| w * w + s * (w / q + s);
+    s * s / section(w1, BAND_Q) * (w2 * w2) / section(w2, BAND_Q) * (w3 * (s + w3))
+        / section(w3, TRANSITION_Q)
 }
 
 /// One axis of a handle, weighted; the half second in which the weighting settles is left out.
@@ -55,8 +50,10 @@ struct WeightedAxis {
     duration: f64,
 }
 
-/// Weights accelerations. Each section of the filter is transformed bilinearly so that it is exact at its own
-/// corner. The filter starts settled at the first value, so that an offset of the sensor is no shock.
+/// Weights accelerations by the formula of the standard at each spectral line of overlapping parts, so that no
+/// frequency is warped at any sampling rate. Before the record is its first value, so that an offset of the
+/// sensor is no shock; behind it, its mirror image about the last value fades to the first. [`SETTLED`] is
+/// left out at either end of a part, where the transform joins its ends.
 ///
 /// # Errors
 /// If the rate is below four times the upper corner of the weighting.
@@ -65,9 +62,24 @@ fn weighted(values: &[f64], rate: f64) -> Result<Vec<f64>> {
         let why = format!("a rate of {rate} Hz is too low for the weighting W_h, which reaches to 1259 Hz");
         return Err(Error::refused(why).hint(format!("sample the handle at {LOWEST_RATE:.0} Hz or more")));
     }
-    let filter = Filter::analogue(&analogue(), rate)?;
-    let mut out = values.to_vec();
-    filter.causal(&mut out, values.first().copied().unwrap_or(0.0));
+    let (Some(first), Some(last)) = (values.first(), values.last()) else { return Ok(Vec::new()) };
+    let settle = (SETTLED * rate).ceil() as usize;
+    let fade = |i: usize| 0.5 + 0.5 * (PI * (i + 1) as f64 / settle as f64).cos();
+    let mirror = values.iter().rev().skip(1).take(settle).enumerate();
+    let behind = mirror.map(|(i, v)| fade(i) * (2.0 * last - v - first));
+    let n = (PART * settle).next_power_of_two();
+    let transform = Transform::new(n);
+    let weights: Vec<Complex64> =
+        (0..transform.lines()).map(|k| weighting(k as f64 * rate / n as f64)).collect();
+    let mut record = vec![0.0; settle];
+    record.extend(values.iter().map(|v| v - first).chain(behind));
+    let mut out = Vec::with_capacity(values.len());
+    while out.len() < values.len() {
+        let mut lines = transform.forward(&record[out.len()..record.len().min(out.len() + n)]);
+        lines.iter_mut().zip(&weights).for_each(|(line, weight)| *line *= weight);
+        out.extend_from_slice(&transform.inverse(&lines)[settle..n - settle]);
+    }
+    out.truncate(values.len());
     Ok(out)
 }
 

@@ -11,6 +11,7 @@
 mod answered;
 pub mod chance;
 mod clipping;
+mod converter;
 pub mod crossing;
 pub mod decay;
 pub mod drill;

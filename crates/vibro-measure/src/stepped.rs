@@ -14,6 +14,7 @@ use super::residuals::{Whiteness, student};
 use super::response::{Receptance, Response, ResponseOptions, ResponsePoint, read};
 use super::tones::sine;
 use super::{Estimate, mean};
+use growth::{growth, without_growth};
 use nalgebra::{Matrix3, Vector3};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
@@ -23,6 +24,8 @@ use vibro_record::{
     Axis, Error, Finding, Place, Result, Scaling, Spectrum, StepTraces, Sweep, SweepPoint, Trace, Window,
 };
 use vibro_signal::spectrum;
+
+mod growth;
 
 /// Fewest periods of a step: as blocks, they leave four in its second half, the fewest with an uncertainty.
 const PERIODS: f64 = 8.0;
@@ -55,7 +58,8 @@ pub fn stepped(
         (path, taken)
     });
     let (taken, left_out) = answered(taken)?;
-    let (taken, steps): (Vec<StepReading>, Vec<StepTraces>) = taken.into_iter().unzip();
+    let (mut taken, steps): (Vec<StepReading>, Vec<StepTraces>) = taken.into_iter().unzip();
+    without_growth(&mut taken);
     let rate = taken.first().map_or(0.0, |step| step.rate);
     if let Some((step, at)) = taken.iter().zip(&steps).find(|(step, _)| (step.rate / rate - 1.0).abs() > 1e-6)
     {
@@ -109,6 +113,8 @@ struct StepReading {
     frequency: Estimate,
     /// Amplitude of the force in N, and its standard uncertainty.
     force: (f64, Option<f64>),
+    /// Relative rate in 1/s at which the force grows; 0 where none is seen.
+    growth: f64,
     /// Phasor of the response relative to the phase of the force.
     response: Phasor,
     /// Phasor of response over force.
@@ -160,8 +166,9 @@ impl StepReading {
         let cut = clipped(&response.values, rate / frequency.value).len();
         let cut_force = clipped(&force.values, rate / frequency.value).len();
         let blocks = Blocks::of(periods, rate / frequency.value, samples);
-        let (f, x) = (blocks.phasors(force), blocks.phasors(response));
-        let ratio: Vec<Complex64> = x.iter().zip(&f).map(|(x, f)| x / f).collect();
+        let growth = blocks.growth(force, response);
+        let (f, x) = (blocks.phasors(force, growth), blocks.phasors(response, growth));
+        let ratio = ratios(&x, &f);
         let (begins, left, stays) = settled(&ratio);
         // While the force still rises, the ratio is right already but amplitudes are not: each has its own
         // first block.
@@ -192,8 +199,20 @@ impl StepReading {
             (response, ratio) = (response.doubted(), ratio.doubted());
             force.1 = force.1.filter(|_| cut_force == 0);
         }
+        let growth = growth * rate;
         let begins = blocks.start(begins);
-        Ok(StepReading { rate, samples, begins, frequency, force, response, ratio, whiteness, findings })
+        Ok(StepReading {
+            rate,
+            samples,
+            begins,
+            frequency,
+            force,
+            growth,
+            response,
+            ratio,
+            whiteness,
+            findings,
+        })
     }
 
     fn excitation(&self, step: &StepTraces) -> Excitation {
@@ -316,9 +335,16 @@ impl Blocks {
         ((block * self.periods) as f64 * self.period).round() as usize
     }
 
-    /// Phasors at the excitation frequency, one per block: A e^{iφ} of A cos(ωt + φ), t from the first
-    /// sample.
-    fn phasors(&self, trace: &Trace) -> Vec<Complex64> {
+    /// Relative rate in 1/samples at which the force grows while the response is settled.
+    fn growth(&self, force: &Trace, response: &Trace) -> f64 {
+        let (f, x) = (self.phasors(force, 0.0), self.phasors(response, 0.0));
+        let begins = settled(&ratios(&x, &f)).0;
+        growth(&f[begins.min(f.len())..], self.periods as f64 * self.period)
+    }
+
+    /// Phasors at the excitation frequency, one per block: A e^{iφ} of A e^{εt} cos(ωt + φ), with the `growth` ε
+    /// in 1/samples from the middle of the block and the phase from the first sample.
+    fn phasors(&self, trace: &Trace, growth: f64) -> Vec<Complex64> {
         let omega = TAU / self.period;
         let edges = (0..).map(|block| self.start(block)).take_while(|end| *end <= self.samples);
         let edges: Vec<usize> = edges.collect();
@@ -326,7 +352,8 @@ impl Blocks {
             let (mut normal, mut right) = (Matrix3::zeros(), Vector3::zeros());
             for i in edge[0]..edge[1] {
                 let (sin, cos) = (omega * i as f64).sin_cos();
-                let row = Vector3::new(cos, sin, 1.0);
+                let grown = (growth * (i as f64 - f64::midpoint(edge[0] as f64, edge[1] as f64))).exp();
+                let row = Vector3::new(grown * cos, grown * sin, 1.0);
                 normal += row * row.transpose();
                 right += row * trace.values[i];
             }
@@ -337,6 +364,10 @@ impl Blocks {
         };
         edges.windows(2).map(one).collect()
     }
+}
+
+fn ratios(x: &[Complex64], f: &[Complex64]) -> Vec<Complex64> {
+    x.iter().zip(f).map(|(x, f)| x / f).collect()
 }
 
 /// First block from which on the phasors are settled, no later than half-way: the mean of the first quarter

@@ -19,17 +19,6 @@ struct Section {
     a: [f64; 2],
 }
 
-/// A section of a filter in the analogue plane, (b₀ + b₁s + b₂s²)/(a₀ + a₁s + a₂s²), s in rad/s.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Analogue {
-    /// Numerator in rising powers of s.
-    pub b: [f64; 3],
-    /// Denominator in rising powers of s.
-    pub a: [f64; 3],
-    /// Frequency in Hz at which the digital section shall be exact.
-    pub exact: f64,
-}
-
 /// A filter for one sampling rate.
 ///
 /// Corners are where one pass lets through 1/√2 of the amplitude. [`Filter::zero_phase`] passes twice, so
@@ -80,22 +69,6 @@ impl Filter {
         let alpha = (c * c + 2.0 * c).sqrt() - c;
         let sections = vec![Section { b: [alpha, 0.0, 0.0], a: [alpha - 1.0, 0.0] }];
         Ok(Filter { name: format!("exponential smoothing, corner {} Hz", shortest(corner)), rate, sections })
-    }
-
-    /// A cascade of second-order sections, each transformed bilinearly such that it is exact at one
-    /// frequency: s = c(1 − z⁻¹)/(1 + z⁻¹) with c = 2πf/tan(πf/rate).
-    ///
-    /// # Errors
-    /// If one of these frequencies does not lie between 0 and half the sampling rate.
-    pub fn analogue(sections: &[Analogue], rate: f64) -> Result<Filter> {
-        let digital = |part: &Analogue| {
-            let c = 2.0 * PI * part.exact / warped(part.exact, rate)?;
-            let scaled = |p: [f64; 3]| [p[0], p[1] * c, p[2] * c * c];
-            Ok(section(scaled(part.b), scaled(part.a)))
-        };
-        let sections = sections.iter().map(digital).collect::<Result<Vec<Section>>>()?;
-        let name = format!("filter of order {} from analogue sections", 2 * sections.len());
-        Ok(Filter { name, rate, sections })
     }
 
     /// Complex factor of one pass on a sine of `frequency` Hz.

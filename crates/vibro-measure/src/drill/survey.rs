@@ -1,6 +1,7 @@
 //! Statistics of a channel: extremes, levels, noise. Faults of a laser vibrometer: drop-outs and speckle
 //! spikes are found and bridged, over-range is found.
 
+use crate::converter::step;
 use std::ops::Range;
 use vibro_record::{Error, Result, median};
 
@@ -248,7 +249,6 @@ impl ChannelStatistics {
     pub fn of(values: &[f64]) -> ChannelStatistics {
         let (low, high) = range(values);
         let steps = || values.windows(2).map(|w| (w[1] - w[0]).abs());
-        let quantum = steps().filter(|d| *d > 0.0).fold(f64::INFINITY, f64::min);
         let n = values.len().max(1) as f64;
         let equal = steps().filter(|d| *d == 0.0).count() as f64;
         // One more than was seen: none among a few thousand does not prove a probability of 0.
@@ -258,7 +258,7 @@ impl ChannelStatistics {
             low,
             high,
             median: median(values),
-            quantum: if quantum.is_finite() { quantum } else { 0.0 },
+            quantum: step(values),
             longest_by_chance: (needed as usize).clamp(4, 64),
         }
     }

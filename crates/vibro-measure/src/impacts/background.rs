@@ -1,5 +1,6 @@
 //! Level and noise of a trace between its impacts; its bursts, each with the ringing after an impact.
 
+use crate::converter::analogue_step;
 use std::f64::consts::PI;
 use std::ops::Range;
 use vibro_record::lanes::{Survey, survey};
@@ -159,7 +160,7 @@ const MEDIAN: f64 = 0.674_489_750_196_081_7;
 /// the record; then leaves out the samples beyond the noise limit with their neighbours, and repeats.
 pub fn background(values: &[f64]) -> Background {
     let Survey { low, high, .. } = survey(values);
-    let step = step(values).filter(|step| *step < (high - low) / FINE).unwrap_or(0.0);
+    let step = analogue_step(values);
     // P(|x| > zσ) < exp(−z²/2), for each of n samples.
     let z = (2.0 * (values.len().max(1) as f64 / 1e-3).ln()).sqrt();
     let of = |quiet: &[f64], part: f64, normal: f64| {
@@ -180,15 +181,6 @@ pub fn background(values: &[f64]) -> Background {
         found = of(&quiet, 0.5, MEDIAN);
     }
     found
-}
-
-/// Least range of a trace, in steps of the converter, that is not digital.
-const FINE: f64 = 32.0;
-
-/// Smallest step between neighbouring values that differ; `None` where all are the same.
-fn step(values: &[f64]) -> Option<f64> {
-    let steps = values.windows(2).map(|w| (w[1] - w[0]).abs()).filter(|step| *step > 0.0);
-    steps.min_by(f64::total_cmp)
 }
 
 #[cfg(test)]

@@ -2,8 +2,10 @@
 
 use super::ringing::Ringing;
 use super::{ContactModel, KelvinVoigt, LowPass};
+use crate::converter::{hidden, rounding};
 use crate::mean::{average, scatter};
 use crate::residuals::{Whiteness, aicc, student};
+use nalgebra::{DMatrix, DVector};
 use vibro_math::{Fit, least_squares};
 use vibro_record::{Error, Result};
 
@@ -17,6 +19,8 @@ pub(super) struct Samples<'a> {
     pub places: Vec<usize>,
     pub times: Vec<f64>,
     pub values: Vec<f64>,
+    /// Step of the converter, over the height; 0 where values are not rounded.
+    pub quantum: f64,
     /// Ringing after the pulse, which may occur within it, too.
     pub rings: Option<Ringing>,
 }
@@ -53,6 +57,9 @@ const LEAD: f64 = 0.08;
 /// Half-width of the finer grid of onsets around a first guess, in durations of the contact: one and a half
 /// steps of the coarse grid.
 const REACH: f64 = 1.5 * LEAD;
+
+/// Onsets between two samples over which a fit is averaged.
+const ONSETS: u32 = 32;
 
 /// Most samples that the search for a first guess uses; of more, every n-th is taken.
 const COARSE: usize = 48;
@@ -109,7 +116,7 @@ impl Samples<'_> {
     /// The best fit of a model, from a coarse search over onset and shape. The prior of each free exponent
     /// counts as one sample.
     pub fn fit(&self, model: ContactModel) -> Result<FittedPulse> {
-        let (starts, noise) = (self.starts(model)?, self.noise());
+        let (starts, noise) = (self.starts(model)?, self.noise().0);
         let corner = self.filter.map(|f| f.corner);
         let mut from: Vec<(Vec<f64>, Option<usize>)> = Vec::new();
         if model != ContactModel::KelvinVoigt || corner.is_some() {
@@ -152,6 +159,7 @@ impl Samples<'_> {
         let fits = from.into_iter().filter_map(|(start, first)| self.from(model, noise, &start, first));
         let mut fits: Vec<((bool, f64), FittedPulse)> = fits.map(|fit| (held(&fit), fit)).collect();
         fits.sort_by(|(a, _), (b, _)| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
+        self.between_samples(&mut fits);
         let mut fits = fits.into_iter().map(|((outside, _), fit)| self.judged(fit, outside));
         let Some(mut best) = fits.next() else {
             return Err(Error::refused(format!("the fit of the model {} does not converge", model.name())));
@@ -167,6 +175,51 @@ impl Samples<'_> {
         Ok(best)
     }
 
+    /// Replaces the best of the `fits` whose onsets lie between different samples by the mean over all onsets
+    /// between any of these, each as likely as its sum of squares makes it. For an onset x the others of the
+    /// parameters pᵢ with cofactor C are pᵢ + Cᵢ₀/C₀₀ (x − p₀): the jump of the force tells between which
+    /// samples the contact begins, and this tells more of the onset, and by it of ξ, than the shape does.
+    fn between_samples(&self, fits: &mut [((bool, f64), FittedPulse)]) {
+        let Some(((false, _), FittedPulse { fit: best, first: Some(_), .. })) = fits.first() else { return };
+        let variance = best.variance().max(self.noise().1.powi(2)).max(f64::EPSILON.powi(2));
+        // Logarithm of the weight, parameters, and index of the fit.
+        let mut onsets: Vec<(f64, DVector<f64>, usize)> = Vec::new();
+        for (index, (_, fitted)) in fits.iter().enumerate().filter(|(_, ((outside, _), _))| !outside) {
+            let (fit, Some(first)) = (&fitted.fit, fitted.first) else { continue };
+            let (from, to) = (self.times[first - 1], self.times[first]);
+            let slopes = fit.cofactor.column(0) / fit.cofactor[(0, 0)];
+            onsets.extend((0..ONSETS).map(|k| {
+                let off = from + (to - from) * (f64::from(k) + 0.5) / f64::from(ONSETS) - fit.parameters[0];
+                let squares = fit.sum_of_squares() + off * off / fit.cofactor[(0, 0)];
+                let width = (to - from).ln();
+                let p = DVector::from_column_slice(&fit.parameters) + &slopes * off;
+                (width - 0.5 * squares / variance, p, index)
+            }));
+        }
+        let most = onsets.iter().map(|o| o.0).fold(f64::NEG_INFINITY, f64::max);
+        for onset in &mut onsets {
+            onset.0 = (onset.0 - most).exp();
+        }
+        let total: f64 = onsets.iter().map(|o| o.0).sum();
+        let n = best.parameters.len();
+        let mean = onsets.iter().fold(DVector::zeros(n), |sum, (w, p, _)| sum + p * (w / total));
+        let cofactor = onsets.iter().fold(DMatrix::zeros(n, n), |sum, (w, p, index)| {
+            let own = &fits[*index].1.fit.cofactor;
+            let column = own.column(0);
+            let off = p - &mean;
+            let given = own - column * column.transpose() / own[(0, 0)];
+            sum + (given + &off * off.transpose() / variance) * (w / total)
+        });
+        let first = self.times.partition_point(|t| *t < mean[0]);
+        let p = mean.as_slice();
+        let Some(model) = self.model(ContactModel::KelvinVoigt, p, &self.times, Some(first)) else { return };
+        let fitted = &mut fits[0].1;
+        fitted.fit.parameters = p.to_vec();
+        fitted.fit.residuals = self.values.iter().zip(model).map(|(v, m)| v - m).collect();
+        fitted.fit.cofactor = cofactor;
+        fitted.first = Some(first);
+    }
+
     /// Tests the residuals of a fit for whiteness, and sets the factor of its uncertainties, unless its
     /// onset is `outside` of where it may be or does not match the record.
     fn judged(&self, mut fitted: FittedPulse, outside: bool) -> FittedPulse {
@@ -176,16 +229,35 @@ impl Samples<'_> {
             let student = student(fitted.fit.degrees_of_freedom()).unwrap_or(f64::NAN);
             let inside = (fitted.end() - fitted.fit.parameters[0]) / self.step;
             let rings = self.rings.map_or(1.0, |rings| rings.widening(inside, fitted.fit.variance()));
+            self.round(&mut fitted.fit);
             fitted.widening = Some(fitted.whiteness.inflation * student * rings.sqrt());
         }
         fitted
     }
 
-    /// Standard deviation of the record well before the pulse, over the pulse's height; at least [`DIGITS`].
-    fn noise(&self) -> f64 {
+    /// Adds the rounding of a baseline whose noise is below a step of the converter to the covariance of a fit:
+    /// a flat baseline hides rounding within the pulse, and is off itself by as much at all its samples.
+    fn round(&self, fit: &mut Fit) {
+        let (noise, hidden) = self.noise();
+        let variance = fit.variance();
+        if hidden == 0.0 || variance <= 0.0 {
+            return;
+        }
+        // Parameters change by C_ib/C_bb for a change of the baseline b.
+        let slopes = fit.cofactor.column(1) / fit.cofactor[(1, 1)];
+        let baseline = &slopes * slopes.transpose() * (hidden * hidden / variance);
+        fit.cofactor *= (noise * noise / variance).max(1.0);
+        fit.cofactor += baseline;
+    }
+
+    /// Standard deviation of the noise well before the pulse, over the pulse's height, at least [`DIGITS`];
+    /// and what rounding adds to the baseline.
+    fn noise(&self) -> (f64, f64) {
         let begins = -0.5 - self.delay();
         let before = &self.values[..self.times.partition_point(|t| *t < begins)];
-        if before.len() < 8 { DIGITS } else { scatter(before).max(DIGITS) }
+        let scatter = if before.len() < 8 { 0.0 } else { scatter(before) };
+        let hidden = hidden(scatter, self.quantum);
+        (scatter.hypot(hidden).max(DIGITS), hidden)
     }
 
     /// Whether the residuals within the contact exceed those before it by more than chance: then the contact
@@ -202,7 +274,8 @@ impl Samples<'_> {
         // The parameters absorb noise within the contact: they take its degrees of freedom.
         let free = inside.1 - fit.parameters.len() as f64;
         let chance = SURE * fitted.whiteness.inflation * (2.0 / free.max(1.0) + 2.0 / before.1).sqrt();
-        free >= 1.0 && before.1 >= 8.0 && inside.0 / free > (1.0 + chance) * before.0 / before.1
+        let noise = (before.0 / before.1).max(rounding(self.quantum).powi(2));
+        free >= 1.0 && before.1 >= 8.0 && inside.0 / free > (1.0 + chance) * noise
     }
 
     /// Whether the residuals around the onset have more than twice the variance of the others, and more than
@@ -216,7 +289,7 @@ impl Samples<'_> {
             *part = (part.0 + r * r, part.1 + 1.0);
         }
         let limit = (1.0 + SURE * (2.0_f64 / near.1).sqrt()).max(2.0);
-        near.0 / near.1 > limit * far.0 / far.1
+        near.0 / near.1 > limit * (far.0 / far.1).max(rounding(self.quantum).powi(2))
     }
 
     /// The fit from one first guess; `None` where it does not converge.

@@ -5,6 +5,7 @@ use super::result::{PulseCurve, PulseFit, PulsePicture, propagated};
 use super::ringing::Ringing;
 use super::{ContactModel, KelvinVoigt, LowPass};
 use crate::Estimate;
+use crate::converter::{rounding, step};
 use crate::mean::average;
 use crate::swings;
 use std::collections::BTreeMap;
@@ -80,7 +81,8 @@ impl<'a> Normalised<'a> {
         let times = places.iter().map(|i| self.time(*i)).collect();
         let values = places.iter().map(|i| self.trace.values[*i] / self.height).collect();
         let (step, filter) = (self.step / self.length, self.filter.as_ref());
-        Samples { step, filter, places, times, values, rings: None }
+        let quantum = self.found.quantum / self.height;
+        Samples { step, filter, places, times, values, quantum, rings: None }
     }
 
     /// The samples to be fitted: the pulse with a baseline on both sides, or only before it where the record
@@ -113,7 +115,7 @@ impl<'a> Normalised<'a> {
         let left: Vec<f64> = model.iter().zip(&after.values).map(|(m, v)| v - m).collect();
         let mean = average(&left);
         let rms = average(&left.iter().map(|d| d * d).collect::<Vec<f64>>()).sqrt();
-        let inside = (fitted.fit.sum_of_squares() / n as f64).sqrt().max(1e-6);
+        let inside = (fitted.fit.sum_of_squares() / n as f64).sqrt().max(rounding(first.quantum)).max(1e-6);
         let restless = left.len() >= 4 && rms > RESTLESS * inside;
         let level = !restless || mean.abs() <= LEVEL * rms;
         if restless {
@@ -226,9 +228,12 @@ impl<'a> Normalised<'a> {
         let si = |times: &[f64], values: &[f64]| {
             times.iter().zip(values).map(|(t, v)| (self.seconds(*t), v * self.height)).collect()
         };
+        let all = self.samples(from..to);
         let curve = |fit: &FittedPulse| {
             let points = si(&times, &fit.at(samples, &times)?);
-            Some(PulseCurve { model: fit.model, points, residuals: si(&samples.times, &fit.fit.residuals) })
+            let model = fit.at(samples, &all.times)?;
+            let left: Vec<f64> = all.values.iter().zip(model).map(|(v, m)| v - m).collect();
+            Some(PulseCurve { model: fit.model, points, residuals: si(&all.times, &left) })
         };
         PulsePicture {
             quantity: (self.trace.meta.quantity.name(), self.trace.meta.unit.symbol().to_owned()),
@@ -251,6 +256,8 @@ pub(super) struct Located {
     pub low: usize,
     /// Indices of the samples of a flat top.
     pub clipped: Vec<usize>,
+    /// Step of the converter.
+    pub quantum: f64,
 }
 
 /// Samples by which a flat top must be longer than three round ones.
@@ -283,6 +290,7 @@ pub(super) fn locate(values: &[f64]) -> Result<Located> {
     // from the standard deviation of a difference to that of a value.
     let differences = values.windows(2).map(|w| (w[1] - w[0]).abs());
     let noise = 1.4826 * median(differences).max(0.0) / f64::sqrt(2.0);
+    let quantum = step(&sorted);
     let far = |v: &f64| if v.is_finite() { (v - baseline).abs() } else { -1.0 };
     let peak = (0..values.len()).max_by(|a, b| far(&values[*a]).total_cmp(&far(&values[*b]))).unwrap_or(0);
     let height = values[peak] - baseline;
@@ -306,14 +314,14 @@ pub(super) fn locate(values: &[f64]) -> Result<Located> {
     let cross = |a: usize, b: usize| a as f64 + (0.5 - part(a)) / (part(b) - part(a)) * (b as f64 - a as f64);
     let low = (after..values.len()).find(|i| part(*i) < 0.2).unwrap_or(after);
     let flanks = (cross(before, before + 1), cross(after - 1, after));
-    let depth = BAND * noise;
+    let depth = BAND * noise.max(rounding(quantum));
     let near = |i: &usize| height.abs() * (1.0 - part(*i)) <= depth;
     let from = (before..=peak).rev().take_while(near).last().unwrap_or(peak);
     let to = (peak..after).take_while(near).last().unwrap_or(peak);
     let run = (to + 1 - from) as f64;
     let is_flat = flat(run, flanks.1 - flanks.0, depth / height.abs());
     let clipped = if is_flat { (from..=to).collect() } else { Vec::new() };
-    let located = Located { baseline, height, flanks, low, clipped };
+    let located = Located { baseline, height, flanks, low, clipped, quantum };
     match swings::back_and_forth(values, baseline, height, flanks) {
         Some(rings) => Err(rings),
         None => Ok(located),

@@ -1,0 +1,82 @@
+//! The steps of a converter, and the noise that rounding to them adds.
+
+use std::f64::consts::PI;
+use vibro_record::lanes::{Survey, survey};
+
+/// Least range of an analogue trace, in steps: a switch has two values and no noise.
+const FINE: f64 = 32.0;
+
+/// Smallest difference between neighbours that is not 0: the step, where values are rounded; 0 where all are
+/// the same. Sorted values show it with the fewest of them.
+pub(crate) fn step(values: &[f64]) -> f64 {
+    let steps = values.windows(2).map(|w| (w[1] - w[0]).abs()).filter(|step| *step > 0.0);
+    steps.min_by(f64::total_cmp).unwrap_or(0.0)
+}
+
+/// The step of a trace; 0 for one of a few levels, such as a switch.
+pub(crate) fn analogue_step(values: &[f64]) -> f64 {
+    let (Survey { low, high, .. }, step) = (survey(values), step(values));
+    if step < (high - low) / FINE { step } else { 0.0 }
+}
+
+/// Standard deviation of rounding to a step q, q/√12 (Widrow & Kollár, Quantization Noise, 2008): the least
+/// noise of a trace. A stretch whose noise is below a step shows none.
+pub(crate) fn rounding(step: f64) -> f64 {
+    step / 12f64.sqrt()
+}
+
+/// Standard deviation of what rounding to a step q adds to the mean of a quiet stretch that scatters by
+/// `scatter`: the stretch does not show it. It is q/√12 in a flat stretch, and e^(−2π²σ²/q²) of that in noise
+/// σ, with the scatter √(σ² + q²/12) (Widrow & Kollár, 2008).
+pub(crate) fn hidden(scatter: f64, step: f64) -> f64 {
+    let noise = (scatter.powi(2) - rounding(step).powi(2)).max(0.0);
+    if step > 0.0 { rounding(step) * (-2.0 * (PI / step).powi(2) * noise).exp() } else { 0.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mean::{average, scatter};
+    use vibro_math::Noise;
+
+    #[test]
+    fn a_step_is_seen_in_a_sine_and_none_in_a_switch() {
+        let sine: Vec<f64> =
+            (0..500).map(|i| (100.0 * (f64::from(i) * 0.013).sin()).round() * 0.25).collect();
+        assert_eq!((step(&sine), analogue_step(&sine)), (0.25, 0.25));
+        let switch: Vec<f64> = (0..500).map(|i| f64::from(u8::from(i % 50 < 5))).collect();
+        assert_eq!((step(&switch), analogue_step(&switch), step(&[2.0; 9])), (1.0, 0.0, 0.0));
+    }
+
+    /// A plain oracle: the error of the mean of a rounded level, at levels all over a step.
+    #[test]
+    fn a_mean_hides_less_of_its_rounding_in_more_noise() {
+        for sigma in [0.0, 0.2, 0.3, 0.5] {
+            let mut noise = Noise::new(5);
+            let (mut squares, mut scatters) = (0.0, 0.0);
+            for k in 0..200 {
+                let level = f64::from(k) / 200.0;
+                let values: Vec<f64> = (0..400).map(|_| (level + sigma * noise.normal()).round()).collect();
+                squares += (average(&values) - level).powi(2) / 200.0;
+                scatters += scatter(&values).powi(2) / 200.0;
+            }
+            // The mean of 400 draws scatters by √(σ² + 1/12)/20 beside what is hidden. At σ = 0 the scatter is 0.
+            let chance = if sigma > 0.0 { scatters / 400.0 } else { 0.0 };
+            let found = hidden(scatters.sqrt(), 1.0).powi(2);
+            // The exponential is that of the first harmonic of the error, which has 6/π² of the variance; and
+            // the scatter lacks what is hidden. A tenth and a third for chance.
+            let most = 1.1 * PI * PI / 6.0 * squares * (4.0 * PI * PI * squares).exp();
+            assert!(found < most && squares < 1.3 * (found + chance), "{sigma}: {squares} {found}");
+        }
+    }
+
+    /// A plain oracle: the errors of a sine that meets its steps everywhere.
+    #[test]
+    fn rounding_scatters_by_a_step_over_the_root_of_twelve() {
+        let errors: Vec<f64> =
+            (0..40_000).map(|i| 300.0 * (f64::from(i) * 0.618_034).sin()).map(|v| v.round() - v).collect();
+        // The variance of 40 000 uniform errors scatters by √0.8/√40000 = 0.45 %; four times that.
+        let variance = errors.iter().map(|e| e * e).sum::<f64>() / errors.len() as f64;
+        assert!((variance / rounding(1.0).powi(2) - 1.0).abs() < 0.018, "{variance}");
+    }
+}
