@@ -267,7 +267,11 @@ impl Reader {
             let mut all = if level::needs_values(&all) { read(false)? } else { all };
             all.findings.extend(packed::percent(source));
             magnitude::mark(&mut all);
-            level::settle(span::cut(all.evened(&self.options)?, span)?, entry.format, &self.options)
+            level::levels_to_amplitudes(
+                span::cut(all.with_even_axes(&self.options)?, span)?,
+                entry.format,
+                &self.options,
+            )
         });
         let format = if source.is_sheet() { Format::Workbook } else { entry.format };
         let placed =

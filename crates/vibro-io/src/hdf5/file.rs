@@ -328,7 +328,7 @@ fn by_rows(
         let mut whole = Extremes::NONE;
         parts.collect::<std::result::Result<Vec<_>, Fault>>()?.into_iter().for_each(|part| whole.join(&part));
         if whole.finite() {
-            return Ok(Held::Ends(whole));
+            return Ok(Held::Summary(whole));
         }
     }
     hold(held)?;
