@@ -152,15 +152,15 @@ pub fn from_values(
         Some(found.count("long", long).count("n", n - 1))
     };
     let between_gaps = if time && clock.is_none() { stretches(&values, resolution) } else { Vec::new() };
-    // A single stretch that covers the whole record, with RMS jitter below `CALM_JITTER` of a step, is an even
-    // clock after all.
+    // A single stretch that covers the whole record, with RMS jitter below `CALM_JITTER` of a step, is an
+    // even clock after all.
     let whole = between_gaps.first().filter(|stretch| stretch.samples == (0..n)).map(|stretch| stretch.clock);
     let clock = clock.or(whole.filter(|clock| clock.jitter <= CALM_JITTER * clock.step));
     let keeps_stored = will_resample && clock.is_some_and(|clock| clock.jitter > 0.0) && smallest > 0.0;
     if let Some(clock) = clock.filter(|_| !keeps_stored) {
         let digit = 2.0 * resolution;
-        // Printed steps of one and of two digits have two explanations: an even step slightly above one digit,
-        // or an even step of one digit with lost samples.
+        // Printed steps of one and of two digits have two explanations: an even step slightly above one
+        // digit, or an even step of one digit with lost samples.
         let is_digits = |step: f64, count: f64| (step / digit - count).abs() < WHOLE_DIGITS;
         let one_or_two = is_digits(smallest, 1.0) && is_digits(largest, 2.0);
         let perhaps_lost = time && one_or_two && (long as f64) < LARGEST_SHARE_LOST * n as f64;
@@ -211,8 +211,8 @@ pub fn longest_stretch(findings: &[Finding]) -> Option<usize> {
     lost.get("longest").map(|number| number as usize)
 }
 
-/// Resolution that is assumed for equal steps with coarse digits, divided by the printed resolution. It covers
-/// the rounding of doubles: 1e-7 s for seconds since 1970.
+/// Resolution that is assumed for equal steps with coarse digits, divided by the printed resolution. It
+/// covers the rounding of doubles: 1e-7 s for seconds since 1970.
 const EQUAL_STEPS: f64 = 1e-2;
 
 /// Largest difference between a step and a whole number of printed digits, in digits, that counts as none.

@@ -1,5 +1,6 @@
-//! Finds channels that are the magnitude of a vector whose components are other channels, such as the absolute
-//! acceleration of a phone. A magnitude has no sign: an oscillation about zero appears at twice its frequency.
+//! Finds channels that are the magnitude of a vector whose components are other channels, such as the
+//! absolute acceleration of a phone. A magnitude has no sign: an oscillation about zero appears at twice its
+//! frequency.
 
 use crate::held::{Contents, first_values};
 use vibro_record::lanes::Extremes;

@@ -55,8 +55,8 @@ const BLOCK: usize = 4096;
 /// its components, show in this many rows.
 pub const FIRST_VALUES: usize = 1 << 14;
 
-/// Smallest and largest value of a channel that may be read block by block, ignoring missing values (NaN), and
-/// its first values.
+/// Smallest and largest value of a channel that may be read block by block, ignoring missing values (NaN),
+/// and its first values.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Extremes {
     low: f64,

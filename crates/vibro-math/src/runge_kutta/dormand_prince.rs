@@ -2,8 +2,8 @@
 
 use super::{Scheme, TERMS, combine};
 
-/// Six stages and the derivative at the end of the step, which is the first stage of the next step: first same
-/// as last (FSAL).
+/// Six stages and the derivative at the end of the step, which is the first stage of the next step: first
+/// same as last (FSAL).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct DormandPrince;
 
