@@ -4,8 +4,8 @@ use crate::record::Written;
 use std::ops::Range;
 use toml::de::{DeTable, DeValue};
 
-/// Terms of the field that name no table, with the table for each.
-const TABLES: &[(&str, &str)] = &[
+/// (Term of the field that is no table name, table that a user probably wants.)
+const TABLE_SYNONYMS: &[(&str, &str)] = &[
     ("modal", "frf"),
     ("hammer", "frf"),
     ("response", "sweep"),
@@ -14,9 +14,9 @@ const TABLES: &[(&str, &str)] = &[
     ("contact", "pulse"),
 ];
 
-/// The text of a campaign, with keys that are allowed beside those of a type.
-pub fn written<'a>(text: &'a str, beside: &'a [&'a str]) -> Written<'a> {
-    Written { text, beside, meant: TABLES }
+/// The text of a campaign, with keys that are known beside those of a type.
+pub fn written<'a>(text: &'a str, extra_keys: &'a [&'a str]) -> Written<'a> {
+    Written { text, extra_keys, table_synonyms: TABLE_SYNONYMS }
 }
 
 /// Position of a key in a table or its subtables.

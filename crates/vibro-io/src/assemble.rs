@@ -8,22 +8,22 @@ use vibro_record::{
     Trace, Values, Window, is_fine, stretches, uniform_std,
 };
 
-/// Statements of a file about a spectrum.
+/// What a file states about a spectrum.
 #[derive(Debug, Clone, Default)]
 pub struct Spectral {
-    /// Scaling, where it is stated.
+    /// Scaling, if it is stated.
     pub scaling: Option<Scaling>,
     pub window: Option<Window>,
     pub enbw: Option<f64>,
     /// Whether complex values are stated to be a frequency response function.
     pub frf: bool,
-    /// Finding for an unknown scaling; `None` for the usual one, which says that the file states none.
+    /// Finding to report instead of [`code::SCALING_UNSAID`] if the scaling is unknown.
     pub doubt: Option<Finding>,
 }
 
-/// The record of values in SI units. Real values are a spectrum over frequency, else a trace. Complex values
-/// are a spectrum, or a frequency response function if the file says so or their unit is a response over
-/// force.
+/// Builds the record of values in SI units. Real values over frequency are a spectrum, other real values a
+/// trace. Complex values are a frequency response function if the file states so, or if it states no scaling
+/// and their unit is a response divided by a force; else a spectrum.
 ///
 /// # Errors
 /// If values over time are complex.
@@ -69,11 +69,11 @@ pub fn to_si(values: &mut Values, factor: f64) -> Result<()> {
 }
 
 impl Options {
-    /// Sets the unit of a record: the user's, else the file's. Returns the factor to SI.
+    /// Sets the unit of a record: the user's, else the file's, which is `said`. Returns the factor to SI.
     pub(crate) fn adopt(&self, meta: &mut Meta, said: Option<&str>) -> f64 {
-        // A coherence stored beside an FRF has no unit: a stated unit is meant for the FRF.
-        let bare = said.is_none_or(|u| matches!(u.trim(), "" | "1"));
-        if self.unit.is_some() && bare && meta.name.to_lowercase().contains("coherence") {
+        // A coherence stored with an FRF has no unit: the unit that the user states is that of the FRF.
+        let without_unit = said.is_none_or(|u| matches!(u.trim(), "" | "1"));
+        if self.unit.is_some() && without_unit && meta.name.to_lowercase().contains("coherence") {
             return meta.adopt_unit("1");
         }
         if let Some(given) = &self.unit {
@@ -100,37 +100,45 @@ pub fn domain(kind: &AxisKind) -> (&'static str, &'static str) {
     }
 }
 
-/// An axis made from individually stored values, and its quality.
+/// An axis built from individually stored values, with its uncertainty and the finding on it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct JudgedAxis {
     pub axis: Axis,
     /// Relative standard uncertainty of the step; 0 for an uneven axis.
-    pub clock: f64,
+    pub step_relative_std: f64,
     /// Finding for an axis that is uneven, jitters or was printed with too few digits.
     pub found: Option<Finding>,
 }
 
 /// Decides whether `values` (SI units) form an even axis. `resolution` is half a unit in their last digit;
-/// `what` names them in findings, e.g. `column "t"`. Jittering times are kept if `resampled`, else made even.
+/// `what` names them in findings, e.g. `column "t"`. The outcomes, in the order in which they are tried:
+/// 1. steps equal within the digits, or fewer than two values: no finding;
+/// 2. rising times with jitter, and the user resamples (`will_resample`): the stored times, no finding;
+/// 3. an even clock: an even axis with `axis-jitter` or `axis-rounded`, or with `axis-rounded-or-lost` if a
+///    shorter step with a few lost samples fits the printed times as well;
+/// 4. times with even stretches between gaps: the stored times with `samples-lost`, or with `axis-backwards`
+///    if they do not rise;
+/// 5. other values: the stored values with `axis-uneven`, or with `axis-backwards` if they do not rise.
 pub fn from_values(
     kind: AxisKind,
     values: Vec<f64>,
     resolution: f64,
     what: &str,
-    resampled: bool,
+    will_resample: bool,
 ) -> JudgedAxis {
     let n = values.len();
-    let mean = (values.last().unwrap_or(&0.0) - values.first().unwrap_or(&0.0)) / n.max(2) as f64;
-    // With fine digits, steps even to within the resolution count as even. Coarse digits could hide uneven
-    // steps: these must be all but equal.
-    let tolerance = if is_fine(resolution, mean) { resolution } else { EQUAL * resolution };
+    let mean_step = (values.last().unwrap_or(&0.0) - values.first().unwrap_or(&0.0)) / n.max(2) as f64;
+    // With fine digits, steps count as equal within the resolution. Coarse digits could hide uneven steps, so
+    // the printed steps must be equal but for the rounding of doubles.
+    let tolerance = if is_fine(resolution, mean_step) { resolution } else { EQUAL_STEPS * resolution };
     let axis = Axis::from_values(kind, values, tolerance);
     let Axis { kind, grid: Grid::Uneven(values) } = axis else {
-        let clock = axis.step().map_or(0.0, |step| uniform_std(resolution, n) / step);
-        return JudgedAxis { axis, clock, found: None };
+        let step_relative_std = axis.step().map_or(0.0, |step| uniform_std(resolution, n) / step);
+        return JudgedAxis { axis, step_relative_std, found: None };
     };
     if n < 2 {
-        return JudgedAxis { axis: Axis { kind, grid: Grid::Uneven(values) }, clock: 0.0, found: None };
+        let axis = Axis { kind, grid: Grid::Uneven(values) };
+        return JudgedAxis { axis, step_relative_std: 0.0, found: None };
     }
     let time = kind == AxisKind::Time;
     let clock = if time { Clock::of(&values, resolution) } else { Clock::rounded(&values, resolution) };
@@ -138,49 +146,54 @@ pub fn from_values(
     let (smallest, largest) =
         steps().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), d| (a.min(d), b.max(d)));
     let long = steps().filter(|d| *d > f64::midpoint(smallest, largest)).count();
-    let said = |found: Finding| {
+    let with_steps = |found: Finding| {
         let found = found.name("column", what).name("unit", domain(&kind).1);
         let found = found.number("smallest", smallest).number("largest", largest);
         Some(found.count("long", long).count("n", n - 1))
     };
     let between_gaps = if time && clock.is_none() { stretches(&values, resolution) } else { Vec::new() };
-    // One stretch over all instants means no gaps beside it; small jitter means none within it.
+    // A single stretch that covers the whole record, with RMS jitter below `CALM_JITTER` of a step, is an
+    // even clock after all.
     let whole = between_gaps.first().filter(|stretch| stretch.samples == (0..n)).map(|stretch| stretch.clock);
-    let clock = clock.or(whole.filter(|clock| clock.jitter <= CALM * clock.step));
-    let kept = resampled && clock.is_some_and(|clock| clock.jitter > 0.0) && smallest > 0.0;
-    if let Some(clock) = clock.filter(|_| !kept) {
+    let clock = clock.or(whole.filter(|clock| clock.jitter <= CALM_JITTER * clock.step));
+    let keeps_stored = will_resample && clock.is_some_and(|clock| clock.jitter > 0.0) && smallest > 0.0;
+    if let Some(clock) = clock.filter(|_| !keeps_stored) {
         let digit = 2.0 * resolution;
-        // A step of one digit with a lost sample is two: a slightly longer even step prints the same.
-        let one_digit = (smallest / digit - 1.0).abs() < EQUAL && (largest / digit - 2.0).abs() < EQUAL;
-        let perhaps_lost = time && one_digit && (long as f64) < LOST * n as f64;
+        // Printed steps of one and of two digits have two explanations: an even step slightly above one
+        // digit, or an even step of one digit with lost samples.
+        let is_digits = |step: f64, count: f64| (step / digit - count).abs() < WHOLE_DIGITS;
+        let one_or_two = is_digits(smallest, 1.0) && is_digits(largest, 2.0);
+        let perhaps_lost = time && one_or_two && (long as f64) < LARGEST_SHARE_LOST * n as f64;
         let found = match clock.jitter > 0.0 {
             true => Some(clock.finding(what)),
-            false if perhaps_lost => said(Finding::caution(PERHAPS_LOST).number("step", clock.step)),
-            false => said(clock.finding(what)),
+            false if perhaps_lost => with_steps(Finding::caution(PERHAPS_LOST).number("step", clock.step)),
+            false => with_steps(clock.finding(what)),
         };
         let grid = Grid::Even { start: clock.start, step: clock.step, n };
-        return JudgedAxis { axis: Axis { kind, grid }, clock: clock.relative(), found };
+        return JudgedAxis { axis: Axis { kind, grid }, step_relative_std: clock.relative(), found };
     }
-    // Samples closer than the last printed digit share one time: that is no step backwards.
-    let rises = smallest > 0.0 || (smallest == 0.0 && !is_fine(resolution, mean));
+    // Samples closer than the last printed digit have equal printed times: that is no step backwards.
+    let rises = smallest > 0.0 || (smallest == 0.0 && !is_fine(resolution, mean_step));
     let gaps = with_gaps(&between_gaps, if rises { code::SAMPLES_LOST } else { code::AXIS_BACKWARDS });
     let code = if smallest > 0.0 { "axis-uneven" } else { code::AXIS_BACKWARDS };
     let found = gaps.unwrap_or_else(|| Finding::caution(code));
-    let found = if kept { None } else { said(found) };
-    JudgedAxis { axis: Axis { kind, grid: Grid::Uneven(values) }, clock: 0.0, found }
+    let found = if keeps_stored { None } else { with_steps(found) };
+    JudgedAxis { axis: Axis { kind, grid: Grid::Uneven(values) }, step_relative_std: 0.0, found }
 }
 
-/// Code of the finding that times fit an even step, and as well a shorter one with lost samples.
+/// Code of the finding that printed times fit an even step, and a shorter step with lost samples as well.
 pub const PERHAPS_LOST: &str = "axis-rounded-or-lost";
 
-/// Largest share of samples that may be lost where printed digits do not show it: instruments lose fewer.
-const LOST: f64 = 0.2;
+/// If the share of double-length steps is below this, lost samples are possible as well as rounding, and a
+/// caution says so. A larger share is rounding: instruments lose fewer samples.
+const LARGEST_SHARE_LOST: f64 = 0.2;
 
-/// Largest RMS jitter, over the step, that is taken for an even clock without lost samples. Losing every
-/// third sample leaves a jitter of 1/6 about another even grid; other patterns leave more.
-const CALM: f64 = 0.1;
+/// Largest RMS jitter, divided by the step, of a clock without lost samples. If every third sample is lost,
+/// the others deviate by 1/6 of a step from another even grid; other patterns of loss deviate more.
+const CALM_JITTER: f64 = 0.1;
 
-/// Finding `code` on times with even stretches between lost samples, pauses or restarts.
+/// The finding `code` on times with even stretches between lost samples, pauses or restarts: number and
+/// durations of the stretches, and clock of the longest. `None` if there are no stretches.
 fn with_gaps(all: &[Stretch], code: &'static str) -> Option<Finding> {
     let (number, longest) = Stretch::longest(all)?;
     let (rate, std) = longest.clock.rate();
@@ -188,26 +201,30 @@ fn with_gaps(all: &[Stretch], code: &'static str) -> Option<Finding> {
     let found = found.number("duration", longest.duration()).number("start", longest.clock.start);
     let found = found.number("rate", rate).number("std", std);
     let durations: Vec<f64> = all.iter().map(Stretch::duration).collect();
-    Some(if all.len() <= LISTED { found.numbers("durations", durations) } else { found })
+    Some(if all.len() <= MOST_LISTED { found.numbers("durations", durations) } else { found })
 }
 
-/// Number of the longest even stretch that findings on lost samples name.
+/// Number of the longest even stretch, from 1, as the finding on lost samples states it; `None` without that
+/// finding.
 pub fn longest_stretch(findings: &[Finding]) -> Option<usize> {
     let lost = findings.iter().find(|found| found.code == code::SAMPLES_LOST)?;
     lost.get("longest").map(|number| number as usize)
 }
 
-/// Tolerance for equal steps with coarse digits, over half a unit in the last digit. Doubles of s since 1970
-/// are rounded by 1e-7 s.
-const EQUAL: f64 = 1e-2;
+/// Resolution that is assumed for equal steps with coarse digits, divided by the printed resolution. It
+/// covers the rounding of doubles: 1e-7 s for seconds since 1970.
+const EQUAL_STEPS: f64 = 1e-2;
+
+/// Largest difference between a step and a whole number of printed digits, in digits, that counts as none.
+const WHOLE_DIGITS: f64 = 1e-2;
 
 /// Largest relative difference between the nominal rate of a logger or telephone and the rate of its clock.
 pub const NOMINAL: f64 = 1e-2;
 
-/// Most stretches whose durations a finding lists one by one.
-const LISTED: usize = 12;
+/// Largest number of stretches whose durations a finding lists one by one.
+const MOST_LISTED: usize = 12;
 
-/// Statements of a file about an abscissa, in SI units.
+/// What a file states about an abscissa, in SI units.
 pub struct Abscissa {
     pub kind: AxisKind,
     /// Start and step.
@@ -218,9 +235,9 @@ pub struct Abscissa {
     pub resolution: f64,
 }
 
-/// Largest relative distance between the last spectral line and a stated base band, which may be rounded to
-/// three digits.
-const BAND: f64 = 5e-3;
+/// Largest relative difference between the last spectral line and the base band that the user states. The
+/// base band may be rounded to three digits.
+const BAND_ROUNDING: f64 = 5e-3;
 
 impl Abscissa {
     /// An abscissa with even start and step, or without any.
@@ -236,8 +253,8 @@ impl Abscissa {
         }
     }
 
-    /// The axis of `n` values: from a stated rate, else from the file's step, else from stored values. Sample
-    /// numbers are used if the step is not positive and finite, or the file has none of these.
+    /// The axis of `n` values: from the user's rate or base band, else from the file's step, else from stored
+    /// values. Without any of these, or if the step is not positive and finite, the axis counts samples.
     pub fn axis(self, n: usize, options: &Options, meta: &mut Meta) -> Axis {
         let Abscissa { kind, even, stored, resolution } = self;
         let silent = even.is_none() && stored.len() != n;
@@ -245,9 +262,9 @@ impl Abscissa {
             return Axis::frequency(0.0, band / n.saturating_sub(1).max(1) as f64, n);
         }
         if let Some(band) = options.base_band {
-            let ends_at = |end: f64| (end - band).abs() <= BAND * band;
-            // LabVIEW labels the axis of a spectrum as time. The last line may lie one step below the base
-            // band.
+            let ends_at = |end: f64| (end - band).abs() <= BAND_ROUNDING * band;
+            // LabVIEW labels the axis of a spectrum as time. The last spectral line lies at the base band or
+            // one step below.
             if let (AxisKind::Time, Some((0.0, step))) = (&kind, even)
                 && (ends_at(step * n as f64) || ends_at(step * n.saturating_sub(1) as f64))
             {
@@ -274,11 +291,11 @@ impl Abscissa {
                 meta.found(Finding::caution(code::ABSCISSA_UNSAID));
                 return Axis::index(n);
             }
-            // Spectral lines keep their stored frequencies: they are used one by one.
+            // Spectral lines keep their stored frequencies, even or not.
             (None, None) if kind != AxisKind::Time => return Axis { kind, grid: Grid::Uneven(stored) },
             (None, None) => {
                 let judged = from_values(kind, stored, resolution, "abscissa", options.resample.is_some());
-                (meta.clock, meta.resolution) = (judged.clock, resolution);
+                (meta.clock, meta.resolution) = (judged.step_relative_std, resolution);
                 meta.findings.extend(judged.found);
                 return judged.axis;
             }
@@ -291,8 +308,9 @@ impl Abscissa {
     }
 }
 
-/// Tolerance for even `values`, in their unit: half a millionth of the mean step, for sums of steps drift by
-/// rounding, and at least the rounding of the values (2⁻²⁴ for 32-bit floats, else 2⁻⁵³).
+/// Resolution of binary `values`, in their unit: half a millionth of the mean step, since a time that sums
+/// steps drifts by rounding; at least the rounding of the largest value (2⁻²⁴ of it for 32-bit floats, which
+/// `single` states, else 2⁻⁵³).
 pub fn drift(values: &[f64], single: bool) -> f64 {
     let (first, last) = (values[0], values[values.len() - 1]);
     let drift = 0.5e-6 * (last - first) / (values.len() - 1).max(1) as f64;
@@ -310,7 +328,8 @@ pub fn kind_of(unit: &Unit) -> Option<AxisKind> {
     }
 }
 
-/// Unit and factor to s of a time since 1970 that has no unit: the one that gives a date from 2001 to 2096.
+/// Unit of a time since 1970 that has none, with its factor to s: the unit that gives a date from 2001 to
+/// 2096. `None` if no unit does.
 pub fn epoch(first: f64) -> Option<(&'static str, f64)> {
     let since_1970 = |(_, factor): &(&str, f64)| (1e9..4e9).contains(&(first * factor));
     [("s", 1.0), ("ms", 1e-3), ("µs", 1e-6), ("ns", 1e-9)].into_iter().find(since_1970)
@@ -319,9 +338,11 @@ pub fn epoch(first: f64) -> Option<(&'static str, f64)> {
 /// Seconds of a day.
 pub const DAY: f64 = 86_400.0;
 
-/// Whether times without a unit are days as spreadsheets count them. Either dates from 1982 to 2064, with at
-/// least a row a second: as seconds, no record begins so late with such short steps. Or fractions of a day at
-/// 1 to 1000 whole hertz: as seconds, the rate would be 86 400 times that.
+/// Whether times without a unit are days as spreadsheets count them. Two cases count as days:
+/// - dates from 1982 to 2064 with at least one row per second. Read as seconds, the record would begin after
+///   8 h and have steps of 12 µs or less.
+/// - fractions of one day at a rate of 1 to 1000 whole hertz. Read as seconds, the rate would be 86 400 times
+///   that.
 pub fn is_serial(times: &[f64]) -> bool {
     let (Some(first), Some(last)) = (times.first(), times.last()) else { return false };
     let step = (last - first) / (times.len() as f64 - 1.0);
@@ -331,7 +352,7 @@ pub fn is_serial(times: &[f64]) -> bool {
     dated && rate > 0.99 || whole && *first >= 0.0 && *last < 1.0
 }
 
-/// Finding that a file holds fewer values than it declares.
+/// Finding that a file contains `n` values, fewer than the `declared` number.
 pub fn fewer(declared: usize, n: usize) -> Finding {
     Finding::caution("fewer-values").count("declared", declared).count("n", n)
 }

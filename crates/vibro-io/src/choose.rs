@@ -1,4 +1,5 @@
-//! Finds records as the user names them: one of a recording, or time traces to be read block by block.
+//! Finds the records that the user names: one record of a recording, or time traces that are read block by
+//! block.
 
 use crate::format::Format;
 use crate::held::rises;
@@ -14,9 +15,9 @@ use vibro_record::{
     Error, Place, Record, Result, Spectrum, Stream as _, Trace, Traces, code, find_channel, lanes,
 };
 
-/// Size in bytes from which a text is streamed. A shorter one is held in memory, which saves reading it
-/// twice: a value has at least two bytes with its separator, so its values take less than 256 MiB.
-const LONG: u64 = 64 << 20;
+/// Size in bytes from which on a text is streamed. A shorter text is read into memory, which saves reading it
+/// twice: a value has at least two bytes with its separator, so all values take less than 256 MiB.
+const STREAMED_SIZE: u64 = 64 << 20;
 
 impl Reader {
     /// Opens all time traces of a file to be read block by block.
@@ -39,7 +40,7 @@ impl Reader {
         let path = source.path().to_owned();
         // An archive or a workbook is read as a whole.
         if packed::is_packed(&source) {
-            return self.held(&source, channels);
+            return self.traces_in_memory(&source, channels);
         }
         let as_it_is = self.options.stretch.is_none() && self.options.resample.is_none();
         let format = self.entry(&source)?.format;
@@ -55,7 +56,7 @@ impl Reader {
         let long = || text::stream(&source, &self.options, format).ok().flatten();
         if as_it_is
             && self.options.span.is_none()
-            && source.len() >= LONG
+            && source.len() >= STREAMED_SIZE
             && let Some(text::Streamed { traces, findings, mut columns }) = long()
         {
             let chosen = named(&path, channels, traces.iter().map(|t| &t.meta))?;
@@ -64,11 +65,11 @@ impl Reader {
             let frames = traces.first().map_or(0, |trace| trace.axis.len());
             return Traces::of_stream(path, findings, &traces, frames, Box::new(columns));
         }
-        self.held(&source, channels)
+        self.traces_in_memory(&source, channels)
     }
 
     /// Traces of a source, read into memory as a whole.
-    fn held(&self, source: &Source, channels: &[&str]) -> Result<Traces> {
+    fn traces_in_memory(&self, source: &Source, channels: &[&str]) -> Result<Traces> {
         let path = source.path().to_owned();
         let asked = self.clone().only(channels.iter().map(|&name| name.to_owned()));
         let recording = asked.read(source)?;
@@ -125,9 +126,9 @@ impl Reader {
     }
 }
 
-/// Index of the trace that is most likely meant: among those in the unit of the first, the one with the
-/// largest sum of squares about its mean. Magnitudes are excluded, and traces that only rise, as a counter
-/// does.
+/// Index of the trace that the user most likely wants. Magnitudes are excluded, and traces that only rise,
+/// such as a counter. Of the others with the unit of the first one, it is the trace with the largest sum of
+/// squares about its mean.
 fn likeliest(traces: &[(usize, &Trace)]) -> usize {
     let suited = |i: &usize| !traces[*i].1.meta.has(MAGNITUDE) && !rises(&traces[*i].1.values);
     let Some(first) = (0..traces.len()).find(suited) else { return 0 };
@@ -235,6 +236,7 @@ impl Recording {
         Ok(traces[chosen.map_err(|e| e.setting("channel"))?])
     }
 
+    /// Error for a recording without a trace.
     fn no_trace(&self) -> Error {
         Error::input(Place::file(&self.path), "no trace", "a file that holds a trace")
             .hint("`vibro info` lists what is in the file; samples over time need a sampling rate")
@@ -242,7 +244,7 @@ impl Recording {
     }
 }
 
-/// A trace times a calibration.
+/// The trace with its values multiplied by a calibration factor, if there is one.
 fn calibrated(mut trace: Trace, calibration: Option<f64>) -> Result<Trace> {
     if let Some(factor) = calibration {
         if trace.meta.has(Trace::UNCALIBRATED) {

@@ -7,14 +7,17 @@ use vibro_record::{Error, Place};
 
 /// How a format is recognised: by bytes at an offset, or by the ending of a file that is no text.
 enum Signature {
+    /// Offset, and the bytes there.
     Bytes(usize, &'static [u8]),
+    /// Endings of files that are no text.
     Ending(&'static [&'static str]),
-    /// Endings, and the first bytes.
+    /// Endings, separated by blanks, and the first bytes.
     Named(&'static str, &'static [u8]),
 }
 
 use Signature::{Bytes, Ending, Named};
 
+// Hints: the export to choose in the program that wrote the file.
 const UFF: &str = "choose File > Export > Universal File (UFF-58)";
 const DEWESOFT: &str = "choose Export > UNV/UFF, MAT or CSV in Dewesoft";
 const UNFINISHED: &str = "finish it in the program that wrote it, and export CSV or MAT";

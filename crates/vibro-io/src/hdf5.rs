@@ -110,8 +110,8 @@ impl GroupWalk<'_> {
             scale = self.stated(&format!("{name}/"), &attributes, scale);
         }
         let as_stored = scale[..5] == AS_STORED[..5] && scale[5].is_nan();
-        let ends = self.survey && as_stored && long == 1;
-        let Some(mut data) = self.file.data(name, dataset, ends) else { return };
+        let summary = self.survey && as_stored && long == 1;
+        let Some(mut data) = self.file.data(name, dataset, summary) else { return };
         if let Data::Numbers(values) = &mut data {
             let counts = matches!(dataset.dtype(), Datatype::FixedPoint { .. });
             let doubtful = |of: &&Attribute| {

@@ -1,17 +1,17 @@
-//! Values in memory: all of them, or only their extremes where a survey needs no more.
+//! Values of a channel in memory: all of them, or in a survey only a summary (extremes and first values).
 
 use crate::assemble::{self, NOMINAL, Spectral};
 use crate::options::Options;
 use vibro_record::code;
-use vibro_record::lanes::{Extremes, OPENING};
+use vibro_record::lanes::{Extremes, FIRST_VALUES};
 use vibro_record::{Axis, AxisKind, Error, Finding, Meta, Record, Result, Values, units};
 
-/// Values, or only the extremes of real values that do not all rise and of which none is missing: such values
-/// are no abscissa and need no finding.
+/// A channel's values, or, in a survey, only their summary. Three kinds are always kept in full: complex
+/// values, rising values (they may be an abscissa), and values with gaps (they need a finding).
 #[derive(Debug, Clone, PartialEq)]
 pub enum Held {
     Values(Values),
-    Ends(Extremes),
+    Summary(Extremes),
 }
 
 impl From<Values> for Held {
@@ -24,7 +24,7 @@ impl Held {
     pub fn len(&self) -> usize {
         match self {
             Held::Values(values) => values.len(),
-            Held::Ends(ends) => ends.len(),
+            Held::Summary(summary) => summary.len(),
         }
     }
 
@@ -32,7 +32,7 @@ impl Held {
         matches!(self, Held::Values(Values::Complex(_)))
     }
 
-    /// The values, if there are several and they rise.
+    /// The values, if there are at least two and each lies above the one before it.
     pub fn rising(&self) -> Option<&[f64]> {
         match self {
             Held::Values(Values::Real(values)) if values.len() > 1 && rises(values) => Some(values),
@@ -40,7 +40,7 @@ impl Held {
         }
     }
 
-    /// All real values; none where they were not kept, or are complex.
+    /// All real values; empty for a summary and for complex values.
     pub fn reals(&self) -> &[f64] {
         match self {
             Held::Values(Values::Real(values)) => values,
@@ -48,46 +48,50 @@ impl Held {
         }
     }
 
-    /// The first real values, as many as a survey keeps.
-    pub fn opening(&self) -> &[f64] {
+    /// The first real values, at most [`FIRST_VALUES`]: a summary keeps these, too, so a survey reports the
+    /// same relations between channels as a full reading.
+    pub fn first_values(&self) -> &[f64] {
         match self {
-            Held::Ends(ends) => ends.opening(),
-            held @ Held::Values(_) => opening(held.reals()),
+            Held::Summary(summary) => summary.first_values(),
+            all @ Held::Values(_) => first_values(all.reals()),
         }
     }
 
-    /// All values, where they were kept: only these can have missing ones.
+    /// The values, if kept in full. A summary has no missing values, so nothing needs repair there.
     pub fn values_mut(&mut self) -> Option<&mut Values> {
         if let Held::Values(values) = self { Some(values) } else { None }
     }
 
-    /// Multiplies values or extremes by the factor of a unit.
+    /// Multiplies values or summary by the factor of a unit to SI.
     ///
     /// # Errors
     /// If a value overflows a double.
     pub fn scale(&mut self, factor: f64) -> Result<()> {
         match self {
             Held::Values(values) => assemble::to_si(values, factor),
-            Held::Ends(ends) => ends.values_mut().into_iter().try_for_each(|v| units::scale(v, factor)),
+            Held::Summary(summary) => {
+                summary.values_mut().into_iter().try_for_each(|v| units::scale(v, factor))
+            }
         }
     }
 
-    /// The record of these values, see [`assemble::record`].
+    /// Builds the record of these values by [`assemble::record`]. For a summary the record has no values; the
+    /// summary is returned beside it.
     ///
     /// # Errors
     /// As [`assemble::record`].
     pub fn record(self, meta: Meta, axis: Axis, said: Spectral) -> Result<(Record, Option<Extremes>)> {
-        let (values, ends) = match self {
+        let (values, summary) = match self {
             Held::Values(values) => (values, None),
-            Held::Ends(ends) => (Values::Real(Vec::new()), Some(ends)),
+            Held::Summary(summary) => (Values::Real(Vec::new()), Some(summary)),
         };
-        Ok((assemble::record(meta, axis, values, said)?, ends))
+        Ok((assemble::record(meta, axis, values, said)?, summary))
     }
 }
 
-/// The first of these values, as many as a survey keeps.
-pub fn opening(values: &[f64]) -> &[f64] {
-    &values[..values.len().min(OPENING)]
+/// The first of these values, at most [`FIRST_VALUES`].
+pub fn first_values(values: &[f64]) -> &[f64] {
+    &values[..values.len().min(FIRST_VALUES)]
 }
 
 /// Whether each value lies above the one before it.
@@ -95,10 +99,10 @@ pub fn rises(values: &[f64]) -> bool {
     values.is_sorted_by(|a, b| a < b)
 }
 
-/// Findings on gaps between samples: dropped once a single stretch is kept.
-const GAPS: [&str; 2] = [code::SAMPLES_LOST, code::AXIS_BACKWARDS];
+/// Findings on gaps between samples. They no longer hold once a single stretch is kept.
+const GAP_FINDINGS: [&str; 2] = [code::SAMPLES_LOST, code::AXIS_BACKWARDS];
 
-/// Records of a file, with the extremes of those whose values were not kept, and findings on the file.
+/// Records of a file, each with its summary if its values were not kept in full, and findings on the file.
 #[derive(Debug, Default)]
 pub struct Contents {
     pub records: Vec<(Record, Option<Extremes>)>,
@@ -106,50 +110,59 @@ pub struct Contents {
 }
 
 impl Contents {
-    /// Contents of a file with all values kept.
+    /// Contents of a file whose values are all kept in full.
     pub fn of(records: impl IntoIterator<Item = Record>, findings: Vec<Finding>) -> Contents {
         Contents { records: records.into_iter().map(|record| (record, None)).collect(), findings }
     }
 
-    /// Makes traces even as the user states: keeps one stretch of each, or resamples them.
+    /// Gives traces an even axis as the options state:
+    /// - keeps one even stretch of each trace, and drops the findings on gaps between stretches;
+    /// - resamples each trace;
+    /// - after either, refuses a stated sampling rate that differs from that of the samples;
+    /// - adds a caution to a trace that cannot be resampled.
     ///
     /// # Errors
-    /// If there is no such stretch, or a trace cannot be interpolated.
-    pub fn evened(mut self, options: &Options) -> Result<Contents> {
-        let mut left_out: Vec<(usize, Error)> = Vec::new();
-        for (number, (record, ends)) in self.records.iter_mut().enumerate() {
+    /// If there is no such stretch, if a stated rate differs, or if a trace cannot be resampled that the user
+    /// chose by name or number, or no record can.
+    pub fn with_even_axes(mut self, options: &Options) -> Result<Contents> {
+        let mut not_resampled: Vec<(usize, Error)> = Vec::new();
+        for (number, (record, summary)) in self.records.iter_mut().enumerate() {
             let Record::Trace(trace) = record else { continue };
-            if ends.is_some() {
+            if summary.is_some() {
                 continue;
             }
             options.stretch.map_or(Ok(()), |number| trace.keep_stretch(number))?;
             let steps = trace.axis.len().saturating_sub(1);
             let duration = || trace.axis.at(steps) - trace.axis.start();
-            let made = options.stretch.is_some() || options.resample.is_some();
-            let own = trace.rate().or_else(|| (steps > 0).then(|| steps as f64 / duration()));
-            let own = own.zip(options.rate).filter(|_| made && trace.axis.kind == AxisKind::Time);
-            if let Some((own, stated)) = own.filter(|(own, stated)| (own / stated - 1.0).abs() > NOMINAL) {
-                let found =
-                    format!("a sampling rate of {stated} Hz was stated, and the samples come at {own:.6} Hz");
+            let was_changed = options.stretch.is_some() || options.resample.is_some();
+            let measured_rate = trace.rate().or_else(|| (steps > 0).then(|| steps as f64 / duration()));
+            let rates = measured_rate.zip(options.rate);
+            let rates = rates.filter(|_| was_changed && trace.axis.kind == AxisKind::Time);
+            let differ = |(measured, stated): &(f64, f64)| (measured / stated - 1.0).abs() > NOMINAL;
+            if let Some((measured, stated)) = rates.filter(differ) {
+                let found = format!(
+                    "a sampling rate of {stated} Hz was stated, and the samples come at {measured:.6} Hz"
+                );
                 return Err(Error::usage(found, "").hint("leave the rate out").setting("rate"));
             }
             if let Some(rate) = options.resample {
                 options.hold(duration() * rate)?;
                 if let Err(error) = trace.resample(rate) {
-                    left_out.push((number, error));
+                    not_resampled.push((number, error));
                 }
             }
         }
-        // The stretch that is kept has no gaps.
-        let kept = |found: &Finding| options.stretch.is_none() || !GAPS.contains(&&*found.code);
-        self.findings.retain(kept);
-        self.records.iter_mut().for_each(|(record, _)| record.meta_mut().findings.retain(kept));
-        // A channel that cannot be resampled is only reported, unless the user asked for it or no channel can
-        // be.
-        let all = left_out.len() == self.records.len();
-        for (number, error) in left_out {
+        // A single stretch has no gaps.
+        let still_holds =
+            |found: &Finding| options.stretch.is_none() || !GAP_FINDINGS.contains(&&*found.code);
+        self.findings.retain(still_holds);
+        self.records.iter_mut().for_each(|(record, _)| record.meta_mut().findings.retain(still_holds));
+        let none_resampled = not_resampled.len() == self.records.len();
+        for (number, error) in not_resampled {
             let meta = self.records[number].0.meta_mut();
-            if all || options.only.iter().any(|only| *only == meta.name || only.parse() == Ok(number + 1)) {
+            if none_resampled
+                || options.only.iter().any(|only| *only == meta.name || only.parse() == Ok(number + 1))
+            {
                 return Err(error);
             }
             meta.found(Finding::caution("not-resampled").name("why", error.why()));

@@ -12,42 +12,45 @@ use vibro_record::{AxisKind, Error, Meta, Record, Result, Spectrum, Trace, Value
 /// Words by which a channel calls itself a spectrum.
 const SPECTRAL: [&str; 7] = ["fft", "psd", "asd", "spectrum", "spectra", "spectral", "autospectrum"];
 
-/// Level difference in dB of ten times the amplitude, and of ten times the power density.
-const AMPLITUDE: f64 = 20.0;
-const POWER: f64 = 10.0;
+/// Level in dB of ten times the reference amplitude: L = 20 lg(a/a₀).
+const DB_PER_DECADE_OF_AMPLITUDE: f64 = 20.0;
+/// Level in dB of ten times the reference power density: L = 10 lg(p/p₀).
+const DB_PER_DECADE_OF_POWER: f64 = 10.0;
 
-/// Fewest values, none above 0, that are taken for levels in dB: fewer may be chance.
-const FEW: usize = 8;
+/// Least number of values of a spectrum, none above 0, from which on they are taken for levels in dB. With
+/// fewer values the signs may be chance.
+const LEAST_LEVELS: usize = 8;
 
-/// Converts levels over the reference that their unit states to amplitudes, or to densities where the
-/// reference is per Hz.
+/// Converts dB levels whose unit states the reference (dB re 1 g) to amplitudes, or to power densities if the
+/// reference is per Hz. Refuses levels without a reference, and spectra over time.
 ///
 /// # Errors
-/// If a channel calls itself a spectrum over time, or levels have a linear unit.
-pub fn settle(mut contents: Contents, format: Format, options: &Options) -> Result<Contents> {
-    // A table has a column of times, or the user states its rate.
+/// If values are probably levels and no reference is stated, or a channel over time is named as a spectrum.
+pub fn levels_to_amplitudes(mut contents: Contents, format: Format, options: &Options) -> Result<Contents> {
+    // Tables are exempt: their time axis is explicit. Other formats may label a spectrum's axis as time.
     let table = matches!(format, Format::Csv | Format::Ascii);
     for (record, _) in &mut contents.records {
         match record {
-            Record::Trace(trace) if !table => no_spectrum(trace, options)?,
-            Record::Trace(trace) => linear(&trace.meta)?,
-            Record::Spectrum(spectrum) => amplitudes(spectrum)?,
+            Record::Trace(trace) if !table => refuse_spectrum_over_time(trace, options)?,
+            Record::Trace(trace) => refuse_linear_unit(&trace.meta)?,
+            Record::Spectrum(spectrum) => convert_levels(spectrum)?,
             Record::Frf(_) => {}
         }
     }
     Ok(contents)
 }
 
-/// Whether [`settle`] needs values that were not kept.
+/// Whether a survey, which keeps only summaries, must read the file's values in full for
+/// [`levels_to_amplitudes`].
 pub fn needs_values(contents: &Contents) -> bool {
-    let counts = |meta: &Meta| meta.unit.reference().is_some() || is_spectral(&meta.name);
+    let may_be_levels = |meta: &Meta| meta.unit.reference().is_some() || is_spectral(&meta.name);
     let spectrum =
-        |record: &Record| matches!(record, Record::Spectrum(Spectrum { meta, .. }) if counts(meta));
-    contents.records.iter().any(|(record, ends)| ends.is_some() && spectrum(record))
+        |record: &Record| matches!(record, Record::Spectrum(Spectrum { meta, .. }) if may_be_levels(meta));
+    contents.records.iter().any(|(record, summary)| summary.is_some() && spectrum(record))
 }
 
-/// Refuses a channel named as a spectrum over time, unless the user states its sampling rate.
-fn no_spectrum(trace: &Trace, options: &Options) -> Result<()> {
+/// Refuses a channel over time that is named as a spectrum, unless the user states its sampling rate.
+fn refuse_spectrum_over_time(trace: &Trace, options: &Options) -> Result<()> {
     let stated = options.rate.is_some() && options.rate_of_band.is_none();
     if stated || !is_spectral(&trace.meta.name) || trace.axis.kind != AxisKind::Time || trace.axis.is_empty()
     {
@@ -61,28 +64,33 @@ fn no_spectrum(trace: &Trace, options: &Options) -> Result<()> {
         .setting("rate"))
 }
 
+/// Whether a channel is named as a spectrum.
 fn is_spectral(name: &str) -> bool {
     name.to_lowercase().split(|c: char| !c.is_alphanumeric()).any(|word| SPECTRAL.contains(&word))
 }
 
-fn amplitudes(spectrum: &mut Spectrum) -> Result<()> {
+/// Converts the values of a spectrum if its unit is dB over a reference; else refuses values that are
+/// probably levels.
+fn convert_levels(spectrum: &mut Spectrum) -> Result<()> {
     let Values::Real(values) = &mut spectrum.values else { return Ok(()) };
     let meta = &mut spectrum.meta;
     if let Some(reference) = meta.unit.reference() {
-        let tenfold = if reference.symbol().ends_with("/Hz") { POWER } else { AMPLITUDE };
+        let is_density = reference.symbol().ends_with("/Hz");
+        let per_decade = if is_density { DB_PER_DECADE_OF_POWER } else { DB_PER_DECADE_OF_AMPLITUDE };
         for level in values.iter_mut() {
-            *level = 10f64.powf(*level / tenfold);
+            *level = 10f64.powf(*level / per_decade);
         }
         meta.findings.retain(|found| found.code != code::LEVELS_IN_DECIBELS);
         meta.step("from_levels", &[("unit", &meta.unit.symbol().to_owned())]);
         let factor = meta.adopt_unit(reference.symbol());
         return to_si(&mut spectrum.values, factor);
     }
-    linear(meta)?;
-    let below =
-        values.len() >= FEW && values.iter().all(|value| *value <= 0.0) && values.iter().any(|v| *v < 0.0);
-    if below && !meta.unit.is_level() && is_spectral(&meta.name) {
-        return Err(levels(format!(
+    refuse_linear_unit(meta)?;
+    let never_positive = values.len() >= LEAST_LEVELS
+        && values.iter().all(|value| *value <= 0.0)
+        && values.iter().any(|v| *v < 0.0);
+    if never_positive && !meta.unit.is_level() && is_spectral(&meta.name) {
+        return Err(error_levels_without_reference(format!(
             "no value of {:?} is above 0: they may be levels in decibels",
             meta.name
         )));
@@ -90,20 +98,22 @@ fn amplitudes(spectrum: &mut Spectrum) -> Result<()> {
     Ok(())
 }
 
-/// Refuses levels in a linear unit.
-fn linear(meta: &Meta) -> Result<()> {
+/// Refuses values that the file calls levels while their unit is linear, such as m/s².
+fn refuse_linear_unit(meta: &Meta) -> Result<()> {
     let words = decibels(meta).filter(|_| !meta.unit.is_level() && meta.unit.is_known());
     let Some(words) = words else { return Ok(()) };
-    Err(levels(format!("{:?} has levels ({words:?}) in the linear unit {}", meta.name, meta.unit)))
+    let found = format!("{:?} has levels ({words:?}) in the linear unit {}", meta.name, meta.unit);
+    Err(error_levels_without_reference(found))
 }
 
-fn levels(found: String) -> Error {
+/// Error for levels whose reference is not stated; `found` names the channel.
+fn error_levels_without_reference(found: String) -> Error {
     let hint = "state the unit with its reference, such as \"dB re 1 g\"";
     Error::usage(found, "amplitudes, or levels with their reference").hint(hint).setting("unit")
 }
 
-/// The words by which a file says that its values are levels: their unit, or a header line about unit, scale
-/// or level.
+/// Words in a file by which its values are levels in dB: the unit, the channel's name, the line above the
+/// values, or a header line about unit, scale or level. `None` if there are none.
 pub fn decibels(meta: &Meta) -> Option<String> {
     if meta.unit.is_level() {
         return Some(meta.unit.symbol().to_owned());
@@ -114,8 +124,8 @@ pub fn decibels(meta: &Meta) -> Option<String> {
     if let Some(name) = [Some(&meta.name), above].into_iter().flatten().find(bracketed) {
         return Some(name.clone());
     }
-    // A number before the word makes it a setting, as in `level: -20 dB`.
-    let states = |value: &str| {
+    // dB behind a number is a setting, as in `level: -20 dB`, and no unit of the values.
+    let names_unit = |value: &str| {
         let words: Vec<&str> = value.split_whitespace().collect();
         let at = words.iter().position(|word| is_level(word));
         at.is_some_and(|at| at == 0 || words[at - 1].parse::<f64>().is_err())
@@ -127,7 +137,7 @@ pub fn decibels(meta: &Meta) -> Option<String> {
                 .iter()
                 .any(|word| key.contains(word))
     };
-    let note = meta.notes.iter().find(|(key, value)| about(key) && states(value));
+    let note = meta.notes.iter().find(|(key, value)| about(key) && names_unit(value));
     note.map(|(key, value)| format!("{key}: {value}"))
 }
 

@@ -9,8 +9,8 @@ use vibro_record::{Error, Result};
 const GB: f64 = 1e9;
 /// Memory in bytes that is assumed where the machine's own is unknown.
 const UNKNOWN: f64 = 4.0 * GB;
-/// Largest part of the machine's memory that a hint suggests as limit: the system and other programs need the
-/// rest.
+/// Largest fraction of the machine's memory that a hint suggests as a limit: the system and other programs
+/// need the rest.
 const MOST_OF_MACHINE: f64 = 0.8;
 
 /// Limit in bytes stated for all readers of the program.
@@ -49,15 +49,15 @@ impl Limit {
         (bytes.is_finite() && bytes > 0.0).then_some(Limit(bytes))
     }
 
-    /// Checks that this many bytes may be held.
+    /// Checks that `bytes` are within the limit.
     ///
     /// # Errors
-    /// If they may not: the error states the memory needed and, where the machine has it, the limit to set.
+    /// If they are not: the error states the memory needed and, if the machine has it, the limit to set.
     pub(crate) fn hold(self, bytes: f64) -> Result<()> {
         self.hold_or(bytes, |error| error.hint("of several channels, name one").setting("channel"))
     }
 
-    /// As [`Limit::hold`]; `advice` adds what else to try where the machine has too little memory.
+    /// As [`Limit::hold`]; `advice` adds a hint for a machine with too little memory.
     pub(crate) fn hold_or(self, bytes: f64, advice: impl FnOnce(Error) -> Error) -> Result<()> {
         if bytes <= self.0 {
             return Ok(());
@@ -79,10 +79,11 @@ impl Limit {
     }
 }
 
-/// Memory of the machine in bytes.
+/// Memory of the machine in bytes; [`UNKNOWN`] where Linux's `/proc/meminfo` is missing.
 fn machine() -> f64 {
-    let told = std::fs::read_to_string("/proc/meminfo").ok();
-    let total = told.as_deref().and_then(|text| text.lines().find_map(|line| line.strip_prefix("MemTotal:")));
+    let meminfo = std::fs::read_to_string("/proc/meminfo").ok();
+    let total =
+        meminfo.as_deref().and_then(|text| text.lines().find_map(|line| line.strip_prefix("MemTotal:")));
     let kib = total.and_then(|total| total.trim().strip_suffix("kB")?.trim().parse::<f64>().ok());
     kib.map_or(UNKNOWN, |kib| 1024.0 * kib)
 }

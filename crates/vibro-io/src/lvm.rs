@@ -302,7 +302,7 @@ impl<'h, 'a> Segment<'h, 'a> {
             (start - values[0]).abs() <= resolution && (last - values[n - 1]).abs() <= 2.0 * resolution
         };
         let label = format!("column {:?}", x.name);
-        let JudgedAxis { axis, clock, found } =
+        let JudgedAxis { axis, step_relative_std, found } =
             from_values(kind.clone(), values.to_vec(), resolution, &label, resampled);
         if let (Some(stated), Some(step)) = (stated, axis.step()) {
             if agrees(&stated) {
@@ -315,7 +315,7 @@ impl<'h, 'a> Segment<'h, 'a> {
         }
         // For an uneven column, `Abscissa::axis` adds the finding.
         meta.findings.extend(found.filter(|_| axis.step().is_some()));
-        meta.clock = clock;
+        meta.clock = step_relative_std;
         Abscissa::of(axis)
     }
 }

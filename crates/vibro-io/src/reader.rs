@@ -239,8 +239,8 @@ impl Reader {
     /// As [`Reader::survey`], of a source.
     pub(crate) fn headers(&self, source: &Source) -> Result<(Format, Vec<Header>, Vec<Finding>)> {
         let (format, Contents { records, findings }) = self.contents(source, true)?;
-        let header = |(record, ends): &(Record, Option<Extremes>)| {
-            ends.as_ref().map_or_else(|| Header::of(record), |ends| Header::with(record, ends))
+        let header = |(record, summary): &(Record, Option<Extremes>)| {
+            summary.as_ref().map_or_else(|| Header::of(record), |summary| Header::with(record, summary))
         };
         Ok((format, records.par_iter().map(header).collect(), findings))
     }
@@ -256,7 +256,7 @@ impl Reader {
 
     fn contents_of(&self, source: &Source, survey: bool) -> Result<(Format, Contents)> {
         let entry = self.entry(source)?;
-        // These readers hold all bytes of the file in memory, and values that take at least as much.
+        // These readers keep all bytes of the file in memory, and values that take at least as much.
         let whole = matches!(entry.format, Format::Mat | Format::Lvm | Format::Uff);
         let room = self.options.limit.hold(if whole { 2.0 * source.len() as f64 } else { 0.0 });
         // The wave reader already reads only the span.
@@ -267,7 +267,11 @@ impl Reader {
             let mut all = if level::needs_values(&all) { read(false)? } else { all };
             all.findings.extend(packed::percent(source));
             magnitude::mark(&mut all);
-            level::settle(span::cut(all.evened(&self.options)?, span)?, entry.format, &self.options)
+            level::levels_to_amplitudes(
+                span::cut(all.with_even_axes(&self.options)?, span)?,
+                entry.format,
+                &self.options,
+            )
         });
         let format = if source.is_sheet() { Format::Workbook } else { entry.format };
         let placed =
@@ -368,13 +372,13 @@ impl Header {
     /// Header of a record whose values have these extremes; the values themselves may have been dropped.
     pub(super) fn with(record: &Record, extremes: &Extremes) -> Header {
         let (meta, axis, largest) = (record.meta(), record.axis(), extremes.largest());
-        let ends = extremes.range().filter(|_| !record.is_complex());
+        let range = extremes.range().filter(|_| !record.is_complex());
         let step = axis.step().filter(|_| axis.kind == AxisKind::Time);
         Header {
             rate: step.map(|step| 1.0 / step),
             duration: step.map(|step| step * axis.len() as f64),
-            min: ends.map(|(min, _)| min),
-            max: ends.map(|(_, max)| max),
+            min: range.map(|(min, _)| min),
+            max: range.map(|(_, max)| max),
             name: meta.name.clone(),
             kind: record.kind(),
             quantity: meta.quantity.name(),

@@ -60,7 +60,7 @@ pub fn cut(mut contents: Contents, span: Option<(f64, f64)>) -> Result<Contents>
                     trace.sampling_rate()?;
                 }
                 trace.meta.findings.extend(judged.found);
-                (axis, trace.meta.clock) = (judged.axis, judged.clock);
+                (axis, trace.meta.clock) = (judged.axis, judged.step_relative_std);
             }
             trace.axis = axis;
             trace.values.truncate(part.end);

@@ -73,8 +73,8 @@ pub(super) fn read(source: &Source, options: &Options, survey: bool) -> Result<C
             .map_err(|e| Error::io("read", source.path(), e))
     };
     raw.par_chunks_mut(each).enumerate().try_for_each(fill)?;
-    raw.par_iter_mut().filter(|raw| matches!(raw.kept, KeptValues::Ends(_))).for_each(|raw| raw.look(0));
-    if raw.iter().any(|raw| matches!(&raw.kept, KeptValues::Ends(ends) if !ends.finite())) {
+    raw.par_iter_mut().filter(|raw| matches!(raw.kept, KeptValues::Summary(_))).for_each(|raw| raw.look(0));
+    if raw.iter().any(|raw| matches!(&raw.kept, KeptValues::Summary(summary) if !summary.finite())) {
         return read(source, options, false);
     }
     let (mut channels, left) = measured(&objects, raw, &mut findings);
@@ -170,7 +170,8 @@ enum KeptValues {
     Values,
     /// Not decided yet: extremes are enough, unless the first values rise and may be an abscissa.
     Undecided,
-    Ends(Extremes),
+    /// Not kept: only extremes and first values.
+    Summary(Extremes),
 }
 
 /// The values of an object that were read so far.
@@ -189,32 +190,32 @@ impl Raw<'_> {
             return;
         }
         let new = matches!(self.kept, KeptValues::Undecided);
-        let (mut ends, columns) = match &mut self.kept {
+        let (mut summary, columns) = match &mut self.kept {
             KeptValues::Undecided => (Extremes::NONE, self.columns.clone()),
-            KeptValues::Ends(ends) => {
-                (std::mem::replace(ends, Extremes::NONE), std::mem::take(&mut self.columns))
+            KeptValues::Summary(summary) => {
+                (std::mem::replace(summary, Extremes::NONE), std::mem::take(&mut self.columns))
             }
             KeptValues::Values => return,
         };
         self.kept = match self.scales.apply(&self.object.slots, columns) {
             Ok(Values::Real(mut values)) if !(new && rises(&values)) => {
-                ends.take(&values);
+                summary.take(&values);
                 values.clear();
                 self.columns = vec![values];
-                KeptValues::Ends(ends)
+                KeptValues::Summary(summary)
             }
             _ => KeptValues::Values,
         };
     }
 
     fn is_empty(&self) -> bool {
-        !matches!(self.kept, KeptValues::Ends(_)) && self.columns.iter().all(Vec::is_empty)
+        !matches!(self.kept, KeptValues::Summary(_)) && self.columns.iter().all(Vec::is_empty)
     }
 
     /// Measured values, or the scale that is not known.
     fn measured(self) -> std::result::Result<Held, String> {
         match self.kept {
-            KeptValues::Ends(ends) => Ok(Held::Ends(ends)),
+            KeptValues::Summary(summary) => Ok(Held::Summary(summary)),
             _ => self.scales.apply(&self.object.slots, self.columns).map(Held::Values),
         }
     }

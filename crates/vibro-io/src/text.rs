@@ -200,7 +200,7 @@ pub(crate) fn stream(source: &Source, options: &Options, format: Format) -> Resu
         let records = columns.into_iter().map(|column| (column.record, column.ends)).collect();
         let mut contents = Contents { records, findings };
         magnitude::mark(&mut contents);
-        let Contents { records, findings } = level::settle(contents, format, options)?;
+        let Contents { records, findings } = level::levels_to_amplitudes(contents, format, options)?;
         let trace = |(record, _)| if let Record::Trace(trace) = record { Some(trace) } else { None };
         let traces: Option<Vec<Trace>> = records.into_iter().map(trace).collect();
         let Some(traces) = traces else { return Ok(None) };

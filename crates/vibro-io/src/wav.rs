@@ -47,10 +47,10 @@ pub(super) fn read(source: &Source, options: &Options, survey: bool) -> Result<C
     }
     let room = if survey { 0 } else { wave.frames() };
     let mut values: Vec<Vec<f64>> = vec![Vec::with_capacity(room); wave.kept.len()];
-    let mut ends = vec![Extremes::NONE; n];
+    let mut summaries = vec![Extremes::NONE; n];
     while wave.append(&mut values)? > 0 {
-        for (values, ends) in values.iter_mut().zip(&mut ends).filter(|_| survey) {
-            ends.take(values);
+        for (values, summary) in values.iter_mut().zip(&mut summaries).filter(|_| survey) {
+            summary.take(values);
             values.clear();
         }
     }
@@ -59,8 +59,11 @@ pub(super) fn read(source: &Source, options: &Options, survey: bool) -> Result<C
     for ((i, meta), values) in wave.kept.iter().zip(metas).zip(values) {
         wave.channels[*i] = Trace { meta, values, ..wave.channels[*i].clone() };
     }
-    let records =
-        wave.channels.into_iter().map(Record::Trace).zip(ends.into_iter().map(|ends| survey.then_some(ends)));
+    let records = wave
+        .channels
+        .into_iter()
+        .map(Record::Trace)
+        .zip(summaries.into_iter().map(|summary| survey.then_some(summary)));
     Ok(Contents { records: records.collect(), findings: wave.layout.findings })
 }
 

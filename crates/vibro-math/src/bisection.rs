@@ -1,12 +1,12 @@
-//! Bisection: the border between arguments at which a condition holds and others at which it does not.
+//! Bisection: finds the border between arguments at which a condition holds and those at which it does not.
 
-/// Halvings down to rounding for arguments of one magnitude: 52 binary digits, and eight for a border up to
-/// 256 times smaller than the interval.
+/// Number of halvings that finds a border to rounding: 52 for the binary digits of a double, and eight for a
+/// border up to 256 times smaller than the interval.
 const TO_ROUNDING: usize = 60;
 
-/// Halves the interval from `inside`, where `holds` is true, to `outside`, where it is not, this many times.
-/// Returns the last argument inside and the first one outside that were found. Either may be the larger. Ends
-/// early where no number lies between.
+/// Halves the interval from `inside`, where `holds` is true, to `outside`, where it is not, `halvings` times.
+/// Returns the ends of the last interval, in the same order; either may be the larger. Ends early when no
+/// double lies between them.
 ///
 /// ```
 /// use vibro_math::bisected;
@@ -22,7 +22,7 @@ pub fn bisected(
     try_bisected(inside, outside, halvings, |x| Some(holds(x))).unwrap_or((inside, outside))
 }
 
-/// As [`bisected`]; `None` as soon as `holds` gives no answer.
+/// As [`bisected`]; `None` as soon as `holds` returns `None`.
 pub fn try_bisected(
     mut inside: f64,
     mut outside: f64,
@@ -43,7 +43,7 @@ pub fn try_bisected(
     Some((inside, outside))
 }
 
-/// The argument between `inside` and `outside` up to which `holds` is true, to rounding.
+/// The border between `inside`, where `holds` is true, and `outside`, where it is not, to rounding.
 ///
 /// ```
 /// let root = vibro_math::border(1.0, 2.0, |x| x * x < 2.0);

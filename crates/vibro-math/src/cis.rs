@@ -1,19 +1,19 @@
 //! Sine and cosine together, without a branch, fast enough for the inner loop of a root search.
 //!
-//! The argument is reduced by π/2 in two parts (W. J. Cody and W. Waite, *Software Manual for the Elementary
-//! Functions*, 1980), the rest lies in ±π/4, where the polynomials of fdlibm (`k_sin.c` and `k_cos.c`, Sun
-//! Microsystems, 1993) err by less than 2⁻⁵⁸. Together with the roundings the absolute error of either value
-//! is below 2ε/3 = 1.5e-16.
+//! A multiple of π/2 is subtracted from the argument, with π/2 as a sum of two doubles (W. J. Cody and W.
+//! Waite, *Software Manual for the Elementary Functions*, 1980). The remainder lies within ±π/4. There the
+//! polynomials of fdlibm (`k_sin.c` and `k_cos.c`, Sun Microsystems, 1993) err by less than 2⁻⁵⁸. With
+//! rounding the absolute error of sine and cosine is below 2ε/3 = 1.5e-16.
 
-/// 2/π.
+/// 2/π: quarter turns per radian.
 const PER_QUARTER: f64 = std::f64::consts::FRAC_2_PI;
-/// The first 33 bits of π/2: its multiples below 2²⁰ are exact.
+/// The first 33 bits of π/2: its products with whole numbers below 2²⁰ are exact.
 const QUARTER: f64 = 1.570_796_326_734_125_6;
-/// π/2 less [`QUARTER`].
+/// π/2 minus [`QUARTER`].
 const QUARTER_REST: f64 = 6.077_100_506_506_192e-11;
-/// Arguments beyond this are left to the system's functions.
+/// Magnitude of an argument from which on the system's functions are used: their reduction stays accurate.
 const FAR: f64 = 1e6;
-/// Adding and subtracting it rounds to the nearest whole number, for numbers below 2⁵¹.
+/// 1.5·2⁵²: adding it to a number below 2⁵¹ and subtracting it again rounds to the nearest whole number.
 const ROUND: f64 = 6_755_399_441_055_744.0;
 
 /// sin x and cos x.
@@ -22,6 +22,7 @@ pub fn sin_cos(x: f64) -> (f64, f64) {
     if x.abs() < FAR { reduced(x) } else { x.sin_cos() }
 }
 
+/// sin x and cos x for |x| below [`FAR`].
 #[inline]
 fn reduced(x: f64) -> (f64, f64) {
     let shifted = x * PER_QUARTER + ROUND;

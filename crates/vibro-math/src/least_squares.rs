@@ -1,6 +1,6 @@
-//! Nonlinear least squares: the MINPACK algorithm of the crate `levenberg-marquardt`. Added here are a
-//! Jacobian by central differences, the covariance of the parameters, and the parameters that the data do not
-//! determine.
+//! Nonlinear least squares by the MINPACK algorithm of the crate `levenberg-marquardt`. This module adds a
+//! Jacobian by central differences, the covariance of the parameters, and an error for parameters that the
+//! data do not determine.
 
 use levenberg_marquardt::{LeastSquaresProblem, LevenbergMarquardt};
 use nalgebra::storage::Owned;
@@ -10,11 +10,11 @@ use vibro_record::{Error, Result};
 /// Parameters that minimise a sum of squared residuals, and how well they are determined.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Fit {
-    /// Parameters at the minimum, in the order of the start.
+    /// Parameters at the minimum, in the order of the first guess.
     pub parameters: Vec<f64>,
     /// Residuals at the minimum.
     pub residuals: Vec<f64>,
-    /// (JᵀJ)⁻¹: covariance of the parameters where the residuals have unit variance.
+    /// (JᵀJ)⁻¹: covariance of the parameters for residuals of unit variance.
     pub cofactor: DMatrix<f64>,
     /// Whether a minimum was reached; else the parameters are the best ones found.
     pub converged: bool,
@@ -26,12 +26,12 @@ impl Fit {
         self.residuals.iter().map(|r| r * r).sum()
     }
 
-    /// Number of residuals less number of parameters.
+    /// Number of residuals minus number of parameters.
     pub fn degrees_of_freedom(&self) -> usize {
         self.residuals.len().saturating_sub(self.parameters.len())
     }
 
-    /// Variance of a residual, s² = Σr²/(n − p); NaN where there are no more residuals than parameters.
+    /// Variance of a residual, s² = Σr²/(n − p); NaN if there are no more residuals than parameters.
     pub fn variance(&self) -> f64 {
         match self.degrees_of_freedom() {
             0 => f64::NAN,
@@ -56,8 +56,8 @@ impl Fit {
     }
 }
 
-/// Minimises Σrᵢ(p)². `residuals(p, r)` fills `r`, of length `n`; `start` holds the first guess, `scale` the
-/// size of a small but significant change of each parameter (its sign and exact size do not matter).
+/// Minimises Σrᵢ(p)². `residuals(p, r)` fills `r`, of length `n`. `start` is the first guess. `scale` is the
+/// size of a small but significant change of each parameter; its sign and exact size do not matter.
 ///
 /// ```
 /// use vibro_math::least_squares;
@@ -72,9 +72,11 @@ impl Fit {
 /// ```
 ///
 /// # Errors
-/// If there is no parameter or not one scale a parameter, a scale is 0 or not finite, there are fewer
-/// residuals than parameters, the model gives a value that is not finite at the start, or the residuals
-/// at the minimum do not depend on some combination of the parameters, which is named by their numbers.
+/// - If there is no parameter, or not one scale for each parameter, or a scale is 0 or not finite.
+/// - If there are fewer residuals than parameters.
+/// - If the model gives a value that is not finite at the first guess or at the minimum.
+/// - If the residuals at the minimum do not depend on some combination of the parameters; the error names
+///   these by their numbers.
 pub fn least_squares(
     residuals: impl Fn(&[f64], &mut [f64]),
     n: usize,
@@ -88,7 +90,7 @@ pub fn least_squares(
 /// Parameters that minimise a sum of squared residuals, without their uncertainty.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Minimum {
-    /// Parameters at the minimum, in the order of the start.
+    /// Parameters at the minimum, in the order of the first guess.
     pub parameters: Vec<f64>,
     /// Residuals at the minimum.
     pub residuals: Vec<f64>,
@@ -99,9 +101,9 @@ pub struct Minimum {
 }
 
 /// As [`least_squares`], for callers that examine the Jacobian themselves: a combination of parameters on
-/// which no residual depends is no error, and stays near its start. With a `gain`, such as 0.001, it stops
-/// where a step changes sum or parameters by less than this part, after about twenty evaluations a parameter
-/// at the latest: for searches that go on from there.
+/// which no residual depends is no error; it stays near the first guess. A `gain`, such as 0.001, is for
+/// searches that continue from the result: the fit stops when a step changes the sum of squares or the
+/// parameters by less than this fraction, at the latest after about twenty evaluations per parameter.
 ///
 /// # Errors
 /// As [`least_squares`], except for parameters that the data do not determine.
@@ -142,8 +144,8 @@ pub fn minimise(
     })
 }
 
-/// (JᵀJ)⁻¹ by the singular values of J with its columns scaled to length 1, so that units do not decide what
-/// is small.
+/// (JᵀJ)⁻¹ by the singular values of J. The columns of J are scaled to length 1 first: else the units of the
+/// parameters would decide which singular values are small.
 fn cofactor(mut jacobian: DMatrix<f64>) -> Result<DMatrix<f64>> {
     let lengths: Vec<f64> = jacobian.column_iter().map(|c| c.norm()).collect();
     if lengths.iter().any(|l| !l.is_finite()) {
@@ -156,13 +158,13 @@ fn cofactor(mut jacobian: DMatrix<f64>) -> Result<DMatrix<f64>> {
         column /= *length;
     }
     let rows = jacobian.nrows() as f64;
-    // Forming JᵀJ would square the condition number. An iteration limit, since the algorithm has no bound of
-    // its own.
+    // JᵀJ is not formed, since that would square the condition number. The algorithm has no bound on its
+    // iterations, hence the limit.
     let svd = nalgebra::SVD::try_new(jacobian, false, true, f64::EPSILON, 10_000)
         .ok_or_else(|| Error::refused("the singular values of a fit were not found"))?;
     let v_t = svd.v_t.ok_or_else(|| Error::refused("the singular vectors of a fit were not found"))?;
     let largest = svd.singular_values.max();
-    // Central differences are good to about ε^(2/3); below that a singular value is noise.
+    // Central differences have a relative error of about ε^(2/3); a singular value below it is noise.
     let least = largest * f64::EPSILON.powf(2.0 / 3.0) * rows.sqrt().max(1.0);
     if let Some((k, _)) = svd.singular_values.iter().enumerate().find(|(_, s)| **s <= least || !s.is_finite())
     {
@@ -178,12 +180,14 @@ fn cofactor(mut jacobian: DMatrix<f64>) -> Result<DMatrix<f64>> {
     }))
 }
 
+/// Error for parameters, by their indices, that the data do not determine.
 fn undetermined(parameters: &[usize]) -> Error {
     let names: Vec<String> = parameters.iter().map(|i| (i + 1).to_string()).collect();
     let which = if names.len() == 1 { "parameter" } else { "the combination of parameters" };
     Error::refused(format!("the data do not determine {which} {} of the fit", names.join(", ")))
 }
 
+/// A fit in the form that the crate `levenberg-marquardt` expects.
 struct Problem<'a, F> {
     residuals: F,
     n: usize,
@@ -192,6 +196,7 @@ struct Problem<'a, F> {
 }
 
 impl<F: Fn(&[f64], &mut [f64])> Problem<'_, F> {
+    /// Residuals for these parameters; `None` if one is not finite.
     fn at(&self, parameters: &DVector<f64>) -> Option<DVector<f64>> {
         let mut values = DVector::zeros(self.n);
         (self.residuals)(parameters.as_slice(), values.as_mut_slice());
@@ -213,7 +218,7 @@ impl<F: Fn(&[f64], &mut [f64])> LeastSquaresProblem<f64, Dyn, Dyn> for Problem<'
     }
 
     fn residuals(&self) -> Option<DVector<f64>> {
-        // The algorithm gives up on `None`; a large residual makes it shorten its step instead.
+        // `None` would end the algorithm; a large residual makes it shorten its step.
         let far = || DVector::from_element(self.n, f64::MAX.sqrt().sqrt());
         Some(self.at(&self.parameters).unwrap_or_else(far))
     }

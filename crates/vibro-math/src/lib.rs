@@ -2,7 +2,7 @@
 //!
 //! ```
 //! use vibro_math::Oscillator;
-//! // Displacement and velocity 0.1 s after a release at 1 mm: a little more than half a swing.
+//! // Displacement and velocity 0.1 s after a release at 1 mm: a little more than half a period.
 //! let (x, v) = Oscillator::new(0.125, 0.1, 135.0).free(1e-3, 0.0, 0.1);
 //! assert!(x < 0.0 && v > 0.0);
 //! ```

@@ -1,7 +1,7 @@
 //! Random numbers from a seed.
 
-/// Random numbers that depend on the seed only, on every machine: uniform ones by splitmix64 (Steele, Lea and
-/// Flood 2014), normal ones by Box and Muller (1958).
+/// Random numbers that depend on the seed only and are the same on every machine. Uniform numbers are from
+/// splitmix64 (Steele, Lea and Flood 2014), normal numbers from Box and Muller (1958).
 ///
 /// ```
 /// use vibro_math::Noise;
@@ -13,13 +13,13 @@
 pub struct Noise(u64);
 
 impl Noise {
-    /// The numbers of this seed.
+    /// The sequence of this seed.
     pub fn new(seed: u64) -> Noise {
         Noise::from_state(seed.wrapping_mul(0x2545_F491_4F6C_DD1D))
     }
 
-    /// The numbers after this state of splitmix64, by which other programs count. The numbers of two states
-    /// overlap where the states differ by a multiple of the generator's step.
+    /// The sequence after this state of splitmix64, which other programs call the seed. The sequences of two
+    /// states overlap if the states differ by a multiple of the generator's increment.
     pub fn from_state(state: u64) -> Noise {
         Noise(state)
     }

@@ -6,7 +6,7 @@
 
 use std::f64::consts::PI;
 
-/// One damped oscillator; its mass does not matter to its free motion.
+/// One damped oscillator. Its free motion depends on c/m and k/m only, so the mass is not stored.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Oscillator {
     /// b = c/2m in 1/s.
@@ -21,12 +21,13 @@ pub struct Oscillator {
     gain: f64,
     /// 1/Ω² in s².
     compliance: f64,
-    /// Slower decay b − |λ| in 1/s of an overdamped oscillator, as Ω²/(b + |λ|), which does not cancel.
+    /// Slowest decay rate in 1/s: b, or b − |λ| above critical damping. The latter is computed as
+    /// Ω²/(b + |λ|), which loses no digits by cancellation.
     slow: f64,
 }
 
-/// Below this |λ²|t² the kernels are summed as series, whose first three terms then leave out less than
-/// 1e-18/720.
+/// Value of |λ²|t² below which the kernels C and S are summed as series of three terms. The first term that
+/// is left out is then below 1e-18/720.
 const SERIES: f64 = 1e-6;
 
 impl Oscillator {
@@ -56,8 +57,8 @@ impl Oscillator {
         self.omega2
     }
 
-    /// b + √(b² + Ω²) in 1/s: largest factor from the bound ([`Oscillator::bound`]) of a motion to that of
-    /// its derivative.
+    /// b + √(b² + Ω²) in 1/s: largest ratio of the bound on the derivative of a motion to the bound on the
+    /// motion itself, see [`Oscillator::bound`].
     ///
     /// In the norm √(v² + Ω²x²) the derivative is the matrix [[0, Ω], [−Ω, −2b]], whose singular values are
     /// √(b² + Ω²) ± b.
@@ -79,8 +80,9 @@ impl Oscillator {
             (e * cos, e * sin / self.lambda)
         } else {
             let e = (-self.slow * t).exp();
-            let less = (-2.0 * self.lambda * t).exp_m1();
-            (e * (1.0 + less / 2.0), -e * less / (2.0 * self.lambda))
+            // e^{−2|λ|t} − 1.
+            let decayed = (-2.0 * self.lambda * t).exp_m1();
+            (e * (1.0 + decayed / 2.0), -e * decayed / (2.0 * self.lambda))
         }
     }
 
@@ -99,9 +101,9 @@ impl Oscillator {
 
     /// Bound on |x| at all later times after displacement `x` and velocity `v`.
     ///
-    /// The energy v² + Ω²x² of a free motion never grows, so x² ≤ x₀² + (v₀/Ω)². Derivatives of a free motion
-    /// are free motions, too: the same bound holds for them, at any damping, with no case for λ near zero.
-    /// Infinite without a spring, where the displacement has no such bound.
+    /// The energy v² + Ω²x² of a free motion never grows, so x² ≤ x₀² + (v₀/Ω)² at any damping, also for λ
+    /// near zero. Derivatives of a free motion are free motions, too, so the formula bounds them as well.
+    /// Without a spring the result is infinite if there is a velocity.
     #[inline]
     pub fn bound(&self, x: f64, v: f64) -> f64 {
         if v == 0.0 { x.abs() } else { (x * x + v * v * self.compliance).sqrt() }
@@ -110,8 +112,8 @@ impl Oscillator {
     /// Times in `0 < t < until` in s at which the free motion from displacement `x` and velocity `v` passes
     /// through zero, in their order.
     ///
-    /// x₀ cos λt + (v₀ + bx₀) sin(λt)/λ = 0, so tan λt = −x₀λ/(v₀ + bx₀): passages π/λ apart below critical
-    /// damping, at most one from critical damping on.
+    /// x₀ cos λt + (v₀ + bx₀) sin(λt)/λ = 0 gives tan λt = −x₀λ/(v₀ + bx₀). Below critical damping the
+    /// passages are π/λ apart; from critical damping on there is at most one.
     pub fn passages(&self, x: f64, v: f64, until: f64) -> impl Iterator<Item = f64> + use<> {
         let (lambda, w) = (self.lambda, v + self.b * x);
         let (first, apart) = if x == 0.0 && w == 0.0 {
@@ -124,12 +126,12 @@ impl Oscillator {
             ((-x * lambda / w).atanh() / lambda, f64::INFINITY)
         };
         let passage = move |n: u32| if n == 0 { first } else { first + f64::from(n) * apart };
-        // NaN is no passage and ends the list.
+        // Comparisons with NaN are false: NaN ends the list.
         (0..).map(passage).take_while(move |t| *t < until).filter(|t| *t > 0.0)
     }
 
-    /// 1 − C(T) and det(I − Φ(T)) = (1 − C)² + λ²S² over a period T in s, both without cancellation at small
-    /// damping; Φ is the matrix of the free motion.
+    /// 1 − C(T) and det(I − Φ(T)) = (1 − C)² + λ²S² for a period T in s. Φ is the matrix of the free motion.
+    /// Neither loses digits by cancellation at small damping.
     ///
     /// The determinant vanishes only without damping and with λT a whole multiple of 2π.
     pub fn closing(&self, period: f64) -> (f64, f64) {

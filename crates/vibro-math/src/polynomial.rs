@@ -1,16 +1,17 @@
-//! A polynomial over 0..1, with bounds on its derivatives so that no downward zero crossing is missed.
+//! Polynomials on the interval 0..1, with bounds on their derivatives: no downward zero crossing is missed.
 
 use super::root::{Bounded, RootAhead, walk};
 
-/// A polynomial of K terms over 0..1.
+/// A polynomial of K terms on the interval 0..1.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Polynomial<const K: usize> {
+    /// Coefficient of each power, from 0 on.
     terms: [f64; K],
-    /// Bound on the second derivative.
+    /// Bound on the magnitude of the second derivative.
     curvature: f64,
-    /// Bound on the third derivative.
+    /// Bound on the magnitude of the third derivative.
     third: f64,
-    /// Bound on the change from the value at 0.
+    /// Bound on the magnitude of the difference from the value at 0.
     reach: f64,
 }
 
@@ -28,7 +29,7 @@ impl<const K: usize> Polynomial<K> {
         Polynomial { terms, curvature, third, reach }
     }
 
-    /// Value, slope, and a bound on the curvature everywhere.
+    /// Value and slope at `part`, with the bound on the curvature.
     #[inline]
     pub fn at(&self, part: f64) -> Bounded {
         let (mut value, mut slope) = (0.0, 0.0);
@@ -45,18 +46,19 @@ impl<const K: usize> Polynomial<K> {
         part * sum.fold(0.0, |sum, (k, term)| sum * part + term / (k + 1) as f64)
     }
 
-    /// Second derivative.
+    /// Second derivative at `part`.
     fn bend(&self, part: f64) -> f64 {
         let terms = self.terms.iter().enumerate().skip(2).rev();
         terms.fold(0.0, |sum, (k, term)| sum * part + (k * (k - 1)) as f64 * term)
     }
 
-    /// First place at which the polynomial, not negative at 0, falls to zero. None is missed.
+    /// First argument at which the polynomial falls to zero; its value at 0 must not be negative. `None` if
+    /// it does not fall to zero up to 1.
     ///
-    /// Steps as in [`super::root`], by the bound M on the curvature. Where value f, slope ḟ and second
-    /// derivative f̈ are not negative, the bound M₃ on the third allows any step up to the largest of
-    /// ∛(6f/M₃), √(6ḟ/M₃) and 3f̈/M₃ as well. These steps grow geometrically from a triple root at 0, where
-    /// masses part from rest.
+    /// The search takes the steps of [`super::root`], which use the bound M on the curvature. If value f,
+    /// slope ḟ and second derivative f̈ are all not negative, the bound M₃ on the third derivative allows
+    /// longer steps: the largest of ∛(6f/M₃), √(6ḟ/M₃) and 3f̈/M₃. These grow geometrically from a triple
+    /// root at 0, which occurs where masses part from rest.
     #[inline]
     pub fn first_fall(&self) -> Option<f64> {
         if self.terms[0] > self.reach {

@@ -1,11 +1,11 @@
 //! Roots of functions with bounded curvature, found by steps that cannot pass a root.
 //!
-//! A function with value f ≥ 0, slope ḟ and |f̈| ≤ M for all later arguments stays above f + ḟh − Mh²/2, so
-//! the first root of that parabola, h = 2f/(√(ḟ² + 2Mf) − ḟ) for ḟ < 0 and (ḟ + √(ḟ² + 2Mf))/M otherwise, is
-//! a step that cannot pass a root of f. Near a simple root it is Newton's step, so it converges
-//! quadratically, always from one side.
+//! A function has the value f ≥ 0, the slope ḟ and |f̈| ≤ M at all later arguments. At a distance h it is at
+//! least f + ḟh − Mh²/2. So a step to the first root of this parabola cannot pass a root of the function: h
+//! = 2f/(√(ḟ² + 2Mf) − ḟ) for ḟ < 0, else h = (ḟ + √(ḟ² + 2Mf))/M. Near a simple root this is Newton's step:
+//! it converges quadratically, always from one side.
 
-/// Value and slope of a function, and a bound on its curvature from here on.
+/// Value and slope of a function at an argument, and a bound on its curvature there and later.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Bounded {
     /// f(t).
@@ -17,15 +17,14 @@ pub struct Bounded {
 }
 
 impl Bounded {
-    /// The longest step that cannot pass a root, for a value that is not negative (or negative by rounding
-    /// only).
+    /// The longest step that cannot pass a root. The value must not be negative, except by rounding.
     #[inline]
     pub(super) fn step(self) -> f64 {
         fall(self.value.max(0.0), self.slope, self.curvature)
     }
 }
 
-/// A function with its first three derivatives.
+/// Value of a function at an argument, with its first three derivatives.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Bent {
     /// f(t).
@@ -38,35 +37,35 @@ pub struct Bent {
     pub jerk: f64,
 }
 
-/// Bounds on derivatives of a function from an argument on.
+/// Bounds on derivatives of a function at an argument and later.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Limits {
-    /// A bound on |d²f/dt²|.
+    /// Bound on |d²f/dt²|, M₂.
     pub curvature: f64,
-    /// On |d³f/dt³|.
+    /// Bound on |d³f/dt³|, M₃.
     pub jerk: f64,
-    /// On |d⁴f/dt⁴|.
+    /// Bound on |d⁴f/dt⁴|, M₄.
     pub snap: f64,
-    /// On |d⁶f/dt⁶|.
+    /// Bound on |d⁶f/dt⁶|, M₆.
     pub sixth: f64,
 }
 
 impl Bent {
     /// A step that cannot pass a root.
     ///
-    /// Over the next H, f bends down by no more than K, the least of M₂, M₃H − f̈ and M₄H²/2 − f⃛H − f̈ (or
-    /// −f̈), so the parabola with K in place of M₂ is below f over H. Near a simple root K is nearly −f̈ and
-    /// the steps converge with the third order.
+    /// Up to a distance H ahead, −f̈ is at most K: the least of M₂, M₃H − f̈ and M₄H²/2 − f⃛H − f̈ (−f̈ if
+    /// that is larger). So up to H the parabola with K in place of M₂ is not above f. Near a simple root K
+    /// is nearly −f̈, and the steps converge with the third order.
     #[inline]
     fn step(self, limits: Limits) -> f64 {
         let value = self.value.max(0.0);
         let safe = fall(value, self.slope, limits.curvature);
-        // Near a root it lies within twice Newton's step; that reach is tried first.
+        // H is tried with twice Newton's step first: a near root lies within it.
         let mut reach = if self.slope < 0.0 { -2.0 * value / self.slope } else { 2.0 * safe };
         let mut step = safe;
         for _ in 0..3 {
-            let lost = (0.5 * limits.snap * reach - self.jerk).max(0.0).min(limits.jerk) * reach;
-            let bend = lost - self.bend;
+            let bent = (0.5 * limits.snap * reach - self.jerk).max(0.0).min(limits.jerk) * reach;
+            let bend = bent - self.bend;
             if bend >= limits.curvature {
                 break;
             }
@@ -80,7 +79,8 @@ impl Bent {
         step
     }
 
-    /// The root of f + ḟh + f̈h²/2 for ḟ < 0, where the slope at the root is at least half of ḟ.
+    /// The root h of the parabola f + ḟh + f̈h²/2 for ḟ < 0; `None` if the parabola falls there at less than
+    /// half the rate −ḟ.
     #[inline]
     fn clear_root(self) -> Option<f64> {
         let root = fall(self.value, self.slope, -self.bend);
@@ -88,12 +88,12 @@ impl Bent {
     }
 }
 
-/// The first root of f + ḟh − Kh²/2 after 0, for f ≥ 0; ∞ if there is none.
+/// The first root h ≥ 0 of value + slope·h − bend·h²/2, for a value that is not negative; ∞ if there is none.
 #[inline]
 fn fall(value: f64, slope: f64, bend: f64) -> f64 {
     let square = slope * slope + 2.0 * bend * value;
     if slope < 0.0 {
-        // A parabola without a root, and NaN, set no limit.
+        // A parabola without a root sets no limit to the step, nor does NaN.
         if square >= 0.0 { 2.0 * value / (square.sqrt() - slope) } else { f64::INFINITY }
     } else if bend > 0.0 {
         (slope + square.sqrt()) / bend
@@ -102,13 +102,14 @@ fn fall(value: f64, slope: f64, bend: f64) -> f64 {
     }
 }
 
-/// As [`first_fall`], for a function whose derivatives are known: it needs fewer calls, and none at the root.
+/// As [`first_fall`], for a function whose first three derivatives are known: it needs fewer calls, and none
+/// at the root.
 ///
-/// Returns the last argument at which `f` was called and the step from there to the root. Over twice this
-/// step a Taylor series with five derivatives errs in f's slope by less than `rounding` (the error of f's
-/// values) times M₃/M₂, and in f by less than `rounding`. The step is the root of the parabola through value,
-/// slope and bend, for the caller to refine. `limits` gives bounds from an argument on, or `None` where f
-/// stays above 0 for ever.
+/// Returns the last argument at which `f` was called, and the step from there to the root, for the caller to
+/// refine: the step is that to the root of the parabola with the value and the first two derivatives. The
+/// caller can use a Taylor series with five derivatives. Up to twice the step that series errs by less than
+/// `rounding` (the rounding error of f's values) in f, and by less than `rounding`·M₃/M₂ in its slope.
+/// `limits` gives bounds at an argument and later, or `None` if f stays above 0 from there on.
 #[inline]
 pub fn first_landing(
     from: f64,
@@ -117,8 +118,9 @@ pub fn first_landing(
     mut f: impl FnMut(f64) -> Bent,
     mut limits: impl FnMut(f64) -> Option<Limits>,
 ) -> Option<(f64, f64)> {
-    /// Calls after which the bounds are computed again: they fall as free vibrations decay.
-    const FRESH: u32 = 6;
+    /// Number of calls of `f` after which the bounds are computed anew: they decrease as free vibrations
+    /// decay.
+    const CALLS_PER_BOUND: u32 = 6;
     let mut bounds = limits(from)?;
     let mut calls = 0;
     walk(from, to, |t| {
@@ -127,14 +129,14 @@ pub fn first_landing(
             return RootAhead::Root(0.0);
         }
         calls += 1;
-        if calls % FRESH == 0 {
+        if calls % CALLS_PER_BOUND == 0 {
             match limits(t) {
                 Some(fresh) => bounds = fresh,
                 None => return RootAhead::Never,
             }
         }
         if here.slope < 0.0 {
-            // M₆(2h)⁵/5! of the slope, at twice Newton's step h.
+            // Error of the series in the slope at twice Newton's step h, M₆(2h)⁵/5!, times M₂.
             let newton = here.value / here.slope;
             let square = newton * newton;
             let error = bounds.sixth * bounds.curvature * square * square * -newton * (32.0 / 120.0);
@@ -148,18 +150,18 @@ pub fn first_landing(
     })
 }
 
-/// What the value and the derivatives at one argument tell of the next root.
+/// What is known about the next root from value and derivatives at one argument.
 pub(super) enum RootAhead {
     /// A root at this distance ahead.
     Root(f64),
     /// There is no further root.
     Never,
-    /// No root within `step`; `falls` tells whether the function falls.
+    /// No root within `step`; `falls`: whether the function falls at this argument.
     Step { step: f64, falls: bool },
 }
 
-/// Goes from `from` to `to` by steps that pass no root. Returns the last argument looked at, and the distance
-/// from there to the root.
+/// Goes from `from` to `to` by steps that pass no root. Returns the last argument that was examined, and the
+/// distance from there to the root; `None` if there is no root.
 #[inline]
 pub(super) fn walk(from: f64, to: f64, mut look: impl FnMut(f64) -> RootAhead) -> Option<(f64, f64)> {
     let mut t = from;
@@ -174,22 +176,23 @@ pub(super) fn walk(from: f64, to: f64, mut look: impl FnMut(f64) -> RootAhead) -
             if falls {
                 return Some((t, 0.0));
             }
-            // At rest on zero to the last digit: goes on by one digit, until the curvature shows its sign.
+            // The value is zero to the last digit and does not fall: goes on by one unit in the last digit,
+            // until the function rises or falls.
             t += f64::EPSILON * t.abs().max(to - from);
         } else {
             t = next;
         }
-        // Also ends where the function is not a number.
+        // Ends, too, if the function is not a number.
         if t > to || t.is_nan() {
             return None;
         }
     }
 }
 
-/// The first argument in `from..=to` at which `f`, not negative at `from`, falls to zero.
+/// The first argument in `from..=to` at which `f` falls to zero; its value at `from` must not be negative.
 ///
-/// `noise` is the rounding error of f's values: a value below it counts as zero. A touch from above that does
-/// not fall below `noise` is no root. Error of the root: that of f over its slope there.
+/// `noise` is the rounding error of f's values: a value up to it counts as zero. A minimum above `noise` is
+/// no root. The error of the root is the error of f divided by its slope there.
 #[inline]
 pub fn first_fall(from: f64, to: f64, noise: f64, f: impl Fn(f64) -> Bounded) -> Option<f64> {
     let look = |t| {
@@ -204,9 +207,9 @@ pub fn first_fall(from: f64, to: f64, noise: f64, f: impl Fn(f64) -> Bounded) ->
     walk(from, to, look).map(|(t, _)| t)
 }
 
-/// Root of `f` (value and slope) between `a` and `b`, where its values have opposite signs: Newton's steps,
-/// halving where one would leave the bracket or shrink it too slowly. Ends when no number lies between, or
-/// after 200 steps.
+/// Root of `f` (value and slope) between `a` and `b`, where its values have opposite signs. Takes Newton's
+/// steps, and halves the bracket if such a step would leave it or shrink it too slowly. Ends when no double
+/// lies inside the bracket, or after 200 steps.
 pub fn bracketed(mut a: f64, mut b: f64, f: impl Fn(f64) -> (f64, f64)) -> f64 {
     let falling = f(a).0 > 0.0;
     let mut t = f64::midpoint(a, b);
@@ -224,7 +227,7 @@ pub fn bracketed(mut a: f64, mut b: f64, f: impl Fn(f64) -> (f64, f64)) -> f64 {
         let (low, high) = (a.min(b), a.max(b));
         let step = value / slope;
         let next = t - step;
-        // Newton's last steps move less than the last digit.
+        // Converged: Newton's step is smaller than the last digit.
         if step.abs() <= f64::EPSILON * t.abs() && next >= low && next <= high {
             return next;
         }

@@ -6,8 +6,8 @@
 //!   Nørsett & Wanner 1993, *Solving Ordinary Differential Equations I*, II.5 and II.6; coefficients of their
 //!   program DOP853).
 //!
-//! A step is repeated with a smaller size until its estimated error is below the tolerance. Its dense output
-//! is a polynomial in time, in which [`super::Polynomial`] finds the first event without missing one.
+//! A step is repeated with a smaller size until its estimated error is below the tolerance. The dense output
+//! of a step is a polynomial in time; [`super::Polynomial`] finds the first event in it without missing one.
 
 mod dop853;
 mod dormand_prince;
@@ -18,28 +18,30 @@ pub use dormand_prince::DormandPrince;
 use super::Polynomial;
 use vibro_record::{Error, Result};
 
-/// Coefficients of a dense output, a polynomial in the time since the start of the step over its duration.
+/// Number of coefficients of a dense output: a polynomial in the time since the start of the step, divided by
+/// the duration of the step.
 pub(crate) const TERMS: usize = 8;
 
-/// Most stages of a scheme, those of its dense output included.
+/// Largest number of stages of a scheme, including those of its dense output.
 const STAGES: usize = 16;
 
 /// An embedded Runge–Kutta scheme.
 pub trait Scheme {
-    /// Times of the stages since the start of the step, over its duration.
+    /// Times of the stages since the start of the step, divided by its duration (Butcher tableau, column c).
     const NODES: &'static [f64];
-    /// Weights of the earlier stages, for each stage but the first.
+    /// Weights of the earlier stages, for each stage but the first (rows of the Butcher tableau).
     const ROWS: &'static [&'static [f64]];
-    /// Number of stages of the step itself; the stage after them is at its end, with the step's own weights.
-    const STEP: usize;
-    /// One over the order of the estimated error.
-    const ROOT: f64;
+    /// Index of the stage at the end of the step: its row has the weights of the step itself, and its
+    /// derivative is the first stage of the next step. Later stages serve the dense output only.
+    const END_STAGE: usize;
+    /// Exponent of the step-size control: 1/q where the estimated error of a step grows with step^q.
+    const STEP_SIZE_EXPONENT: f64;
 
-    /// Estimated error over tolerance, from the derivatives at the stages, the duration of the step, and the
-    /// tolerated error of each component.
+    /// Estimated error divided by the tolerated error, as a root mean square over the components. `rates` are
+    /// the derivatives at the stages, `step` is the duration of the step.
     fn error<const N: usize>(rates: &[[f64; N]], step: f64, tolerated: &[f64; N]) -> f64;
 
-    /// Coefficients of the dense output.
+    /// Coefficients of the dense output of a step from `start` to `end`, by rising powers.
     fn dense<const N: usize>(
         rates: &[[f64; N]],
         step: f64,
@@ -48,17 +50,17 @@ pub trait Scheme {
     ) -> [[f64; N]; TERMS];
 }
 
-/// Tolerated error of a step: `relative` times the size of a component, or times its `floor` where that is
+/// Tolerated error of a step: `relative` times the magnitude of a component, or times its `floor` if that is
 /// larger.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Tolerance<const N: usize> {
-    /// Relative error of a step; not below 1e-14.
+    /// Relative error of a step, at least 1e-14.
     pub relative: f64,
-    /// Size of each component below which its tolerated error does not fall further.
+    /// Magnitude of each component below which its tolerated error does not decrease further.
     pub floor: [f64; N],
 }
 
-/// One accepted step, with the solution between its ends by dense output.
+/// One accepted step, with the dense output that interpolates the solution inside it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Step<const N: usize> {
     /// Time at its start in s.
@@ -86,8 +88,8 @@ impl<const N: usize> Step<N> {
         y
     }
 
-    /// First time after the start of the step at which weights·y + offset, not negative at the start, falls
-    /// to zero.
+    /// First time after the start of the step at which weights·y + offset falls to zero; it must not be
+    /// negative at the start. `None` if it stays above zero.
     pub fn first_fall(&self, weights: &[f64; N], offset: f64) -> Option<f64> {
         let mut terms = self.terms.map(|term| term.iter().zip(weights).map(|(y, w)| w * y).sum::<f64>());
         terms[0] += offset;
@@ -118,12 +120,12 @@ impl<S: Scheme, const N: usize> Integrator<S, N> {
         Integrator { time, y, rate: f(time, &y), step, tolerance, scheme: std::marker::PhantomData }
     }
 
-    /// Time now.
+    /// Time at the end of the last accepted step.
     pub fn time(&self) -> f64 {
         self.time
     }
 
-    /// Solution now.
+    /// Solution at the end of the last accepted step.
     pub fn y(&self) -> &[f64; N] {
         &self.y
     }
@@ -133,7 +135,7 @@ impl<S: Scheme, const N: usize> Integrator<S, N> {
         self.step
     }
 
-    /// Takes one step, at most to the time `until`.
+    /// Takes one step that ends at the time `until` at the latest.
     ///
     /// # Errors
     /// If the tolerance cannot be met with any step that time can resolve, or the solution is not finite.
@@ -143,7 +145,7 @@ impl<S: Scheme, const N: usize> Integrator<S, N> {
         loop {
             let whole = step >= remaining;
             let h = step.min(remaining);
-            // A step that the time cannot resolve, unless it ends at `until`.
+            // A step is too small if rounding of the time hides it. One that ends at `until` may be.
             if !whole && h <= 4.0 * f64::EPSILON * self.time.abs() || h.is_nan() || step < f64::MIN_POSITIVE {
                 return Err(Error::refused(format!(
                     "no step is small enough to integrate on from {} s with a relative error of {}",
@@ -154,7 +156,7 @@ impl<S: Scheme, const N: usize> Integrator<S, N> {
             let mut rates = [[0.0; N]; STAGES];
             rates[0] = self.rate;
             let mut end = self.y;
-            for stage in 1..=S::STEP {
+            for stage in 1..=S::END_STAGE {
                 end = self.stage(&rates, S::ROWS[stage - 1], h);
                 rates[stage] = f(self.time + S::NODES[stage] * h, &end);
             }
@@ -163,11 +165,11 @@ impl<S: Scheme, const N: usize> Integrator<S, N> {
                 self.tolerance.relative * size
             });
             let error = S::error(&rates, h, &tolerated);
-            // 0.9 of the size that just meets the tolerance; at most ten times as large and at least a fifth
-            // at once.
-            let factor = (0.9 * error.powf(-S::ROOT)).clamp(0.2, grow);
+            // The next size is 0.9 of the one that just meets the tolerance. It is limited to 0.2 to 10 times
+            // the present size; after a rejected step it does not grow.
+            let factor = (0.9 * error.powf(-S::STEP_SIZE_EXPONENT)).clamp(0.2, grow);
             if error <= 1.0 {
-                for stage in S::STEP + 1..S::NODES.len() {
+                for stage in S::END_STAGE + 1..S::NODES.len() {
                     let y = self.stage(&rates, S::ROWS[stage - 1], h);
                     rates[stage] = f(self.time + S::NODES[stage] * h, &y);
                 }
@@ -175,24 +177,25 @@ impl<S: Scheme, const N: usize> Integrator<S, N> {
                 let taken = Step { start: self.time, duration: h, end, terms };
                 self.time = if whole { until } else { self.time + h };
                 self.y = end;
-                self.rate = rates[S::STEP];
+                self.rate = rates[S::END_STAGE];
                 // A step cut short by `until` is no reason to reduce the step size.
                 self.step = if h < step { step.max(h * factor) } else { h * factor };
                 return Ok(taken);
             }
             grow = 1.0;
-            // The error may be NaN, too.
+            // The estimated error is NaN if the derivatives are not finite.
             step = h * if factor.is_nan() { 0.2 } else { factor };
         }
     }
 
+    /// Solution at a stage: the start of the step plus `h` times the weighted derivatives of earlier stages.
     fn stage(&self, rates: &[[f64; N]; STAGES], weights: &[f64], h: f64) -> [f64; N] {
         let sum = combine(rates, weights);
         std::array::from_fn(|i| self.y[i] + h * sum[i])
     }
 }
 
-/// Σ weights·derivatives, for each component.
+/// Sum of the derivatives `rates`, each times its weight, for each component.
 fn combine<const N: usize>(rates: &[[f64; N]], weights: &[f64]) -> [f64; N] {
     let mut sum = [0.0; N];
     for (rate, w) in rates.iter().zip(weights).filter(|(_, w)| **w != 0.0) {

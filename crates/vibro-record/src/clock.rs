@@ -5,48 +5,56 @@ use crate::{Finding, median};
 use std::cmp::Ordering;
 use std::ops::Range;
 
-/// Largest jitter of an instant about an even grid, in steps. Below 1/6: where every third sample is lost,
-/// the others lie within 1/6 of a step of another even grid. No other pattern of lost samples comes nearer to
-/// one.
+/// Largest deviation of an instant from the fitted grid by jitter alone, over the sampling interval. Below
+/// 1/6: where every third sample is lost, the others lie within 1/6 of a step of another even grid. No other
+/// pattern of lost samples lies nearer to an even grid.
 const JITTER: f64 = 0.15;
-/// Largest deviation by jitter and rounding together, in steps, where lost samples show as long steps. Below
-/// 1/2: one lost sample that does not show puts instants half a step off the fitted line.
-const ROUNDED: f64 = 0.4;
-/// Fewest instants that tell jitter from a lost sample: a fitted line through fewer tilts until it lies near
-/// all of them, lost sample or not.
+/// Largest deviation of an instant from the fitted grid by jitter and rounding together, over the sampling
+/// interval, inside a stretch. An unnoticed lost sample would give 1/2.
+const JITTER_AND_ROUNDING: f64 = 0.4;
+/// Least number of instants of a fitted clock. A line fitted to fewer tilts until it lies near all of them,
+/// even where a sample is lost, so jitter and a lost sample cannot be distinguished.
 const FEWEST: usize = 16;
-/// Parts of a record whose steps are compared for the uncertainty of the step.
+/// Number of parts of a record that are fitted separately: the scatter of their steps gives the uncertainty
+/// of the step.
 const PARTS: usize = 8;
-/// Fewest instants of a part for a step of its own.
+/// Least number of instants of such a part.
 const FEWEST_OF_PART: usize = 8;
-/// In steps: a step that deviates further from the usual one ends a stretch; residuals that jump further hide
-/// a lost sample.
-const BREAK: f64 = 0.5;
-/// Printed digits that rows must span for the mean of their rounding errors to be far below one step.
-const CYCLES: f64 = 8.0;
-/// Fewest steps that are one digit longer for these to be rounding: one or two may be lost samples, where the
-/// sampling interval is about one digit.
-const FEWEST_SLIPS: usize = 3;
-/// Size of a printed digit, in steps, below which every lost sample shows as a long step.
-const FINEST_HIDING: f64 = 0.25;
-/// Largest printed digit, in steps, that neither hides a lost sample nor shifts an instant visibly.
-const FINE: f64 = 2e-3;
-/// Sampling rate over the end of the base band, as analysers set it.
-const BASE_BAND: f64 = 2.56;
-/// Relative error of an amplitude from which jitter is a caution instead of a note.
-const VISIBLE: f64 = 0.01;
+/// Deviation of an interval between two instants from the usual interval, over that interval, that ends a
+/// stretch; a coarse printed digit is added to it. A lost sample gives 1.
+const STRETCH_END: f64 = 0.5;
+/// Jump of the residuals of the fitted grid, over the sampling interval, that reveals a lost sample. A lost
+/// sample gives 1.
+const RESIDUAL_JUMP: f64 = 0.5;
+/// Least number of printed digits that a group of rows must span, so that their rounding errors average out.
+const DIGITS_SPANNED: f64 = 8.0;
+/// From this number of over-long intervals on they are explained by rounding; fewer may be lost samples.
+/// Over-long intervals are nearer to the longest than to the shortest one, where the longest is more than 1.5
+/// times the shortest.
+const ROUNDED_INTERVALS: usize = 3;
+/// Size of a printed digit, over the sampling interval, from which on rounding can hide a lost sample. With
+/// finer digits every lost sample shows as an interval of double length.
+const HIDING_DIGIT: f64 = 0.25;
+/// Largest size of a printed digit, over the sampling interval, that counts as fine: it hides no lost sample
+/// and shifts no instant visibly.
+const FINE_DIGIT: f64 = 2e-3;
+/// Sampling rate divided by the base band (the highest frequency shown), as analysers set it.
+const RATE_OVER_BASE_BAND: f64 = 2.56;
+/// Relative error of a sine's amplitude from which jitter is a caution instead of a note.
+const VISIBLE_ERROR: f64 = 0.01;
 
-/// An even clock, found from instants that were rounded when printed and may jitter about it.
+/// Even clock (start and sampling interval), found from instants that were rounded when printed and may
+/// jitter.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Clock {
     /// First instant of the grid in s.
     pub start: f64,
     /// Sampling interval in s.
     pub step: f64,
-    /// Its standard uncertainty in s, from rounding and from steps that jitter, wander or drift.
+    /// Standard uncertainty of `step` in s, from rounding, jitter, wander and drift.
     pub step_std: f64,
-    /// Standard deviation in s of the instants about the grid, beyond rounding; 0 where rounding explains all
-    /// of it.
+    /// Standard deviation of the instants from the grid in s, with the part of rounding subtracted; 0 if
+    /// rounding explains all of it.
     pub jitter: f64,
 }
 
@@ -54,39 +62,40 @@ impl Clock {
     /// Code of the finding that instants jitter.
     pub const JITTERS: &str = "axis-jitter";
 
-    /// The clock of `instants` in s, which were printed to within `resolution` in s: half a unit in the last
-    /// digit, rounded or cut off. `None` where samples were lost, and where the instants fit no even grid:
-    /// neither within rounding nor, for 16 and more, within rounding and 0.15 of a step.
+    /// The clock of `instants` in s. `resolution` in s is half a unit in their last printed digit. `None` if
+    /// samples were lost or the instants fit no even grid: neither within rounding nor, from 16 instants on,
+    /// within rounding and a jitter of 0.15 of a step.
     pub fn of(instants: &[f64], resolution: f64) -> Option<Clock> {
         Clock::rounded(instants, resolution).or_else(|| {
-            let resolution = printed(instants, resolution);
+            let resolution = with_binary_rounding(instants, resolution);
             Clock::within(instants, resolution, |step| JITTER * step + resolution)
-                .filter(|clock| !hides_lost(instants, clock, resolution))
+                .filter(|clock| !may_hide_lost(instants, clock, resolution))
         })
     }
 
-    /// The clock of instants that deviate by rounding only. Its step is the middle of all steps whose grid
-    /// lies within `resolution` of every instant: the true step is equally likely anywhere among these.
+    /// The clock of instants that deviate by rounding only. A range of steps gives grids that lie within
+    /// `resolution` of every instant. The true step is equally likely anywhere in that range; its middle is
+    /// taken.
     pub fn rounded(instants: &[f64], resolution: f64) -> Option<Clock> {
-        let (n, resolution) = (instants.len(), printed(instants, resolution));
+        let (n, resolution) = (instants.len(), with_binary_rounding(instants, resolution));
         let (low, high) = steps_within(instants, resolution)?;
         let step = f64::midpoint(low, high);
-        if step <= 0.0 || !step.is_finite() || !slips(instants).is_empty() {
+        if step <= 0.0 || !step.is_finite() || !over_long(instants).is_empty() {
             return None;
         }
-        // One or two lost samples shorter than a digit look like a drift of the clock. Each makes the step
-        // too long by 3/(2n) of itself.
+        // One or two lost samples shorter than a digit look like a drift of the clock. Each makes the fitted
+        // step too long by at most 3/(2n) of itself.
         let hidden = if step < 2.0 * resolution { 1.5 * step / (n - 1) as f64 } else { 0.0 };
-        // Clocks jitter below a digit, too. So the uncertainty is at least that of least squares with
-        // independent errors of the size of rounding.
-        let least = independent(resolution / 3f64.sqrt(), n);
+        // Jitter smaller than a digit does not show. So the uncertainty is at least that of a line fitted
+        // with independent errors as large as those of rounding.
+        let least = line_step_std(resolution / 3f64.sqrt(), n);
         let step_std = ((high - low) / 12f64.sqrt()).hypot(hidden).hypot(least);
         let residuals = instants.iter().enumerate().map(|(i, t)| t - i as f64 * step);
         let ends = residuals.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), e| (a.min(e), b.max(e)));
         Some(Clock { start: f64::midpoint(ends.0, ends.1), step, step_std, jitter: 0.0 })
     }
 
-    /// The clock by least squares, where all instants lie within `tolerance` in s (of the step) of its grid.
+    /// The clock by least squares; `None` unless all instants lie within `tolerance(step)` in s of its grid.
     fn within(instants: &[f64], resolution: f64, tolerance: impl Fn(f64) -> f64) -> Option<Clock> {
         let n = instants.len();
         if n < FEWEST {
@@ -111,23 +120,27 @@ impl Clock {
         (1.0 / self.step, self.step_std / self.step.powi(2))
     }
 
-    /// Relative standard uncertainty of step and rate.
+    /// Relative standard uncertainty, the same for step and rate.
     pub fn relative(&self) -> f64 {
         self.step_std / self.step
     }
 
-    /// The finding that a column is used as even: either that it is rounded, or its rate, its jitter and the
-    /// largest relative error of a sine's amplitude, 2πfσ, at the end of the base band.
+    /// Finding that a column is replaced by an even grid. Without jitter it states the rounding. Else it
+    /// states rate, jitter σ and the largest relative error of a sine's amplitude, 2πfσ, at the end of the
+    /// base band.
     pub fn finding(&self, column: &str) -> Finding {
         let (rate, std) = self.rate();
         if self.jitter == 0.0 {
             let found = Finding::note("axis-rounded").name("column", column);
             return found.number("step", self.step).number("std", self.step_std);
         }
-        let frequency = rate / BASE_BAND;
+        let frequency = rate / RATE_OVER_BASE_BAND;
         let error = std::f64::consts::TAU * frequency * self.jitter;
-        let found =
-            if error > VISIBLE { Finding::caution(Clock::JITTERS) } else { Finding::note(Clock::JITTERS) };
+        let found = if error > VISIBLE_ERROR {
+            Finding::caution(Clock::JITTERS)
+        } else {
+            Finding::note(Clock::JITTERS)
+        };
         let found = found.name("column", column).number("rate", rate).number("std", std);
         found
             .number("jitter", self.jitter)
@@ -137,26 +150,28 @@ impl Clock {
     }
 }
 
-/// Standard uncertainty of a step from the first and the last of `n` instants, each off by at most
-/// `resolution`, with all errors up to it equally likely.
+/// Standard uncertainty of the mean step between the first and the last of `n` instants, each rounded to
+/// within ±`resolution`. The difference of both is taken as uniform within ±2·resolution (conservative:
+/// independent rounding errors would give 1/√2 of it).
 pub fn uniform_std(resolution: f64, n: usize) -> f64 {
     2.0 * resolution / (3f64.sqrt() * n.saturating_sub(1).max(1) as f64)
 }
 
-/// Whether printed digits are so fine that rounding shifts no instant visibly from a grid of that step;
-/// `resolution` is half a digit.
+/// Whether printed digits are so fine that rounding hides no lost sample and shifts no instant visibly from a
+/// grid of that step; `resolution` is half a unit in the last digit.
 pub fn is_fine(resolution: f64, step: f64) -> bool {
-    2.0 * resolution <= FINE * step
+    2.0 * resolution <= FINE_DIGIT * step
 }
 
-/// The resolution of instants in s, with the rounding of binary numbers of their size.
-fn printed(instants: &[f64], resolution: f64) -> f64 {
+/// Resolution in s of instants as doubles: that of their printed digits, with the rounding of binary numbers
+/// of their size added.
+fn with_binary_rounding(instants: &[f64], resolution: f64) -> f64 {
     let largest = instants.iter().fold(0.0, |largest: f64, t| largest.max(t.abs()));
     resolution * (1.0 + 1e-6) + 4.0 * f64::EPSILON * largest
 }
 
-/// The smallest and the largest step of an even grid within `resolution` of all instants; `None` where there
-/// is none, and for fewer than three instants.
+/// Smallest and largest step of an even grid that lies within `resolution` of all instants; `None` if there
+/// is no such grid, and for fewer than three instants.
 fn steps_within(instants: &[f64], resolution: f64) -> Option<(f64, f64)> {
     if instants.len() < 3 {
         return None;
@@ -165,27 +180,29 @@ fn steps_within(instants: &[f64], resolution: f64) -> Option<(f64, f64)> {
     (low <= high).then_some((low, high))
 }
 
-/// The largest such step: the least (tⱼ − tᵢ + 2·resolution)/(j − i) over all i < j, of instants times
-/// `sign`; with the sign −1, minus the smallest step. By Dinkelbach's iteration: the pair that violates the
-/// present step most gives the next one.
+/// Largest step of an even grid that lies within `resolution` of all instants: the least
+/// (tⱼ − tᵢ + 2·resolution)/(j − i) among all pairs i < j. The instants are multiplied by `sign`: with −1 the
+/// result is minus the smallest step. Dinkelbach's iteration: the pair that violates the present step most
+/// gives the next step.
 fn largest_step(instants: &[f64], sign: f64, resolution: f64) -> f64 {
     let n = instants.len();
     let (first, last) = (sign * instants[0], sign * instants[n - 1]);
     let mut step = (last - first + 2.0 * resolution) / (n - 1) as f64;
     loop {
-        // The highest deviation from the grid so far, and the deepest fall below it with the step to which
-        // this pair limits the grid.
-        let (mut top, mut worst) = ((0, first), (0.0, step));
+        // `latest`: (index, time) of the instant that is latest relative to the grid so far. `worst`: the
+        // largest amount by which a later instant is early relative to it, and the largest step that this
+        // pair of instants allows.
+        let (mut latest, mut worst) = ((0, first), (0.0, step));
         for (j, t) in instants.iter().map(|t| sign * t).enumerate() {
-            let behind = (j - top.0) as f64;
-            let fall = top.1 - t + behind * step;
-            if fall < 0.0 {
-                top = (j, t);
-            } else if fall > worst.0 {
-                worst = (fall, (t - top.1 + 2.0 * resolution) / behind);
+            let count = (j - latest.0) as f64;
+            let early = latest.1 - t + count * step;
+            if early < 0.0 {
+                latest = (j, t);
+            } else if early > worst.0 {
+                worst = (early, (t - latest.1 + 2.0 * resolution) / count);
             }
         }
-        // A missing instant (NaN) compares as not less and ends the search.
+        // Stops, too, at a missing instant (NaN), which compares as not less.
         if worst.1.partial_cmp(&step) != Some(Ordering::Less) {
             return step;
         }
@@ -193,28 +210,31 @@ fn largest_step(instants: &[f64], sign: f64, resolution: f64) -> f64 {
     }
 }
 
-/// Indices of the one or two steps that are much longer, as where a sample was lost and the sampling interval
-/// is about one printed digit; empty where three or more are, which is rounding.
-fn slips(instants: &[f64]) -> Vec<usize> {
+/// Indices of the over-long intervals (nearer to the longest than to the shortest), if there are one or two:
+/// samples were probably lost there, while the sampling interval is about one printed digit. Empty if no
+/// interval exceeds the shortest by more than half, and for three or more, which rounding explains.
+fn over_long(instants: &[f64]) -> Vec<usize> {
     let steps = || instants.windows(2).map(|w| w[1] - w[0]);
     let (low, high) = steps().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), d| (a.min(d), b.max(d)));
     if low <= 0.0 || high <= 1.5 * low {
         return Vec::new();
     }
     let long = steps().enumerate().filter(|(_, d)| *d > f64::midpoint(low, high)).map(|(i, _)| i);
-    let long: Vec<usize> = long.take(FEWEST_SLIPS).collect();
-    if long.len() < FEWEST_SLIPS { long } else { Vec::new() }
+    let long: Vec<usize> = long.take(ROUNDED_INTERVALS).collect();
+    if long.len() < ROUNDED_INTERVALS { long } else { Vec::new() }
 }
 
-/// Whether the residuals of the fitted line jump by more than half a step, which a lost sample causes. Where
-/// a printed digit is about as long as a sample, no single step or residual shows it; cumulated residuals do:
-/// `jump` is the least-squares jump after instant i. True, too, where there are too few instants to tell.
-fn hides_lost(instants: &[f64], clock: &Clock, resolution: f64) -> bool {
-    if 2.0 * resolution < BREAK * clock.step {
+/// Whether a lost sample may be hidden by rounding: the residuals of the fitted line jump by more than half a
+/// step at some instant. With a printed digit of about one sampling interval no single interval or residual
+/// shows a lost sample; their cumulated sum does. Returns true also if there are too few instants to decide.
+fn may_hide_lost(instants: &[f64], clock: &Clock, resolution: f64) -> bool {
+    // Finer digits show every lost sample as a large residual, which `Clock::within` refuses.
+    let digit = 2.0 * resolution;
+    if digit < 0.5 * clock.step {
         return false;
     }
     let n = instants.len();
-    let rows = (CYCLES * 2.0 * resolution / clock.step).ceil().max(CYCLES) as usize;
+    let rows = (DIGITS_SPANNED * digit / clock.step).ceil().max(DIGITS_SPANNED) as usize;
     if n / 4 < rows {
         return true;
     }
@@ -223,43 +243,48 @@ fn hides_lost(instants: &[f64], clock: &Clock, resolution: f64) -> bool {
         cumulated += t - (clock.start + i as f64 * clock.step);
         let part = (i + 1) as f64;
         let both = part * (whole - part);
+        // Height of a step after instant i, fitted by least squares together with a line.
         let jump = cumulated / (both / whole * (1.0 - 3.0 * both / (whole * whole - 1.0)));
-        i + 1 >= rows && jump.abs() > BREAK * clock.step
+        i + 1 >= rows && jump.abs() > RESIDUAL_JUMP * clock.step
     })
 }
 
-/// Standard uncertainty of the step of a line through `n` instants with independent errors of standard
+/// Standard uncertainty of the step of a line fitted to `n` instants with independent errors of standard
 /// deviation `std`.
-fn independent(std: f64, n: usize) -> f64 {
+fn line_step_std(std: f64, n: usize) -> f64 {
     std * (12.0 / (n as f64).powi(3)).sqrt()
 }
 
-/// Standard uncertainty of the step. Independent jitter of size σ gives σ·√(12/n³). Wander and drift of the
-/// clock are added from the scatter of the steps of eight parts. Their mean is as certain as the line through
-/// all instants where deviations add up from step to step, and else less certain.
+/// Standard uncertainty of the step. Independent jitter of standard deviation σ gives σ·√(12/n³). Wander and
+/// drift of the clock are added, as the standard uncertainty of the mean of the steps of eight parts. That
+/// mean is as certain as the line through all instants if deviations add up from step to step, else less
+/// certain.
 fn step_std(instants: &[f64], jitter: f64) -> f64 {
     let n = instants.len();
-    let independent = independent(jitter, n);
+    let independent = line_step_std(jitter, n);
     if n < PARTS * FEWEST_OF_PART {
         return independent;
     }
-    let of = |part: usize| FittedLine::through(&instants[part * n / PARTS..(part + 1) * n / PARTS]).step;
-    let steps: Vec<f64> = (0..PARTS).map(of).collect();
+    let step_of = |part: usize| FittedLine::through(&instants[part * n / PARTS..(part + 1) * n / PARTS]).step;
+    let steps: Vec<f64> = (0..PARTS).map(step_of).collect();
     let mean = steps.iter().sum::<f64>() / PARTS as f64;
     let squares: f64 = steps.iter().map(|step| (step - mean).powi(2)).sum();
     independent.hypot((squares / ((PARTS - 1) * PARTS) as f64).sqrt())
 }
 
-/// The least-squares line through instants over their numbers.
+/// Least-squares line of the instants as a function of their index.
 struct FittedLine {
+    /// Mean index.
     centre: f64,
+    /// Mean instant in s.
     mean: f64,
+    /// Slope in s per index.
     step: f64,
 }
 
 impl FittedLine {
     fn through(instants: &[f64]) -> FittedLine {
-        // Differences from the first: in seconds since 1970 few digits are left for a step.
+        // Differences from the first instant: seconds since 1970 leave few digits of a double for a step.
         let (n, first) = (instants.len() as f64, instants[0]);
         let centre = (n - 1.0) / 2.0;
         let mean = first + instants.iter().map(|t| t - first).sum::<f64>() / n;
@@ -272,131 +297,137 @@ impl FittedLine {
     }
 }
 
-/// Samples between lost samples, pauses and restarts of a clock.
+/// Samples with an even clock, between lost samples, pauses and restarts of the clock.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Stretch {
-    /// Its samples.
+    /// Indices of the samples.
     pub samples: Range<usize>,
-    /// Its clock.
+    /// Clock of these samples.
     pub clock: Clock,
 }
 
 impl Stretch {
-    /// The longest of several, with its number from 1.
+    /// The stretch of longest duration, with its number from 1.
     pub fn longest(all: &[Stretch]) -> Option<(usize, &Stretch)> {
         (1..).zip(all).max_by(|a, b| a.1.duration().total_cmp(&b.1.duration()))
     }
 
-    /// Its duration in s.
+    /// Duration in s.
     pub fn duration(&self) -> f64 {
         self.clock.step * self.samples.len() as f64
     }
 }
 
-/// The stretches of `instants` in s, printed to within `resolution` in s, that have an even clock, in order;
-/// empty where they hold less than half of the instants. A step near two usual ones, as of a lost sample,
-/// ends a stretch; so within it instants may deviate by jitter and rounding together. Where a printed digit
-/// hides lost samples, a stretch ends before the place where one may be, and the next begins after it.
+/// Stretches of `instants` (s) that have an even clock, in order; empty if they contain less than half of the
+/// instants. `resolution` in s is half a unit in the last printed digit. An interval far from the usual one,
+/// as at a lost sample, ends a stretch; inside it instants may deviate by jitter and rounding together. If
+/// the printed digits can hide a lost sample, a stretch ends before every place where one may be, and the
+/// next begins after it.
 pub fn stretches(instants: &[f64], resolution: f64) -> Vec<Stretch> {
-    let resolution = printed(instants, resolution);
+    let resolution = with_binary_rounding(instants, resolution);
     let Some(usual) = usual_step(instants, resolution) else { return Vec::new() };
-    let shows = 2.0 * resolution < FINEST_HIDING * usual;
-    let margin = if shows { 0.0 } else { 2.0 * resolution };
+    let shows_lost = 2.0 * resolution < HIDING_DIGIT * usual;
+    let margin = if shows_lost { 0.0 } else { 2.0 * resolution };
     let breaks = |(_, w): &(usize, &[f64])| {
         let off = w[1] - w[0] - usual;
-        off.is_nan() || off.abs() > BREAK * usual + margin
+        off.is_nan() || off.abs() > STRETCH_END * usual + margin
     };
     let long: Vec<usize> = instants.windows(2).enumerate().filter(breaks).map(|(i, _)| i).collect();
-    let mut left = cut_behind(0..instants.len(), &long);
-    left.reverse();
+    // Runs between over-long intervals; a run is cut again until none is left in it.
+    let mut unchecked = cut_behind(0..instants.len(), &long);
+    unchecked.reverse();
     let mut runs = Vec::new();
-    while let Some(run) = left.pop() {
-        let found = slips(&instants[run.clone()]);
-        if found.is_empty() {
+    while let Some(run) = unchecked.pop() {
+        let over_long = over_long(&instants[run.clone()]);
+        if over_long.is_empty() {
             runs.push(run);
         } else {
-            left.extend(cut_behind(run, &found).into_iter().rev());
+            unchecked.extend(cut_behind(run, &over_long).into_iter().rev());
         }
     }
-    let of = |samples: Range<usize>| {
+    let stretch_of = |samples: Range<usize>| {
         let part = &instants[samples.clone()];
         let clock = if part.len() < FEWEST { None } else { Clock::of(part, resolution) };
-        let near = || Clock::within(part, resolution, |step| ROUNDED * step).filter(|_| shows);
-        Some(Stretch { clock: clock.or_else(near)?, samples })
+        let fitted =
+            || Clock::within(part, resolution, |step| JITTER_AND_ROUNDING * step).filter(|_| shows_lost);
+        Some(Stretch { clock: clock.or_else(fitted)?, samples })
     };
-    let enough =
+    // At least half of the instants must be even: irregular steps contain some even stretches by chance.
+    let is_enough =
         |all: &Vec<Stretch>| 2 * all.iter().map(|s| s.samples.len()).sum::<usize>() >= instants.len();
-    let whole: Vec<Stretch> = runs.iter().cloned().filter_map(of).collect();
-    if shows {
-        // At least half of the instants must be even: irregular steps contain some even stretches by chance.
-        return Some(whole).filter(enough).unwrap_or_default();
+    if shows_lost {
+        let all: Vec<Stretch> = runs.into_iter().filter_map(stretch_of).collect();
+        return Some(all).filter(is_enough).unwrap_or_default();
     }
+    // Runs that have no even clock as a whole are cut at possible hidden lost samples.
     let cut = |tolerance: f64| -> Vec<Stretch> {
-        let within = |run: &Range<usize>| {
-            let pieces = pieces(&instants[run.clone()], tolerance).into_iter();
+        let pieces_of = |run: &Range<usize>| {
+            let pieces = certain_pieces(&instants[run.clone()], tolerance).into_iter();
             pieces.map(|piece| run.start + piece.start..run.start + piece.end).collect::<Vec<_>>()
         };
-        let parts =
-            runs.iter().flat_map(|run| of(run.clone()).map_or_else(|| within(run), |s| vec![s.samples]));
-        parts.filter_map(of).collect()
+        let samples = |run: &Range<usize>| match stretch_of(run.clone()) {
+            Some(stretch) => vec![stretch.samples],
+            None => pieces_of(run),
+        };
+        runs.iter().flat_map(samples).filter_map(stretch_of).collect()
     };
     let tolerances = [resolution, resolution + JITTER * usual];
-    tolerances.into_iter().map(cut).find(enough).unwrap_or_default()
+    tolerances.into_iter().map(cut).find(is_enough).unwrap_or_default()
 }
 
-/// Cuts a range after each of the indices `last`, which count from its start.
+/// Cuts a range after each of the indices `last`, which count from the start of the range.
 fn cut_behind(range: Range<usize>, last: &[usize]) -> Vec<Range<usize>> {
     let mut first = range.start;
     let ends = last.iter().map(|i| range.start + i + 1).chain([range.end]);
     ends.map(|end| std::mem::replace(&mut first, end)..end).collect()
 }
 
-/// Pieces of `instants` that surely lie between lost samples. The instants are cut into the longest pieces
-/// within `tolerance` of an even grid, once from the first on and once from the last back. A piece begins
-/// where the first cut begins it and ends where the second ends it: any other cut into as few pieces lies
-/// between.
-fn pieces(instants: &[f64], tolerance: f64) -> Vec<Range<usize>> {
+/// Pieces of `instants` that certainly contain no lost sample. The instants are cut greedily into the longest
+/// pieces within `tolerance` of an even grid: once forward from the first, once backward from the last.
+/// Forward and backward cuts bracket every possible break; only what lies inside both is kept.
+fn certain_pieces(instants: &[f64], tolerance: f64) -> Vec<Range<usize>> {
     let n = instants.len();
     let back: Vec<f64> = instants.iter().rev().map(|t| -t).collect();
-    let ends = |instants: &[f64]| {
-        let mut ends = vec![0];
-        while ends[ends.len() - 1] < n {
-            let start = ends[ends.len() - 1];
-            ends.push(start + longest_even(&instants[start..], tolerance));
+    let greedy_cuts = |instants: &[f64]| {
+        let mut cuts = vec![0];
+        while cuts[cuts.len() - 1] < n {
+            let start = cuts[cuts.len() - 1];
+            cuts.push(start + longest_even(&instants[start..], tolerance));
         }
-        ends
+        cuts
     };
-    let (forth, back) = (ends(instants), ends(&back));
-    let starts = forth.iter();
-    starts.zip(back.iter().rev().skip(1)).map(|(start, end)| *start..(n - end).max(*start)).collect()
+    let (forward, backward) = (greedy_cuts(instants), greedy_cuts(&back));
+    let starts = forward.iter();
+    starts.zip(backward.iter().rev().skip(1)).map(|(start, end)| *start..(n - end).max(*start)).collect()
 }
 
-/// Number of first instants that lie within `tolerance` of an even grid.
+/// Largest number of instants from the first on that lie within `tolerance` of one even grid: found by
+/// doubling, then by bisection.
 fn longest_even(instants: &[f64], tolerance: f64) -> usize {
-    let even = |n: usize| n < 3 || steps_within(&instants[..n], tolerance).is_some();
+    let is_even = |n: usize| n < 3 || steps_within(&instants[..n], tolerance).is_some();
     let n = instants.len();
-    let mut known = n.min(2);
-    let mut odd = known;
-    while known < n && odd == known {
-        odd = (2 * known).min(n);
-        if even(odd) {
-            known = odd;
+    let mut even = n.min(2);
+    let mut uneven = even;
+    while even < n && uneven == even {
+        uneven = (2 * even).min(n);
+        if is_even(uneven) {
+            even = uneven;
         }
     }
-    while odd > known + 1 {
-        let middle = usize::midpoint(known, odd);
-        if even(middle) { known = middle } else { odd = middle }
+    while uneven > even + 1 {
+        let middle = usize::midpoint(even, uneven);
+        if is_even(middle) { even = middle } else { uneven = middle }
     }
-    known
+    even
 }
 
-/// The usual step in s: the median over a number of steps that is doubled until they span eight printed
-/// digits; `None` where it is not above 0.
+/// Usual sampling interval in s: the median time of `lag` intervals, divided by `lag`. `lag` is doubled until
+/// that time spans eight printed digits. `None` if the result is not above 0.
 fn usual_step(instants: &[f64], resolution: f64) -> Option<f64> {
     let mut lag = 1;
     loop {
         let usual = median(instants.windows(lag + 1).map(|w| w[lag] - w[0]));
-        if usual >= CYCLES * 2.0 * resolution || 8 * lag >= instants.len() {
+        if usual >= DIGITS_SPANNED * 2.0 * resolution || 8 * lag >= instants.len() {
             return Some(usual / lag as f64).filter(|step| *step > 0.0 && step.is_finite());
         }
         lag *= 2;
@@ -422,11 +453,11 @@ mod tests {
         const DRAWS: u64 = 400;
         let found: Vec<Clock> =
             (1..=DRAWS).map(|seed| Clock::of(&instants(seed), 0.0).expect("even")).collect();
-        let held = found.iter().filter(|c| (c.step - step).abs() <= 2.0 * c.step_std).count();
+        let covered = found.iter().filter(|c| (c.step - step).abs() <= 2.0 * c.step_std).count();
         let rms = |of: &dyn Fn(&Clock) -> f64| {
             (found.iter().map(|c| of(c).powi(2)).sum::<f64>() / DRAWS as f64).sqrt()
         };
-        (held as f64 / DRAWS as f64, rms(&|c| c.step_std) / rms(&|c| c.step - step))
+        (covered as f64 / DRAWS as f64, rms(&|c| c.step_std) / rms(&|c| c.step - step))
     }
 
     #[test]
@@ -445,15 +476,15 @@ mod tests {
         };
         // A Student distribution with 7 degrees of freedom has 91.4 % within 2. For 400 draws this scatters
         // by 1.4 %; three times that is allowed.
-        let (held, ratio) = coverage(wandering, 0.01);
-        assert!((0.87..=0.96).contains(&held), "{held}");
+        let (covered, ratio) = coverage(wandering, 0.01);
+        assert!((0.87..=0.96).contains(&covered), "{covered}");
         // For deviations that add up, the variances of eight parts and of the line are equal, 6σ²/5n. 400
         // draws of 7 degrees of freedom scatter by 4 %.
         assert!((0.85..=1.2).contains(&ratio), "{ratio}");
         // For independent jitter the mean of eight parts is eight times less certain than the line, so the
         // stated uncertainty is on the safe side.
-        let (held, ratio) = coverage(independent, 0.01);
-        assert!(held > 0.97, "{held}");
+        let (covered, ratio) = coverage(independent, 0.01);
+        assert!(covered > 0.97, "{covered}");
         assert!((6.5..=9.5).contains(&ratio), "{ratio}");
     }
 

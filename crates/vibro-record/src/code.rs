@@ -1,5 +1,4 @@
-//! Codes of findings on which other code depends: one constant for the code that makes a finding and the code
-//! that looks for it.
+//! Codes of findings that one part of the program adds and another part searches for.
 
 /// Samples are missing in a record.
 pub const SAMPLES_LOST: &str = "samples-lost";
@@ -15,13 +14,13 @@ pub const SCALING_UNSAID: &str = "scaling-unsaid";
 pub const UNIT_UNSAID: &str = "unit-unsaid";
 /// The axis of a record is not stated.
 pub const ABSCISSA_UNSAID: &str = "abscissa-unsaid";
-/// The head states a scale that is not applied; a stated calibration answers it.
+/// The head states a scale that is not applied; the finding is removed if the user states a calibration.
 pub const SCALE_IN_HEAD: &str = "scale-in-head";
 /// Values are levels in decibels.
 pub const LEVELS_IN_DECIBELS: &str = "levels-in-decibels";
 /// The response to a blow has not decayed where its record ends.
 pub const RESPONSE_CUT_OFF: &str = "response-cut-off";
-/// Modes were fitted to such a response.
+/// Modes were fitted to a response that has not decayed where its record ends.
 pub const MODAL_BLOW_CUT_OFF: &str = "modal-blow-cut-off";
 /// Pulses of a drill scatter by less than its samples resolve.
 pub const DRILL_EDGES_SHARP: &str = "drill-edges-sharp";
@@ -29,7 +28,7 @@ pub const DRILL_EDGES_SHARP: &str = "drill-edges-sharp";
 pub const DRILL_MEAN_VELOCITY: &str = "drill-mean-velocity";
 /// A record holds more than one pulse.
 pub const PULSE_NOT_ALONE: &str = "pulse-not-alone";
-/// A decay is not that of the modes found.
+/// The modes that were found do not explain a decay.
 pub const DECAY_UNEXPLAINED: &str = "decay-unexplained";
 /// Another event follows a decay.
 pub const DECAY_CUT: &str = "decay-cut";

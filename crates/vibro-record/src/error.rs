@@ -243,7 +243,7 @@ impl Error {
         Some(&mut *self.0).filter(|inner| inner.kind == Failure::Input)
     }
 
-    /// Adds a text in brackets to what was found.
+    /// Adds a text in brackets to the description of what was found.
     pub fn aside(mut self, text: impl fmt::Display) -> Self {
         if let Some(fault) = self.fault() {
             fault.found = format!("{} ({text})", fault.found);
@@ -353,7 +353,7 @@ fn part(before: &str, text: &str, after: &str) -> String {
     if text.is_empty() { String::new() } else { [before, text, after].concat() }
 }
 
-/// Why the system refused.
+/// The reason for an error of the operating system, in words.
 fn refusal(source: &std::io::Error) -> String {
     let known = match source.kind() {
         ErrorKind::NotFound => "no such file or directory",
@@ -369,8 +369,8 @@ fn refusal(source: &std::io::Error) -> String {
     known.to_owned()
 }
 
-/// What to type in place of a name that is not in a folder: the nearest name there, else one that begins
-/// alike, else the command that lists the folder.
+/// Hint for a name that is not in a folder: the nearest name there, else one with the same beginning, else
+/// the command that lists the folder.
 fn instead(folder: &Path, name: &Path) -> Hint {
     let path = folder.join(name);
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
@@ -398,9 +398,11 @@ fn instead(folder: &Path, name: &Path) -> Hint {
     }
 }
 
-/// Fewest letters of a wrong name for which a name that begins alike is suggested: fewer fit too many names.
+/// Least length in bytes of a wrong name (without its ending) from which on a name with the same beginning is
+/// suggested. Shorter ones fit too many names.
 const SHORTEST: usize = 3;
 
+/// The last character boundary in `text` up to the byte `at`.
 fn floor_char(text: &str, at: usize) -> usize {
     let mut at = at.min(text.len());
     while !text.is_char_boundary(at) {

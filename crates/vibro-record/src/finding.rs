@@ -8,7 +8,7 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::borrow::Cow;
 use std::fmt::{Display, Formatter};
 
-/// Weight of a finding.
+/// Severity of a finding.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Severity {
@@ -39,8 +39,8 @@ pub enum Fact {
     Name(String),
 }
 
-/// A code with its numbers; no sentence. Programs, tests and estimators read the code, people the words that
-/// the report has for it.
+/// A finding as data: a code with numbers and names, without a sentence. Programs, tests and estimators read
+/// the code; the report has a sentence for each code.
 ///
 /// ```
 /// use vibro_record::{Finding, Severity};
@@ -53,7 +53,7 @@ pub enum Fact {
 pub struct Finding {
     /// Stable code in kebab-case, listed in the documentation.
     pub code: Cow<'static, str>,
-    /// Its weight.
+    /// Severity.
     pub severity: Severity,
     /// Its subject: a channel, a file, a sweep; `None` for the whole answer.
     pub subject: Option<String>,

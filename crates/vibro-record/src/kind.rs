@@ -1,5 +1,5 @@
-//! The kinds of value that a person types, as data, and the correction of a text that was meant as such a
-//! value.
+//! Kinds of values that a person types, such as a number or a name, and the correction of a mistyped value of
+//! a known kind.
 
 use crate::nearest;
 use std::fmt;
@@ -17,7 +17,7 @@ pub enum Kind {
     Text,
     /// One of these names.
     Names(&'static [&'static str]),
-    /// A number of this quantity, or this word in its place.
+    /// A number of this quantity, or this word instead of a number.
     NumberOr(&'static str, &'static str),
     /// Two numbers with this character between them.
     Pair(char),
@@ -57,8 +57,8 @@ impl Kind {
         }
     }
 
-    /// The correct text of this kind that was probably meant by `text`, typed without quotes as the value of
-    /// `key`.
+    /// The likeliest correction of `text`, typed without quotes as the value of `key`: a text that is a value
+    /// of this kind. `None` if there is none.
     pub fn meant(&self, key: &str, text: &str) -> Option<String> {
         match self {
             Kind::Number => meant_number(key, text),
@@ -127,7 +127,7 @@ pub fn part(text: &str) -> Result<(f64, f64), Kind> {
     if (from.to_owned() + to).trim().is_empty() { Err(Kind::Part) } else { Ok((from_time, to_time)) }
 }
 
-/// The text with `mark` between its two parts in place of another character, if `read` then accepts it.
+/// The text with `mark` in place of another separator between its two numbers, if `read` then accepts it.
 fn respelt<T>(text: &str, mark: char, read: impl Fn(&str, char) -> Result<T, Kind>) -> Option<String> {
     // The first character may be the sign of the first number.
     let marks = text.char_indices().filter(|(at, c)| *at > 0 && [',', ';', ':', '-'].contains(c));
@@ -156,10 +156,10 @@ const UNITS: [(&str, i32); 17] = [
     ("m/s", 0),
 ];
 
-/// A number typed with its unit, in the unit of `key`.
+/// The value, in the unit of `key`, of a number that was typed with its unit.
 pub fn without_unit(key: &str, text: &str) -> Option<f64> {
     let meant = |(unit, decimals): &(&str, i32)| {
-        // Converted by its text, so that no digit is lost.
+        // The power of ten is appended to the text, so that no digit is lost by a multiplication.
         format!("{}e{decimals}", text.trim().strip_suffix(unit)?.trim_end()).parse().ok()
     };
     // For other keys g may be the acceleration of gravity.
@@ -183,8 +183,8 @@ fn ungrouped(text: &str) -> Option<(String, bool)> {
     threes.then(|| (whole.replace(',', "") + behind, groups.len() > 1 || behind.starts_with('.')))
 }
 
-/// The number meant by a text with a decimal comma, with grouped digits, with a unit, or without a digit on
-/// one side of its point.
+/// Corrects a number that was typed with a decimal comma, with grouped digits, with a unit, or without a
+/// digit on one side of its point.
 pub(crate) fn meant_number(key: &str, text: &str) -> Option<String> {
     let in_thousands = THOUSANDS.contains(&key.replace('-', "_").as_str());
     let grouped = ungrouped(text).filter(|(_, sure)| *sure || in_thousands);

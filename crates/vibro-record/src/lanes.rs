@@ -1,9 +1,10 @@
-//! Sums and ranges of long records in eight lanes, which a processor works on in parallel. The order of the
-//! operations is fixed, so that the result does not depend on the processor.
+//! Sums and ranges of long records, computed in eight lanes that a processor works on in parallel. The order
+//! of the operations is fixed, so that the result does not depend on the processor.
 
+/// Number of lanes: lane k takes the values k, k + 8, k + 16, …
 const LANES: usize = 8;
 
-/// Sum; its rounding grows with an eighth of the number of values.
+/// Sum of the values. Its rounding error grows with n/8 for n values, since each lane adds an eighth of them.
 pub fn sum(values: &[f64]) -> f64 {
     let (chunks, rest) = values.as_chunks::<LANES>();
     let mut lanes = [0.0; LANES];
@@ -15,12 +16,12 @@ pub fn sum(values: &[f64]) -> f64 {
     lanes.iter().sum::<f64>() + rest.iter().sum::<f64>()
 }
 
-/// Result of one pass over values.
+/// Range of values, and whether all are finite: the result of [`survey`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Survey {
-    /// Smallest value, ignoring missing ones (NaN); ∞ where there is none.
+    /// Smallest value, ignoring missing ones (NaN); ∞ if there is none.
     pub low: f64,
-    /// Largest value; −∞ where there is none.
+    /// Largest value, ignoring missing ones; −∞ if there is none.
     pub high: f64,
     /// Whether every value is a number: neither missing nor infinite.
     pub finite: bool,
@@ -46,24 +47,27 @@ pub fn survey(values: &[f64]) -> Survey {
     }
 }
 
-/// Values in which the first largest is searched right after their pass, while they are in the cache.
-const NEAR: usize = 4096;
+/// Number of values in a block of [`Extremes::take`]. The block is still in the processor's cache when the
+/// position of its largest magnitude is searched.
+const BLOCK: usize = 4096;
 
-/// First values that are kept: relations between channels show in this many rows.
-pub const OPENING: usize = 1 << 14;
+/// Largest number of first values that [`Extremes`] keep. Relations between channels, such as a magnitude and
+/// its components, show in this many rows.
+pub const FIRST_VALUES: usize = 1 << 14;
 
-/// Smallest and largest of values that may come block by block, ignoring missing ones (NaN), and the first
-/// values.
+/// Smallest and largest value of a channel that may be read block by block, ignoring missing values (NaN),
+/// and its first values.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Extremes {
     low: f64,
     high: f64,
     /// Number of values so far.
     n: usize,
+    /// Index of the first value of largest magnitude.
     at: usize,
     finite: bool,
-    /// The first [`OPENING`] values.
-    opening: Vec<f64>,
+    /// The first values, at most [`FIRST_VALUES`].
+    first_values: Vec<f64>,
 }
 
 impl Extremes {
@@ -74,7 +78,7 @@ impl Extremes {
         n: 0,
         at: 0,
         finite: true,
-        opening: Vec::new(),
+        first_values: Vec::new(),
     };
 
     /// The extremes of these values.
@@ -86,19 +90,19 @@ impl Extremes {
 
     /// Adds the next values.
     pub fn take(&mut self, values: &[f64]) {
-        for near in values.chunks(NEAR) {
-            let Survey { low, high, finite } = survey(near);
-            let most = high.max(-low);
-            let at = if most > self.size() { near.iter().position(|v| v.abs() == most) } else { None };
-            let (at, opening) = (at.unwrap_or_default(), Vec::new());
-            self.open(near);
-            self.join(&Extremes { low, high, n: near.len(), at, finite, opening });
+        for block in values.chunks(BLOCK) {
+            let Survey { low, high, finite } = survey(block);
+            let size = high.max(-low);
+            let at = if size > self.size() { block.iter().position(|v| v.abs() == size) } else { None };
+            let (at, first_values) = (at.unwrap_or_default(), Vec::new());
+            self.keep_first(block);
+            self.join(&Extremes { low, high, n: block.len(), at, finite, first_values });
         }
     }
 
     /// Adds the extremes of the values that follow.
     pub fn join(&mut self, next: &Extremes) {
-        self.open(&next.opening);
+        self.keep_first(&next.first_values);
         if next.size() > self.size() {
             self.at = self.n + next.at;
         }
@@ -108,23 +112,23 @@ impl Extremes {
         self.finite &= next.finite;
     }
 
-    /// Keeps the first of the values that follow, up to [`OPENING`] in all.
-    fn open(&mut self, next: &[f64]) {
-        self.opening.extend(next.iter().take(OPENING - self.opening.len()));
+    /// Appends the next values to the first ones, up to [`FIRST_VALUES`] in all.
+    fn keep_first(&mut self, next: &[f64]) {
+        self.first_values.extend(next.iter().take(FIRST_VALUES - self.first_values.len()));
     }
 
-    /// The first values.
-    pub fn opening(&self) -> &[f64] {
-        &self.opening
+    /// The first values, at most [`FIRST_VALUES`].
+    pub fn first_values(&self) -> &[f64] {
+        &self.first_values
     }
 
-    /// Largest magnitude; −∞ where there is none.
+    /// Largest magnitude; −∞ if there is no value.
     fn size(&self) -> f64 {
         self.high.max(-self.low)
     }
 
     /// Number of values, including missing ones.
-    #[allow(clippy::len_without_is_empty)] // nobody asks
+    #[allow(clippy::len_without_is_empty)] // never needed
     pub fn len(&self) -> usize {
         self.n
     }
@@ -136,15 +140,15 @@ impl Extremes {
 
     /// Both extremes and the first values, to be multiplied by a factor above 0.
     pub fn values_mut(&mut self) -> [&mut [f64]; 3] {
-        [std::slice::from_mut(&mut self.low), std::slice::from_mut(&mut self.high), &mut self.opening]
+        [std::slice::from_mut(&mut self.low), std::slice::from_mut(&mut self.high), &mut self.first_values]
     }
 
-    /// Smallest and largest value; `None` where there is none.
+    /// Smallest and largest value; `None` if there is none.
     pub fn range(&self) -> Option<(f64, f64)> {
         (self.low <= self.high).then_some((self.low, self.high))
     }
 
-    /// The first index of the largest magnitude, and this magnitude; `None` where there is none.
+    /// Index of the first value of largest magnitude, and this magnitude; `None` if there is no value.
     pub fn largest(&self) -> Option<(usize, f64)> {
         self.range().map(|_| (self.at, self.size()))
     }
@@ -173,11 +177,12 @@ mod tests {
                 }
             }
         }
-        let values: Vec<f64> = (0..3 * OPENING / 2).map(|i| ((i * 7919) % 1009) as f64 - 600.0).collect();
+        let values: Vec<f64> =
+            (0..3 * FIRST_VALUES / 2).map(|i| ((i * 7919) % 1009) as f64 - 600.0).collect();
         let mut parts = Extremes::NONE;
         values.chunks(1000).for_each(|part| parts.take(part));
         assert_eq!(parts, Extremes::of(&values));
-        assert_eq!(parts.opening(), &values[..values.len().min(OPENING)]);
+        assert_eq!(parts.first_values(), &values[..values.len().min(FIRST_VALUES)]);
         let (mut joined, behind) = (Extremes::of(&values[..700]), Extremes::of(&values[700..]));
         joined.join(&behind);
         assert_eq!((&joined, joined.len(), joined.finite()), (&parts, values.len(), true));

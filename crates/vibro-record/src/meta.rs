@@ -49,9 +49,9 @@ pub struct Meta {
     pub declared_n: Option<usize>,
     /// Header lines that are kept but not interpreted, as key and value (the key may be empty).
     pub notes: Vec<(String, String)>,
-    /// Relative standard uncertainty of the sampling rate, where instants were printed or jitter; else 0.
+    /// Relative standard uncertainty of the sampling rate if instants were printed or jitter; else 0.
     pub clock: f64,
-    /// Distance in s of the samples between which values were interpolated by cubics; 0 where none were.
+    /// Typical interval in s of the samples between which values were interpolated by cubics; 0 if none were.
     pub interpolated: f64,
     /// Half a unit in the last digit with which instants were printed, in s; 0 where they were not printed.
     pub resolution: f64,
@@ -64,8 +64,9 @@ pub struct Meta {
 }
 
 impl Meta {
-    /// Largest part of its amplitude that a sine of `frequency` in Hz has lost to interpolation by cubics:
-    /// half way between samples, where a cubic weights the two nearest by 9/16 and the next two by −1/16.
+    /// Largest fraction of its amplitude that a sine of `frequency` in Hz loses by interpolation with
+    /// cubics. The loss is largest half way between samples, where a cubic weights the two nearest samples
+    /// by 9/16 and the next two by −1/16.
     pub fn lost(&self, frequency: f64) -> f64 {
         let half = std::f64::consts::PI * (frequency * self.interpolated).min(0.5);
         1.0 - (9.0 * half.cos() - (3.0 * half).cos()) / 8.0

@@ -2,8 +2,9 @@
 
 use std::cmp::Reverse;
 
-/// The known name at the smallest edit distance (Damerau 1964, each letter changed once), if that is small
-/// relative to its length; else the longest known name with which the unknown one begins.
+/// The known name at the smallest edit distance from the wrong one (Damerau 1964, each letter changed once),
+/// if that distance is at most 1 plus a sixth of the known name's length. Else the longest known name with
+/// which the wrong one begins.
 pub fn nearest<'a>(wrong: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let wrong = wrong.to_lowercase();
     let known: Vec<(&str, String)> = known.into_iter().map(|name| (name, name.to_lowercase())).collect();

@@ -1,26 +1,28 @@
-//! Interpolates samples at uneven instants on an even grid.
+//! Interpolates unevenly sampled traces on an even grid.
 
 use crate::clock::{Stretch, stretches};
 use crate::{Axis, AxisKind, Error, Finding, Grid, Result, Trace, median};
 
-/// Lowest rate of interpolation over the mean sampling rate: below it parts of the signal would alias.
-const SLOWEST: f64 = 0.95;
-/// Highest rate over the mean sampling rate: more values than this would only suggest resolution.
-const FASTEST: f64 = 10.0;
-/// Longest step that is interpolated, in median steps. The stated error is that of leaving out one sample,
-/// which leaves a step of two.
-const LONGEST: f64 = 2.5;
-/// Largest rms error of samples predicted from their neighbours, over the standard deviation: white noise has
-/// 1.4, a sine with four samples a period 0.4.
+/// Lowest rate of interpolation, divided by the mean sampling rate. Below it parts of the signal would alias.
+const LOWEST_RATE: f64 = 0.95;
+/// Highest rate of interpolation, divided by the mean sampling rate. More values would only suggest a
+/// resolution that the samples do not have.
+const HIGHEST_RATE: f64 = 10.0;
+/// Longest interval between samples that is interpolated, divided by the median interval. The stated error is
+/// found by leaving out one sample, which doubles the interval.
+const LONGEST_INTERVAL: f64 = 2.5;
+/// Largest RMS error of samples predicted from their neighbours, divided by the standard deviation of the
+/// samples. White noise gives 1.4, a sine with four samples per period 0.4.
 const LARGEST_ERROR: f64 = 0.5;
 
 impl Trace {
     /// Interpolates at `rate` in Hz from the first instant on, by cubics through four samples. A finding
-    /// states the error: the rms difference of each sample from its prediction by four neighbours.
+    /// states the error: the RMS difference between each sample and its prediction from four neighbours.
     ///
     /// # Errors
-    /// If instants do not rise, a gap is too long to interpolate, values are missing, the rate is below that
-    /// of the samples or more than ten times as high, or the samples are too far apart for their signal.
+    /// - If instants do not rise, a gap is too long to interpolate, or values are missing.
+    /// - If the rate is below 0.95 times or above ten times the mean sampling rate.
+    /// - If the samples are too far apart for their signal.
     pub fn resample(&mut self, rate: f64) -> Result<()> {
         let (t, v) = (self.axis.values(), &self.values);
         let n = t.len();
@@ -33,15 +35,15 @@ impl Trace {
         let typical = Some(median(&steps)).filter(|_| steps.iter().all(|step| *step > 0.0));
         let typical =
             typical.ok_or_else(|| Error::refused("instants that do not rise cannot be resampled"))?;
-        if let Some(i) = steps.iter().position(|step| *step > LONGEST * typical) {
+        if let Some(i) = steps.iter().position(|step| *step > LONGEST_INTERVAL * typical) {
             let found =
                 format!("a gap of {:.4} s behind {:.6} s is too long to be interpolated", steps[i], t[i]);
             return Err(evened(Error::refused(found), &t, self.meta.resolution));
         }
         let mean = (n - 1) as f64 / (t[n - 1] - t[0]);
-        if !(SLOWEST * mean..=FASTEST * mean).contains(&rate) {
+        if !(LOWEST_RATE * mean..=HIGHEST_RATE * mean).contains(&rate) {
             let found = format!("a rate of {rate} Hz to resample {mean:.5} samples a second");
-            let expected = format!("{:.5} to {:.5} Hz", SLOWEST * mean, FASTEST * mean);
+            let expected = format!("{:.5} to {:.5} Hz", LOWEST_RATE * mean, HIGHEST_RATE * mean);
             return Err(Error::usage(found, expected).set("resample", proposed(mean)));
         }
         let at = |four: [usize; 4], x: f64| cubic(four.map(|i| (t[i], v[i])), x);
@@ -73,7 +75,7 @@ impl Trace {
             .number("share", if error == 0.0 { 0.0 } else { error / spread });
         self.axis = Axis::time(t[0], 1.0 / rate, many);
         self.meta.clock = 0.0;
-        // The error of a cubic grows with the fourth power of the step.
+        // The error of a cubic grows with the fourth power of the interval: its mean over time is taken.
         let fourth = steps.iter().map(|step| step.powi(5)).sum::<f64>() / steps.iter().sum::<f64>();
         self.meta.interpolated = fourth.powf(0.25);
         self.values = values;
@@ -82,8 +84,8 @@ impl Trace {
         Ok(())
     }
 
-    /// Keeps the samples of one stretch between lost samples, by its number from 1, and puts them on its even
-    /// grid.
+    /// Keeps only the samples of one stretch between lost samples, by its number from 1, on the even grid of
+    /// that stretch.
     ///
     /// # Errors
     /// If there is no such stretch.
@@ -118,8 +120,8 @@ impl Trace {
     }
 }
 
-/// Adds to a refusal of uneven instants, printed to within `resolution` in s, what makes them even: one of
-/// their stretches, or interpolation.
+/// Adds a hint to an error about uneven `instants` in s: use one of their even stretches, or interpolate.
+/// `resolution` in s is half a unit in the last digit of the instants.
 pub fn evened(error: Error, instants: &[f64], resolution: f64) -> Error {
     let all = stretches(instants, resolution);
     if let Some((number, longest)) = Stretch::longest(&all) {
@@ -138,7 +140,7 @@ pub fn evened(error: Error, instants: &[f64], resolution: f64) -> Error {
         return error.hint("several samples have one time: state the samples per second").setting("rate");
     }
     let steps: Vec<f64> = instants.windows(2).map(|w| w[1] - w[0]).collect();
-    if steps.iter().any(|step| *step > LONGEST * median(&steps)) {
+    if steps.iter().any(|step| *step > LONGEST_INTERVAL * median(&steps)) {
         return error
             .hint("its gaps are too long to interpolate: record or export every sample, with even steps");
     }

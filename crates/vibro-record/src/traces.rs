@@ -8,9 +8,9 @@ use std::path::{Path, PathBuf};
 /// ones more calls.
 const BLOCK: usize = 16 * 1024;
 
-/// Largest offset in time between two channels of one record, in sampling intervals, at its start and at its
-/// end.
-const APART: f64 = 0.01;
+/// Largest difference in time between two channels of one record, at its start and at its end, divided by the
+/// sampling interval.
+const LARGEST_OFFSET: f64 = 0.01;
 
 /// Samples that come block by block, in SI units.
 pub trait Stream: Send {
@@ -50,7 +50,7 @@ pub struct Traces {
     rate: f64,
     start: f64,
     frames: usize,
-    /// Factor of each channel, beside those that its reader applied.
+    /// Calibration factor of each channel; values from the stream are multiplied by it.
     factors: Vec<f64>,
     stream: Box<dyn Stream>,
 }
@@ -58,6 +58,7 @@ pub struct Traces {
 /// Traces that are in memory already.
 struct Memory {
     values: Vec<Vec<f64>>,
+    /// Index of the next sample.
     at: usize,
 }
 
@@ -276,6 +277,7 @@ fn place(path: &Path) -> Place {
     if path.as_os_str().is_empty() { Place::default() } else { Place::file(path) }
 }
 
+/// Error that two traces were not sampled together; `of_a` and `of_b` describe the difference.
 fn apart(path: &Path, [a, b]: [&Trace; 2], of_a: &str, of_b: &str) -> Error {
     let found = format!("channel {:?} has {of_a} and channel {:?} {of_b}", a.meta.name, b.meta.name);
     Error::input(place(path), found, "channels that were sampled together")
@@ -294,12 +296,12 @@ fn clock(path: &Path, traces: &[Trace], frames: usize) -> Result<(f64, f64)> {
     for trace in traces {
         let (own, begin) = (rate_of(trace)?, trace.axis.start());
         let of = [first, trace];
-        if (own / rate - 1.0).abs() * frames as f64 > APART {
+        if (own / rate - 1.0).abs() * frames as f64 > LARGEST_OFFSET {
             return Err(apart(path, of, &format!("a rate of {rate} Hz"), &format!("{own} Hz")));
         }
         // Traces of two files may count time from different origins.
         let origin = trace.meta.origin - first.meta.origin;
-        if (origin + (begin - start)).abs() * rate > APART {
+        if (origin + (begin - start)).abs() * rate > LARGEST_OFFSET {
             let later = format!("{} s", notation::significant(origin + begin, 6));
             return Err(apart(path, of, &format!("its first sample at {start} s"), &later));
         }

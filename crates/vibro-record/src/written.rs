@@ -6,21 +6,22 @@ mod node;
 use crate::kind::{Kind, meant_number};
 use crate::{Error, nearest};
 pub use node::named;
-use node::{Node, What};
+use node::{FaultKind, Node};
 use serde::de::DeserializeOwned;
 use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-/// A TOML text, with the names that are known in it.
+/// A TOML text, with the names that it may use beside those of the type that is read.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Written<'a> {
     /// The whole text.
     pub text: &'a str,
-    /// Keys that are allowed beside those of the type.
-    pub beside: &'a [&'a str],
-    /// Words that a user may write, with the tables that they mean.
-    pub meant: &'a [(&'a str, &'a str)],
+    /// Keys that are known beside those of the type: the error for an unknown key lists and suggests them,
+    /// too.
+    pub extra_keys: &'a [&'a str],
+    /// (Word that a user may write as the name of a table, correct name of that table.)
+    pub table_synonyms: &'a [(&'a str, &'a str)],
 }
 
 impl<'a> Written<'a> {
@@ -31,38 +32,40 @@ impl<'a> Written<'a> {
     pub fn parse(&self) -> Result<DeTable<'a>, Error> {
         DeTable::parse(self.text)
             .map(Spanned::into_inner)
-            .map_err(|error| self.no_toml(error.message(), error.span().unwrap_or(0..0)))
+            .map_err(|error| self.syntax_error(error.message(), error.span().unwrap_or(0..0)))
     }
 
-    /// The error of a text that is no TOML, with what to write instead.
-    fn no_toml(&self, why: &str, span: Range<usize>) -> Error {
-        if let Some(open) = self.unclosed(span.start) {
-            return open;
+    /// Error for a text that is no TOML, with the correct line where one is found. `why` is the parser's
+    /// message, `span` are the bytes that it reports.
+    fn syntax_error(&self, why: &str, span: Range<usize>) -> Error {
+        if let Some(error) = self.unclosed_list(span.start) {
+            return error;
         }
         let line = line_at(self.text, span.start);
         let head = with_number(line).unwrap_or(uncommented(line));
-        let told = |found: &str, expected: &str, hint: String| {
+        let error = |found: &str, expected: &str, hint: String| {
             Error::usage(found, expected).excerpt(self.text, span.clone()).hint(hint)
         };
         let before = &self.text[..start_of_line(self.text, span.start)];
-        let stands_twice = is_toml(line) && !line.is_empty() && is_toml(before);
-        if stands_twice {
-            told(line, "every key once in a table", "remove this line, or the other one".to_owned())
-        } else if let Some(meant) = head_of_tables(head) {
-            told(line, "two brackets on both sides", format!("write {meant}"))
+        // The line is correct by itself, and so is the text before it: together they define a key twice.
+        let is_repeated = is_toml(line) && !line.is_empty() && is_toml(before);
+        if is_repeated {
+            error(line, "every key once in a table", "remove this line, or the other one".to_owned())
+        } else if let Some(repaired) = head_of_tables(head) {
+            error(line, "two brackets on both sides", format!("write {repaired}"))
         } else if let Some(key) = head.strip_suffix('=') {
             let key = key.trim_end();
-            told(&format!("{key} has no value"), "", format!("put # in front of it: # {key} ="))
-        } else if let Some((expected, meant)) = respelt(head) {
-            told(head, &expected, format!("write {meant}"))
+            error(&format!("{key} has no value"), "", format!("put # in front of it: # {key} ="))
+        } else if let Some((expected, repaired)) = repaired_line(head) {
+            error(head, &expected, format!("write {repaired}"))
         } else {
-            told(why, "", String::new())
+            error(why, "", String::new())
         }
     }
 
-    /// For a list without its closing bracket, which the parser misses only further down, at `at`: the error
-    /// at the line that opens the list.
-    fn unclosed(&self, at: usize) -> Option<Error> {
+    /// Error for a list that is never closed, shown at the line that opens it. The parser reports it at a
+    /// later byte, `at`. `None` if no list is open.
+    fn unclosed_list(&self, at: usize) -> Option<Error> {
         let begin = start_of_line(self.text, at.min(self.text.len()));
         let (above, line) = (self.text[..begin].trim_end(), line_at(self.text, begin));
         if is_toml(above) || !(line.is_empty() || is_toml(uncommented(line))) {
@@ -71,11 +74,12 @@ impl<'a> Written<'a> {
         let starts = above.rmatch_indices('\n').map(|(end, _)| end + 1).chain([0]);
         let open = starts.into_iter().find(|start| is_toml(&self.text[..*start]))?;
         let head = uncommented(line_at(self.text, open));
-        let meant = if start_of_line(above, above.len()) == open { respelt(head) } else { None };
+        let has_one_line = start_of_line(above, above.len()) == open;
+        let repaired = if has_one_line { repaired_line(head) } else { None };
         let closed =
             || is_toml(&format!("{above}\n]")).then(|| ("a bracket that closes the list".to_owned(), "]"));
-        let (expected, hint) = match meant {
-            Some((expected, meant)) => (expected, format!("write {meant}")),
+        let (expected, hint) = match repaired {
+            Some((expected, repaired)) => (expected, format!("write {repaired}")),
             None => closed().map(|(expected, mark)| {
                 (expected, format!("write {mark} in a line of its own before {line}"))
             })?,
@@ -83,118 +87,124 @@ impl<'a> Written<'a> {
         Some(Error::usage(head, expected).excerpt(self.text, open..open + head.len()).hint(hint))
     }
 
-    /// Reads a table, at the bytes `span`, as a type.
+    /// Reads a table, which fills the bytes `span` of the text, as the type `T`.
     ///
     /// # Errors
-    /// With the line of an unknown or missing key or of a value of the wrong kind, and what to write instead;
-    /// that has been tried, so the type accepts it.
+    /// With the line of an unknown or missing key or of a value of the wrong kind, and its correction. A
+    /// value is suggested only if the table reads without a fault at that place once it is put in.
     pub fn read<T: DeserializeOwned>(&self, table: &DeTable<'a>, span: Range<usize>) -> Result<T, Error> {
         T::deserialize(Node::table(table.clone(), &span)).map_err(|fault| {
             let at = fault.span.clone().unwrap_or_default();
-            let takes = |meant: &str| {
-                let text = format!("x = {meant}");
+            let accepts = |replacement: &str| {
+                let text = format!("x = {replacement}");
                 let mut table: DeTable<'_> = table.clone();
                 let parsed = DeTable::parse(&text).ok().and_then(|parsed| parsed.into_inner().remove("x"));
                 let changed = parsed.and_then(|value| put(&mut table, &at, value.into_inner()));
                 let again = T::deserialize(Node::table(table, &span)).err().and_then(|fault| fault.span);
                 changed.is_some() && again.is_none_or(|span| span.start > at.end || span.end < at.start)
             };
-            self.told(fault.what, at.clone(), takes)
+            self.error_for(fault.what, at.clone(), accepts)
         })
     }
 
-    /// The error for a fault at these bytes.
-    fn told(&self, what: What, at: Range<usize>, takes: impl Fn(&str) -> bool) -> Error {
-        let line = line_at(self.text, at.start);
-        let (stated, head) = (&self.text[at.clone()], uncommented(line));
-        let told = |found: &str, expected: &str, hint: String| {
-            Error::usage(found, expected).excerpt(self.text, at.clone()).hint(hint)
+    /// Error for a fault at the bytes `span`. `accepts` tries a replacement text in place of the value.
+    fn error_for(&self, fault: FaultKind, span: Range<usize>, accepts: impl Fn(&str) -> bool) -> Error {
+        let line = line_at(self.text, span.start);
+        let (stated, head) = (&self.text[span.clone()], uncommented(line));
+        let error = |found: &str, expected: &str, hint: String| {
+            Error::usage(found, expected).excerpt(self.text, span.clone()).hint(hint)
         };
-        // The line with another text at this place.
-        let with = |meant: &str| {
-            let before = self.text[start_of_line(self.text, at.start)..at.start].trim_start();
-            let behind = self.text[at.end..].lines().next().map_or("", uncommented);
-            format!("write {before}{meant}{behind}")
+        let hint_with = |replacement: &str| {
+            let before = self.text[start_of_line(self.text, span.start)..span.start].trim_start();
+            let behind = self.text[span.end..].lines().next().map_or("", uncommented);
+            format!("write {before}{replacement}{behind}")
         };
-        match what {
-            What::UnknownKey(key, known) => self.unknown_key(&key, known, line, told),
-            What::UnknownName(name, kind) => {
+        match fault {
+            FaultKind::UnknownKey(key, known) => self.unknown_key(&key, known, line, error),
+            FaultKind::UnknownName(name, kind) => {
                 let near = kind.meant("", &name).map(|near| format!("did you mean `{near}`?"));
-                told(&format!("the name `{name}`"), &kind.words("\""), near.unwrap_or_default())
+                error(&format!("the name `{name}`"), &kind.words("\""), near.unwrap_or_default())
             }
-            What::MissingKey(key) => {
-                told(&format!("the key `{key}` is missing"), "", format!("add {key} = …"))
+            FaultKind::MissingKey(key) => {
+                error(&format!("the key `{key}` is missing"), "", format!("add {key} = …"))
             }
-            What::Twice(key) => {
-                told(&format!("{key} stands twice"), "every key once in a table", "remove one".to_owned())
+            FaultKind::Twice(key) => {
+                error(&format!("{key} stands twice"), "every key once in a table", "remove one".to_owned())
             }
-            What::Value(Kind::Table) if line.starts_with("[[") => {
+            FaultKind::WrongValue(Kind::Table) if line.starts_with("[[") => {
                 let single = head.replace("[[", "[").replace("]]", "]");
-                told(
+                error(
                     &format!("{head} begins one table of several"),
                     "a single table",
                     format!("write {single}"),
                 )
             }
-            What::Value(_) if stated.contains('\n') => told(line, "", String::new()),
-            What::Value(kind) => {
+            FaultKind::WrongValue(_) if stated.contains('\n') => error(line, "", String::new()),
+            FaultKind::WrongValue(kind) => {
                 let key = head.split_once('=').map_or("", |(key, _)| key.trim());
-                let meant = values(key, stated, Some(&kind)).into_iter().find(|(_, meant)| takes(meant));
-                let (expected, hint) = meant.map(|(expected, meant)| (expected, with(&meant))).unzip();
+                let repair =
+                    repairs(key, stated, Some(&kind)).into_iter().find(|(_, repaired)| accepts(repaired));
+                let (expected, hint) =
+                    repair.map(|(expected, repaired)| (expected, hint_with(&repaired))).unzip();
                 let huge =
                     matches!(kind, Kind::Whole(..)) && stated.parse::<f64>().is_ok_and(|n| n.abs() > 1e15);
-                let none = || if huge { format!("put # in front of it: # {head}") } else { String::new() };
+                let unrepaired =
+                    || if huge { format!("put # in front of it: # {head}") } else { String::new() };
                 let expected = expected.unwrap_or_else(|| kind.words("\""));
-                told(head, &expected, hint.unwrap_or_else(none))
+                error(head, &expected, hint.unwrap_or_else(unrepaired))
             }
-            What::Other(words) => told(&words, "", String::new()),
+            FaultKind::Other(words) => error(&words, "", String::new()),
         }
     }
 
+    /// Error for an unknown key or table, with the nearest of the `known` ones, else with all of them. `line`
+    /// contains the key; `error` builds an error from (found, expected, hint).
     fn unknown_key(
         &self,
         key: &str,
         known: &[&str],
         line: &str,
-        told: impl Fn(&str, &str, String) -> Error,
+        error: impl Fn(&str, &str, String) -> Error,
     ) -> Error {
-        let known = [self.beside, known].concat();
-        let (what, meant) = if line.starts_with('[') { ("table", self.meant) } else { ("key", &[][..]) };
-        let called = meant.iter().find(|(word, _)| *word == key);
-        let called = called.map(|(_, table)| format!("write [[{table}]]"));
+        let known = [self.extra_keys, known].concat();
+        let (what, synonyms) =
+            if line.starts_with('[') { ("table", self.table_synonyms) } else { ("key", &[][..]) };
+        let synonym = synonyms.iter().find(|(word, _)| *word == key);
+        let synonym = synonym.map(|(_, table)| format!("write [[{table}]]"));
         let near = || nearest(key, known.iter().copied()).map(|near| format!("did you mean `{near}`?"));
         let all = || format!("{what}s known here: {}", known.join(", "));
-        told(&format!("unknown {what} `{key}`"), "", called.or_else(near).unwrap_or_else(all))
+        error(&format!("unknown {what} `{key}`"), "", synonym.or_else(near).unwrap_or_else(all))
     }
 }
 
-/// Puts another value at a place; `None` where no value is there.
+/// Replaces the value at the bytes `at`, in this table or in one nested in it; `None` if there is none.
 fn put<'i>(table: &mut DeTable<'i>, at: &Range<usize>, value: DeValue<'i>) -> Option<()> {
-    let mut left: Vec<&mut Spanned<DeValue<'i>>> = table.iter_mut().map(|(_, value)| value).collect();
-    while let Some(one) = left.pop() {
+    let mut unsearched: Vec<&mut Spanned<DeValue<'i>>> = table.iter_mut().map(|(_, value)| value).collect();
+    while let Some(one) = unsearched.pop() {
         if one.span() == *at {
             *one.get_mut() = value;
             return Some(());
         }
         match one.get_mut() {
-            DeValue::Array(all) => left.extend(all.iter_mut()),
-            DeValue::Table(rows) => left.extend(rows.iter_mut().map(|(_, value)| value)),
+            DeValue::Array(all) => unsearched.extend(all.iter_mut()),
+            DeValue::Table(rows) => unsearched.extend(rows.iter_mut().map(|(_, value)| value)),
             _ => {}
         }
     }
     None
 }
 
-/// Values that may be meant by a text, in the order in which they are tried, each with the kind that was
-/// expected. For text that is no TOML the kind is not known.
-fn values(key: &str, stated: &str, kind: Option<&Kind>) -> Vec<(String, String)> {
+/// Possible corrections of a mistyped value, likeliest first: (what the message says was expected, the
+/// corrected text). `stated` is the value as typed. `kind` is the expected kind; it is unknown if the text
+/// is no TOML.
+fn repairs(key: &str, stated: &str, kind: Option<&Kind>) -> Vec<(String, String)> {
     let bare = stated.trim_matches(['"', '\'', '“', '”']).trim();
     let word = bare.to_lowercase();
     let is = |words: [&str; 4]| words.contains(&&*word);
     let is_name = bare.starts_with(char::is_alphabetic);
     let number = meant_number(key, bare);
     let of_number = match &number {
-        Some(meant) if bare.contains(',') && !meant.contains('.') => "digits without commas between them",
+        Some(number) if bare.contains(',') && !number.contains('.') => "digits without commas between them",
         _ if bare.contains(',') => "a number with a decimal point",
         _ if bare.starts_with('.') => "a digit before the point",
         _ if bare.ends_with('.') => "a digit behind the point",
@@ -206,7 +216,8 @@ fn values(key: &str, stated: &str, kind: Option<&Kind>) -> Vec<(String, String)>
     let closed = |inner: String| format!("[{inner}]");
     let between_blanks = |inner: &&str| !inner.contains([',', ';', '"', '\'']) && inner.contains(' ');
     let by_blanks = |inner: &str| closed(inner.split_whitespace().collect::<Vec<_>>().join(", "));
-    let none = kind.is_none() && key.ends_with("_pass") && is(["no", "off", "none", "false"]);
+    // A low-pass or high-pass that is switched off.
+    let no_filter = kind.is_none() && key.ends_with("_pass") && is(["no", "off", "none", "false"]);
     let two = bare.split_once([':', '-', ';']).map(|(low, high)| format!("[{low}, {high}]"));
     let first = if let Some(Kind::Names(names)) = kind { names.first() } else { None };
     let quoted = |text: String| format!("\"{text}\"");
@@ -218,7 +229,7 @@ fn values(key: &str, stated: &str, kind: Option<&Kind>) -> Vec<(String, String)>
         ("no mark behind a value", stated.strip_suffix([',', ';']).map(str::to_owned)),
         ("a whole number", kind.filter(|_| whole).and_then(|kind| kind.meant(key, bare))),
         (of_number, number.clone()),
-        (CORNER, none.then(|| quoted("none".to_owned()))),
+        (CORNER, no_filter.then(|| quoted("none".to_owned()))),
         ("true or false", is(["yes", "on", "1", "true"]).then(|| "true".to_owned())),
         ("true or false", is(["no", "off", "0", "false"]).then(|| "false".to_owned())),
         (&words, is(["no", "off", "0", "false"]).then(|| quoted("none".to_owned()))),
@@ -231,27 +242,27 @@ fn values(key: &str, stated: &str, kind: Option<&Kind>) -> Vec<(String, String)>
         (&words, matches!(kind, Some(Kind::List)).then(|| format!("[{stated}]"))),
         (&words, first.map(|first| quoted((*first).to_owned()))),
     ];
-    all.into_iter().filter_map(|(expected, meant)| Some((expected.to_owned(), meant?))).collect()
+    all.into_iter().filter_map(|(expected, repaired)| Some((expected.to_owned(), repaired?))).collect()
 }
 
-/// Value of a key for a low-pass.
+/// Expected value of a key for the corner frequency of a filter, such as `low_pass`.
 const CORNER: &str = "a corner in Hz, or \"none\"";
 
-/// The line that may be meant by one that is no TOML, with what was expected.
-fn respelt(line: &str) -> Option<(String, String)> {
+/// The likeliest correction of a line that is no TOML: (what was expected, the corrected line).
+fn repaired_line(line: &str) -> Option<(String, String)> {
     let at = line.find(['=', ':'])?;
-    let (key, stated) = (line[..at].trim(), line[at + 1..].trim());
-    let own = key.replace(' ', "_");
-    let mut all = values(key, stated, None);
-    if own != key || line[at..].starts_with(':') {
-        let expected = "an equals sign behind a key of one word";
-        for (known, _) in &mut all {
-            expected.clone_into(known);
+    let (typed_key, stated) = (line[..at].trim(), line[at + 1..].trim());
+    let key = typed_key.replace(' ', "_");
+    let mut all = repairs(typed_key, stated, None);
+    if key != typed_key || line[at..].starts_with(':') {
+        let expected_here = "an equals sign behind a key of one word";
+        for (expected, _) in &mut all {
+            expected_here.clone_into(expected);
         }
-        all.insert(0, (expected.to_owned(), stated.to_owned()));
+        all.insert(0, (expected_here.to_owned(), stated.to_owned()));
     }
-    let lines = all.into_iter().map(|(expected, meant)| (expected, format!("{own} = {meant}")));
-    lines.into_iter().find(|(_, meant)| is_toml(meant))
+    let lines = all.into_iter().map(|(expected, repaired)| (expected, format!("{key} = {repaired}")));
+    lines.into_iter().find(|(_, repaired)| is_toml(repaired))
 }
 
 fn is_toml(text: &str) -> bool {
@@ -273,7 +284,8 @@ fn uncommented(line: &str) -> &str {
     line.split(is_comment).next().unwrap_or_default().trim_end()
 }
 
-/// A line whose value is a word with a number after it, `name = Run #1`: the number is no comment.
+/// The whole line if its value is text that ends in `#` and a number, `name = Run #1`: the number belongs to
+/// the text and is no comment.
 fn with_number(line: &str) -> Option<&str> {
     let (before, number) = line.rsplit_once(" #")?;
     let (_, word) = before.split_once('=')?;

@@ -182,10 +182,10 @@ impl File {
         self.findings
     }
 
-    /// What a dataset holds; with `ends`, of numbers only the extremes where these are enough. A dataset that
+    /// Content of a dataset. With `summary`, numbers that do not rise are only summarised. A dataset that
     /// cannot be read gives a finding.
-    pub fn data(&mut self, name: &str, dataset: &Dataset, ends: bool) -> Option<Data> {
-        match self.held(dataset, ends) {
+    pub fn data(&mut self, name: &str, dataset: &Dataset, summary: bool) -> Option<Data> {
+        match self.content(dataset, summary) {
             Ok(Data::Other(class)) => self.pass(name, class),
             Ok(data) => {
                 let declared = dataset.num_elements().unwrap_or_default() as usize;
@@ -201,7 +201,7 @@ impl File {
         None
     }
 
-    fn held(&self, dataset: &Dataset, ends: bool) -> std::result::Result<Data, Fault> {
+    fn content(&self, dataset: &Dataset, summary: bool) -> std::result::Result<Data, Fault> {
         let header = self.open.get_or_parse_header(dataset.address())?;
         let packed = header.messages.iter().any(|message| matches!(message, HdfMessage::FilterPipeline(_)));
         let (declared, most) = (dataset.raw_byte_len()? as u64, if packed { MOST_UNPACKED } else { 1 });
@@ -232,7 +232,7 @@ impl File {
                 Ok(Data::Texts(dataset.read_strings()?))
             }
             kind if number(kind).is_some() && described(&layout, &[kind])[0] && dataset.ndim() > 0 => {
-                Ok(Data::Numbers(by_rows(dataset, ends, |values| self.hold(values))?))
+                Ok(Data::Numbers(by_rows(dataset, summary, |values| self.hold(values))?))
             }
             kind => {
                 self.hold(declared as f64 / 4.0)?;
@@ -299,11 +299,12 @@ impl H5Type for Number {
     }
 }
 
-/// Reads the numbers of a dataset in blocks of rows: little memory is needed beside the values. With `ends`,
-/// only the extremes are kept if the first block does not rise.
+/// Reads the numbers of a dataset in blocks of rows: little memory is needed beside the values. With
+/// `summary`, only extremes and first values are kept, if the first block does not rise and no value is
+/// missing.
 fn by_rows(
     dataset: &Dataset,
-    ends: bool,
+    summary: bool,
     hold: impl Fn(f64) -> std::result::Result<(), Fault>,
 ) -> std::result::Result<Held, Fault> {
     let (n, all) = (dataset.num_elements()? as usize, dataset.shape()[0]);
@@ -322,16 +323,16 @@ fn by_rows(
     let threads = rayon::current_num_threads().clamp(1, blocks);
     hold((threads * rows * row) as f64)?;
     // Columns of a matrix are copied later: twice the room.
-    let held = if row > 1 { 2 * n } else { n } as f64;
-    if ends && blocks > 1 && !rises(&block(0)?) {
+    let room = if row > 1 { 2 * n } else { n } as f64;
+    if summary && blocks > 1 && !rises(&block(0)?) {
         let parts = (0..blocks).into_par_iter().map(|k| block(k).map(|values| Extremes::of(&values)));
         let mut whole = Extremes::NONE;
         parts.collect::<std::result::Result<Vec<_>, Fault>>()?.into_iter().for_each(|part| whole.join(&part));
         if whole.finite() {
-            return Ok(Held::Ends(whole));
+            return Ok(Held::Summary(whole));
         }
     }
-    hold(held)?;
+    hold(room)?;
     let mut values = vec![0.0; n];
     values.par_chunks_mut(rows * row).enumerate().try_for_each(|(k, part)| {
         part.copy_from_slice(&block(k)?);

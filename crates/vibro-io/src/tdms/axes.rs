@@ -57,14 +57,14 @@ impl AbscissaChannel {
         let from = if instants || epoch.is_some() { values[0] } else { 0.0 };
         let resolution = drift(values, values.iter().all(|v| f64::from(*v as f32) == *v));
         let values = values.iter().map(|v| (v - from) * factor).collect();
-        let JudgedAxis { axis, clock, found } =
+        let JudgedAxis { axis, step_relative_std, found } =
             from_values(kind, values, resolution * factor, &label, resampled);
         let findings = assumed.map(|found| found.name("column", label.as_str())).into_iter().chain(found);
         let clock = AbscissaChannel {
             name: channel.name.to_owned(),
             findings: findings.collect(),
             axis,
-            relative: clock,
+            relative: step_relative_std,
         };
         (sure || clock.axis.step().is_some()).then_some(clock)
     }

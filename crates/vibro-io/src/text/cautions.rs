@@ -72,7 +72,7 @@ impl Column {
     /// Number of rows for which each value is held, where nearly all are held as long: the sensor is slower
     /// than the rows. Coarse digits are excluded: there, most steps are as small as the smallest.
     fn held(&self) -> Option<usize> {
-        let values = self.values.opening();
+        let values = self.values.first_values();
         let runs: Vec<&[f64]> = values.chunk_by(|a, b| a == b).collect();
         let inner = runs.get(1..runs.len().saturating_sub(1)).filter(|inner| inner.len() >= FEWEST_RUNS)?;
         let mut lengths: Vec<usize> = inner.iter().map(|run| run.len()).collect();
@@ -112,7 +112,7 @@ impl Column {
 /// they are single rows between rows that differ: a motion at rest or coarse digits repeat many in a row.
 fn repeats(table: &[Column]) -> Option<(usize, usize)> {
     let measured = table.iter().filter(|column| !column.rises());
-    let columns: Vec<&[f64]> = measured.map(|column| column.values.opening()).collect();
+    let columns: Vec<&[f64]> = measured.map(|column| column.values.first_values()).collect();
     let n = columns.iter().map(|values| values.len()).min().filter(|n| columns.len() > 1 && *n > 100)?;
     let again = |i: usize| columns.iter().all(|values| values[i] == values[i - 1]);
     let all = (1..n).filter(|i| again(*i)).count();

@@ -28,7 +28,7 @@ impl Column {
     }
 
     pub fn rises(&self) -> bool {
-        !matches!(self.values, Held::Ends(_)) && rises(&self.reals())
+        !matches!(self.values, Held::Summary(_)) && rises(&self.reals())
     }
 
     /// Whether it rises in even steps, as a clock or counter does, and has no unit of another quantity.
@@ -72,7 +72,7 @@ impl Column {
         let values = self.reals();
         let first = values.first().copied().unwrap_or(0.0);
         self.name.may_count()
-            && !matches!(self.values, Held::Ends(_))
+            && !matches!(self.values, Held::Summary(_))
             && values.iter().enumerate().all(|(i, v)| *v == first + i as f64)
     }
 
@@ -83,7 +83,7 @@ impl Column {
         let steps = || values.windows(2).map(|pair| pair[1] - pair[0]);
         let ones = steps().filter(|step| *step == 1.0).count();
         let rises = steps().all(|step| step >= 1.0 && step.fract() == 0.0);
-        let counts = self.name.may_count() && !matches!(self.values, Held::Ends(_)) && rises;
+        let counts = self.name.may_count() && !matches!(self.values, Held::Summary(_)) && rises;
         let first = steps().position(|step| step > 1.0).filter(|_| counts)?;
         (10 * ones >= 9 * (values.len() - 1)).then(|| [values[first], values[first + 1]])
     }
@@ -91,7 +91,7 @@ impl Column {
     /// First and another value of a column that numbers the channel or the sensor of each row: whole numbers
     /// in a fixed cycle, or a few repeated ones in a column named so.
     pub fn numbers_channels(&self) -> Option<[f64; 2]> {
-        let values = self.values.opening();
+        let values = self.values.first_values();
         let first = *values.first().filter(|_| self.sparse.is_none() && self.name.unit.is_none())?;
         let turn = values.iter().take(TURNS + 1).skip(1).position(|v| *v == first)? + 1;
         let mut known: Vec<f64> = Vec::new();

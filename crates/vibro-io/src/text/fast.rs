@@ -121,7 +121,7 @@ fn columns(source: &Source, shape: &RowShape, end: u64, kept: &[bool]) -> Result
     let seen: Vec<Lane> = seen.into_iter().reduce(Lane::joined).unwrap_or_default();
     let mut seen = seen.into_iter();
     let held = columns.into_iter().map(|values| match seen.next() {
-        Some(lane) if lane.falls && !lane.kept => Held::Ends(lane.ends),
+        Some(lane) if lane.falls && !lane.kept => Held::Summary(lane.ends),
         _ => Held::Values(Values::Real(values)),
     });
     Ok(Some(held.collect()))

@@ -311,7 +311,8 @@ impl RecordContext<'_> {
         }
         let head = if kind == AxisKind::Frequency { "frequency (kHz)" } else { "time (ms)" };
         let resampled = self.options.resample.is_some();
-        let JudgedAxis { axis, clock, found } = from_values(kind, values, own * factor, &label, resampled);
+        let JudgedAxis { axis, step_relative_std: clock, found } =
+            from_values(kind, values, own * factor, &label, resampled);
         let assumed = assumed.map(|found| found.name("column", label.as_str()));
         let assumed =
             assumed.map(

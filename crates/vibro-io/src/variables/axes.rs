@@ -198,7 +198,7 @@ impl<'a> Axes<'a> {
             // Seconds since 1970 leave too few digits for their steps.
             let first = if (vector[0] * factor).abs() >= FAR { vector[0] } else { from };
             let vector = vector.iter().map(|v| (v - first) * factor).collect();
-            let JudgedAxis { mut axis, clock, found } =
+            let JudgedAxis { mut axis, step_relative_std: clock, found } =
                 from_values(kind, vector, drift, &label, options.resample.is_some());
             match &mut axis.grid {
                 Grid::Even { start, .. } => *start += (first - from) * factor,

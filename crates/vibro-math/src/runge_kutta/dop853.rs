@@ -1,12 +1,12 @@
-//! Order 8(5,3) of Hairer, Nørsett and Wanner, with dense output of order 7.
+//! Runge–Kutta scheme of order 8(5,3) of Hairer, Nørsett and Wanner, with dense output of order 7.
 
 use super::{Scheme, TERMS, combine};
 
-/// Twelve stages, the derivative at the end, and three more stages for the dense output.
+/// Twelve stages, the derivative at the end of the step, and three more stages for the dense output.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Dop853;
 
-/// Weights of order 8 less those of order 5.
+/// Weights of the error estimate of order 5: those of order 8 minus those of order 5.
 #[rustfmt::skip]
 pub(super) const ERROR5: [f64; 12] = [
     0.013_120_044_994_194_88, 0.0, 0.0, 0.0, 0.0, -1.225_156_446_376_204_4, -0.495_758_949_657_250_2,
@@ -14,11 +14,11 @@ pub(super) const ERROR5: [f64; 12] = [
     -0.022_355_307_863_886_294,
 ];
 
-/// Nonzero weights of order 3, with their stages.
+/// (Stage, its weight) for the nonzero weights of the scheme of order 3.
 pub(super) const THIRD: [(usize, f64); 3] =
     [(0, 0.244_094_488_188_976_4), (8, 0.733_846_688_281_611_9), (11, 0.022_058_823_529_411_766)];
 
-/// Weights of all stages in the last four coefficients of the dense output.
+/// Weights of all stages in the coefficients f₄ to f₇ of the dense output.
 #[rustfmt::skip]
 pub(super) const DENSE: [[f64; 16]; 4] = [
     [
@@ -48,6 +48,7 @@ pub(super) const DENSE: [[f64; 16]; 4] = [
 ];
 
 impl Scheme for Dop853 {
+    // Butcher tableau: the times of the stages, and for each stage the weights of the earlier ones.
     #[rustfmt::skip]
     const NODES: &'static [f64] = &[
         0.0, 0.052_600_151_958_767_73, 0.078_900_227_938_151_6, 0.118_350_341_907_227_4,
@@ -106,12 +107,12 @@ impl Scheme for Dop853 {
             2.947_514_789_152_772_4, -9.150_958_472_179_87,
         ],
     ];
-    const STEP: usize = 12;
-    const ROOT: f64 = 0.125;
+    const END_STAGE: usize = 12;
+    const STEP_SIZE_EXPONENT: f64 = 1.0 / 8.0;
 
     fn error<const N: usize>(rates: &[[f64; N]], step: f64, tolerated: &[f64; N]) -> f64 {
         let fifth = combine(rates, &ERROR5);
-        let mut third = combine(rates, Self::ROWS[11]);
+        let mut third = combine(rates, Self::ROWS[Self::END_STAGE - 1]);
         for (stage, weight) in THIRD {
             for (third, rate) in third.iter_mut().zip(&rates[stage]) {
                 *third -= weight * rate;
@@ -146,14 +147,16 @@ impl Scheme for Dop853 {
                 step * high[2][i],
                 step * high[3][i],
             ];
-            // y = f₀ + p(f₁ + (1 − p)(f₂ + p(f₃ + (1 − p)(…)))) in powers of p.
+            // Expands y = f₀ + p(f₁ + (1 − p)(f₂ + p(f₃ + (1 − p)(…)))) to powers of p, the time since the
+            // start of the step divided by its duration.
             let mut sum = [0.0; TERMS];
-            for (place, f) in f.iter().enumerate().rev() {
-                let turned = place % 2 == 1;
+            for (index, f) in f.iter().enumerate().rev() {
+                // After an odd coefficient follows the factor 1 − p, after an even one p.
+                let by_one_minus_p = index % 2 == 1;
                 let mut next = [0.0; TERMS];
                 for k in 0..TERMS - 1 {
-                    next[k + 1] = if turned { -sum[k] } else { sum[k] };
-                    if turned {
+                    next[k + 1] = if by_one_minus_p { -sum[k] } else { sum[k] };
+                    if by_one_minus_p {
                         next[k] += sum[k];
                     }
                 }

@@ -1,17 +1,18 @@
-//! Order 5(4) of Dormand and Prince.
+//! Runge–Kutta scheme of order 5(4) of Dormand and Prince.
 
 use super::{Scheme, TERMS, combine};
 
-/// Six stages and the derivative at the end, which is the first of the next step.
+/// Six stages and the derivative at the end of the step, which is the first stage of the next step: first
+/// same as last (FSAL).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct DormandPrince;
 
-/// Weights of order 5 less those of order 4.
+/// Weights of the error estimate: those of order 5 minus those of order 4.
 pub(super) const ERROR: [f64; 7] =
     [71.0 / 57600.0, 0.0, -71.0 / 16695.0, 71.0 / 1920.0, -17253.0 / 339_200.0, 22.0 / 525.0, -1.0 / 40.0];
 
-/// Weight of each stage in the dense output, for powers 1 to 4 of the time over the duration of the step
-/// (Shampine 1986).
+/// Weights of each stage in the dense output, for the powers 1 to 4 of the time since the start of the step
+/// divided by its duration (Shampine 1986).
 pub(super) const DENSE: [[f64; 4]; 7] = [
     [
         1.0,
@@ -43,6 +44,7 @@ pub(super) const DENSE: [[f64; 4]; 7] = [
 ];
 
 impl Scheme for DormandPrince {
+    // Butcher tableau: the times of the stages, and for each stage the weights of the earlier ones.
     const NODES: &'static [f64] = &[0.0, 0.2, 0.3, 0.8, 8.0 / 9.0, 1.0, 1.0];
     const ROWS: &'static [&'static [f64]] = &[
         &[0.2],
@@ -52,9 +54,10 @@ impl Scheme for DormandPrince {
         &[9017.0 / 3168.0, -355.0 / 33.0, 46732.0 / 5247.0, 49.0 / 176.0, -5103.0 / 18656.0],
         &[35.0 / 384.0, 0.0, 500.0 / 1113.0, 125.0 / 192.0, -2187.0 / 6784.0, 11.0 / 84.0],
     ];
-    const STEP: usize = 6;
-    const ROOT: f64 = 0.2;
+    const END_STAGE: usize = 6;
+    const STEP_SIZE_EXPONENT: f64 = 1.0 / 5.0;
 
+    // Root mean square over the components.
     fn error<const N: usize>(rates: &[[f64; N]], step: f64, tolerated: &[f64; N]) -> f64 {
         let error = combine(rates, &ERROR);
         error.iter().zip(tolerated).map(|(e, t)| (step * e / t).powi(2)).sum::<f64>().sqrt()

@@ -67,7 +67,7 @@ fn dense_weights<S: Scheme>(part: f64) -> Vec<f64> {
         .map(|stage| {
             let mut rates = [[0.0; 1]; STAGES];
             rates[stage][0] = 1.0;
-            let end = S::ROWS[S::STEP - 1].get(stage).copied().unwrap_or(0.0);
+            let end = S::ROWS[S::END_STAGE - 1].get(stage).copied().unwrap_or(0.0);
             let terms = S::dense(&rates, 1.0, &[0.0], &[end]);
             terms.iter().rev().fold(0.0, |sum, term| sum * part + term[0])
         })
@@ -81,7 +81,7 @@ fn check<S: Scheme>(order: usize, dense: usize) {
         let sum: f64 = row.iter().sum();
         assert!((sum - S::NODES[i + 1]).abs() < tolerance, "row {i}");
     }
-    let step = defects::<S>(S::ROWS[S::STEP - 1], order + 1, |_| 1.0);
+    let step = defects::<S>(S::ROWS[S::END_STAGE - 1], order + 1, |_| 1.0);
     assert!(step[..=order].iter().all(|d| *d < tolerance), "{step:?}");
     assert!(step[order + 1] > 1e-7, "the order is no higher: {step:?}");
     for part in [0.1, 0.37, 0.5, 0.81, 1.0] {

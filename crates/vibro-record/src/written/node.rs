@@ -12,28 +12,31 @@ use toml::de::{DeTable, DeValue};
 /// An error in a TOML value, and its place.
 #[derive(Debug)]
 pub struct Fault {
-    pub what: What,
+    pub what: FaultKind,
     /// Bytes in the text, where known.
     pub span: Option<Range<usize>>,
 }
 
+/// Kinds of errors in a TOML value.
 #[derive(Debug)]
-pub enum What {
-    /// An unknown key, with the known ones.
+pub enum FaultKind {
+    /// An unknown key, and the known keys of the type.
     UnknownKey(String, &'static [&'static str]),
-    /// A key that should be the name of a quantity but is not a known one.
+    /// A key that must be one of the known names (as the name of a quantity) and is not; the kind describes
+    /// the known names.
     UnknownName(String, Kind),
+    /// A key that is required and missing.
     MissingKey(&'static str),
-    /// A key that is given under two of its names.
+    /// A key that occurs twice, under two of its names.
     Twice(&'static str),
-    /// A value of another kind.
-    Value(Kind),
+    /// A value that is not of this kind.
+    WrongValue(Kind),
     /// Any other error, in the words of the type.
     Other(String),
 }
 
-impl From<What> for Fault {
-    fn from(what: What) -> Fault {
+impl From<FaultKind> for Fault {
+    fn from(what: FaultKind) -> Fault {
         Fault { what, span: None }
     }
 }
@@ -48,11 +51,11 @@ impl std::error::Error for Fault {}
 
 impl de::Error for Fault {
     fn custom<T: fmt::Display>(words: T) -> Fault {
-        What::Other(words.to_string()).into()
+        FaultKind::Other(words.to_string()).into()
     }
 
     fn invalid_type(_: Unexpected<'_>, expected: &dyn Expected) -> Fault {
-        What::Value(Kind::Other(expected.to_string())).into()
+        FaultKind::WrongValue(Kind::Other(expected.to_string())).into()
     }
 
     fn invalid_value(found: Unexpected<'_>, expected: &dyn Expected) -> Fault {
@@ -64,19 +67,19 @@ impl de::Error for Fault {
     }
 
     fn unknown_variant(_: &str, names: &'static [&'static str]) -> Fault {
-        What::Value(Kind::Names(names)).into()
+        FaultKind::WrongValue(Kind::Names(names)).into()
     }
 
     fn unknown_field(key: &str, known: &'static [&'static str]) -> Fault {
-        What::UnknownKey(key.to_owned(), known).into()
+        FaultKind::UnknownKey(key.to_owned(), known).into()
     }
 
     fn missing_field(key: &'static str) -> Fault {
-        What::MissingKey(key).into()
+        FaultKind::MissingKey(key).into()
     }
 
     fn duplicate_field(key: &'static str) -> Fault {
-        What::Twice(key).into()
+        FaultKind::Twice(key).into()
     }
 }
 
@@ -97,7 +100,8 @@ impl<'de> Node<'de> {
         Node { value: DeValue::Table(rows), span: span.clone(), is_key: false }
     }
 
-    /// Reads the node as the expected type. An error of the value itself gets its place and this kind.
+    /// Reads the node with a visitor of the expected type. An error without a place is one of this node
+    /// itself, not of a value nested in it: it gets the place of the node, and `kind` as the expected kind.
     fn read<V: Visitor<'de>>(self, kind: Option<Kind>, visitor: V) -> Result<V::Value, Fault> {
         let span = self.span.clone();
         let name = self.value.as_str().filter(|_| self.is_key).map(str::to_owned);
@@ -105,10 +109,10 @@ impl<'de> Node<'de> {
             if fault.span.is_none() {
                 fault.span = Some(span);
                 fault.what = match (fault.what, kind, name) {
-                    (What::Value(of_type), kind, Some(name)) => {
-                        What::UnknownName(name, kind.unwrap_or(of_type))
+                    (FaultKind::WrongValue(of_type), kind, Some(name)) => {
+                        FaultKind::UnknownName(name, kind.unwrap_or(of_type))
                     }
-                    (What::Value(_), Some(kind), None) => What::Value(kind),
+                    (FaultKind::WrongValue(_), Some(kind), None) => FaultKind::WrongValue(kind),
                     (what, ..) => what,
                 };
             }
@@ -121,7 +125,7 @@ impl<'de> Node<'de> {
             DeValue::String(text) => visitor.visit_str(&text),
             DeValue::Integer(number) => match i64::from_str_radix(number.as_str(), number.radix()) {
                 Ok(number) => visitor.visit_i64(number),
-                // Too large for a whole number; read as a number it fails the range of its key.
+                // Too large for 64 bits: read as a float, it fails the range check of its key.
                 Err(_) => visitor.visit_f64(number.as_str().parse().unwrap_or(f64::INFINITY)),
             },
             DeValue::Float(number) => match number.as_str().parse() {
@@ -161,8 +165,8 @@ impl<'de> IntoDeserializer<'de, Fault> for Node<'de> {
     }
 }
 
-/// Methods that expect a value of one kind.
-macro_rules! asks {
+/// Deserializer methods, each for a value of one kind.
+macro_rules! deserialize_kinds {
     ($($name:ident: $kind:expr),*) => {
         $(fn $name<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Fault> {
             self.read(Some($kind), visitor)
@@ -173,7 +177,7 @@ macro_rules! asks {
 impl<'de> Deserializer<'de> for Node<'de> {
     type Error = Fault;
 
-    asks! {
+    deserialize_kinds! {
         deserialize_f32: Kind::Number, deserialize_f64: Kind::Number,
         deserialize_i8: Kind::Whole(i8::MIN.into(), i8::MAX.into()),
         deserialize_i16: Kind::Whole(i16::MIN.into(), i16::MAX.into()),
@@ -220,9 +224,9 @@ impl<'de> Deserializer<'de> for Node<'de> {
 
     fn deserialize_map<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Fault> {
         match self.value {
-            // A list would be accepted as the fields of a struct in their order.
+            // Refuses a list: serde would read its values as the fields of a struct in their order.
             DeValue::Table(_) => self.read(Some(Kind::Table), visitor),
-            _ => Err(Fault { what: What::Value(Kind::Table), span: Some(self.span) }),
+            _ => Err(Fault { what: FaultKind::WrongValue(Kind::Table), span: Some(self.span) }),
         }
     }
 
@@ -261,13 +265,13 @@ impl<'de> Deserializer<'de> for Node<'de> {
     }
 }
 
-/// A value by its name.
+/// Reads a name as the value of an enumeration.
 ///
 /// # Errors
-/// The names that are known.
+/// With the names that are known, if this is none of them.
 pub fn named<T: DeserializeOwned>(name: &str) -> Result<T, Kind> {
     T::deserialize(StrDeserializer::<Fault>::new(name)).map_err(|fault| match fault.what {
-        What::Value(kind) => kind,
+        FaultKind::WrongValue(kind) => kind,
         other => Kind::Other(format!("{other:?}")),
     })
 }
