@@ -392,6 +392,7 @@ fn cannot_be_name(name: &str, unit: &str) -> bool {
 
 #[cfg(test)]
 mod tests {
+    use super::super::unit_words::is_unit_row;
     use super::*;
 
     fn split(text: &str) -> (String, Option<String>) {
