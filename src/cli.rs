@@ -243,7 +243,7 @@ pub fn main() -> u8 {
     if let Some(limit) = typed.get_one::<Limit>("max_memory") {
         limit.state();
     }
-    if respelt::pipes() {
+    if respelt::repeats_stdin() {
         let twice = Error::usage("- stands twice", "standard input once: it is one record");
         return complain::error(&twice, Voice::Command, json);
     }

@@ -20,7 +20,7 @@ pub struct Info {
     reading: Reading,
 }
 
-/// Number of notes of a file that are printed, and characters of each.
+/// Number of notes of a file that are printed; and number of characters of each.
 const NOTES: usize = 8;
 const WIDE: usize = 90;
 
