@@ -1,5 +1,5 @@
-//! The command `vibro`: parses and checks the command line, runs the command and prints the result. Nothing in the
-//! library uses this folder.
+//! The command `vibro`: parses and checks the command line, runs the command and prints the result. Nothing
+//! in the library uses this folder.
 
 mod campaign;
 mod complain;
@@ -28,8 +28,8 @@ use clap::{Arg, ArgAction, ArgMatches, Args, Command as Typed};
 use std::any::TypeId;
 use std::path::PathBuf;
 
-/// All commands by purpose, in the order of the help. Each row states an example, without `vibro`, and what the
-/// command does. A new command is a new row.
+/// All commands by purpose, in the order of the help. Each row states an example, without `vibro`, and what
+/// the command does. A new command is a new row.
 const GROUPS: &[(&str, &[CommandRow])] = &[
     (
         "Begin with a folder of recordings",
@@ -138,7 +138,8 @@ fn rows() -> impl Iterator<Item = &'static CommandRow> {
 
 /// Arguments of a command, and the function that runs it.
 trait CommandArgs: Args {
-    /// How messages name settings: as options, or as keys for commands whose settings stand in a campaign file.
+    /// How messages name settings: as options, or as keys for commands whose settings stand in a campaign
+    /// file.
     const VOICE: Voice = Voice::Command;
 
     /// Runs the command and returns the exit code.
@@ -267,8 +268,8 @@ pub fn main() -> u8 {
     (row.run)(typed, json).unwrap_or_else(|error| complain::error(&error, row.voice, json))
 }
 
-/// Checks that each number typed after a command is in the range of its option: a single number, one in a range
-/// such as 1:2, or one in a list.
+/// Checks that each number typed after a command is in the range of its option: a single number, one in a
+/// range such as 1:2, or one in a list.
 fn numbers(typed: &ArgMatches) -> Result<()> {
     for key in typed.ids().map(clap::Id::as_str) {
         for words in typed.try_get_raw(key).ok().flatten().into_iter().flatten() {
@@ -281,9 +282,9 @@ fn numbers(typed: &ArgMatches) -> Result<()> {
 }
 
 /// Turns the fields of all keys into options, in their order. The field `field_name` becomes the option
-/// `--field-name`, unless a long name is declared. The placeholder of its value in the help is by its type, unless
-/// declared. Negative numbers are accepted here: [`numbers`] explains them better than an error about an unknown
-/// option.
+/// `--field-name`, unless a long name is declared. The placeholder of its value in the help is by its type,
+/// unless declared. Negative numbers are accepted here: [`numbers`] explains them better than an error about
+/// an unknown option.
 fn options(command: Typed) -> Typed {
     let mut order = 0;
     let option = |arg: Arg| {
@@ -314,8 +315,8 @@ fn options(command: Typed) -> Typed {
     command.args(more.into_iter().filter(|(wanted, _)| *wanted).map(|(_, arg)| arg))
 }
 
-/// Heading in the help for options of printed and written output. The heading of options for reading files is at
-/// their struct; options of an analysis have no heading and come first.
+/// Heading in the help for options of printed and written output. The heading of options for reading files is
+/// at their struct; options of an analysis have no heading and come first.
 const OUTPUT: &str = "Output";
 
 /// Options that name files to write: a command with one of these also gets `--replace`.

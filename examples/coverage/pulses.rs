@@ -46,8 +46,8 @@ enum Family {
     Other,
 }
 
-/// Contact law F = δⁿ + c δˢ δ̇ of a unit mass with the compression δ. A linear spring may be stiffer while it
-/// unloads than while it is compressed.
+/// Contact law F = δⁿ + c δˢ δ̇ of a unit mass with the compression δ. A linear spring may be stiffer while
+/// it unloads than while it is compressed.
 #[derive(Clone, Copy)]
 struct Law {
     /// Exponent n of the spring.
@@ -102,8 +102,8 @@ impl Contact {
             most = f64::max(most, next.0);
             let (before, after) = (force[force.len() - 1], law.force(next.0, next.1, most));
             if next.1 < 0.0 && (after <= 0.0 || next.0 <= 0.0) {
-                // The end of the contact is interpolated linearly between two steps: they are short against the
-                // contact.
+                // The end of the contact is interpolated linearly between two steps: they are short against
+                // the contact.
                 let part = if after < 0.0 { before / (before - after) } else { d / (d - next.0).max(1e-300) };
                 let duration = (force.len() as f64 - 1.0 + part.min(1.0)) * step;
                 return Contact { step, force, duration, restitution: -(v + part.min(1.0) * (next.1 - v)) };
@@ -177,7 +177,8 @@ impl Sensor {
         Sensor { corner, order, ringing, omega, zeta }
     }
 
-    /// `n` samples of the force that the sensor shows, at this `interval`; the contact starts at the time `onset`.
+    /// `n` samples of the force that the sensor shows, at this `interval`; the contact starts at the time
+    /// `onset`.
     fn shown(&self, contact: &Contact, n: usize, interval: f64, onset: f64) -> Vec<f64> {
         // Steps of the sensor's integration in a sampling interval: no longer than the steps of the contact.
         let substeps = (interval / contact.step).ceil().max(4.0) as usize;
@@ -207,9 +208,9 @@ impl Sensor {
     }
 }
 
-/// Draws a contact of a family as the sensor shows it, with noise, hum and rounding of the converter. Compares
-/// restitution, duration and approach velocity with the truth; for spring and damper also damping ratio and
-/// frequency.
+/// Draws a contact of a family as the sensor shows it, with noise, hum and rounding of the converter.
+/// Compares restitution, duration and approach velocity with the truth; for spring and damper also damping
+/// ratio and frequency.
 fn draw(mix: &mut Mix, family: Family) -> Record {
     let law = draw_law(mix, family);
     let contact = Contact::of(law);

@@ -1,5 +1,5 @@
-//! Cache of answers and figures for the next run. They are computed again only if their keys, their files or the
-//! program changed.
+//! Cache of answers and figures for the next run. They are computed again only if their keys, their files or
+//! the program changed.
 
 use crate::error::Result;
 use crate::read::{Digest, Folder};
@@ -25,8 +25,8 @@ pub struct AnswerCache {
     old: BTreeMap<Digest, Vec<u8>>,
     /// Answers of this run.
     now: Mutex<BTreeMap<Digest, Vec<u8>>>,
-    /// Digests of files, with the size and modification time of each before it was hashed. A different stamp later
-    /// shows that the file changed.
+    /// Digests of files, with the size and modification time of each before it was hashed. A different stamp
+    /// later shows that the file changed.
     files: Mutex<BTreeMap<PathBuf, (Digest, Stamp)>>,
 }
 
@@ -39,8 +39,8 @@ impl AnswerCache {
         AnswerCache { folder: folder.clone(), ..AnswerCache::default() }
     }
 
-    /// The cache that the last run wrote to a folder of results; empty if it cannot be read, or if another build
-    /// of the program wrote it.
+    /// The cache that the last run wrote to a folder of results; empty if it cannot be read, or if another
+    /// build of the program wrote it.
     pub fn of(folder: &Folder) -> AnswerCache {
         let cache = AnswerCache::none(folder);
         let old = folder.own_file(AnswerCache::FILE).and_then(|bytes| {
@@ -59,8 +59,8 @@ impl AnswerCache {
 
     /// The cached answer for the digest `inputs`, else the one that `make` computes, which is then cached.
     ///
-    /// Call [`file`](Self::file) on each of `files` first. An answer is not cached if one of them changed since, or
-    /// was not hashed.
+    /// Call [`file`](Self::file) on each of `files` first. An answer is not cached if one of them changed
+    /// since, or was not hashed.
     ///
     /// # Errors
     /// Those of `make`; they are not cached.
@@ -82,8 +82,8 @@ impl AnswerCache {
         Ok(made)
     }
 
-    /// Content of the cache file: a digest of the rest, then the digest of the program and the answers of this
-    /// run.
+    /// Content of the cache file: a digest of the rest, then the digest of the program and the answers of
+    /// this run.
     pub fn bytes(&self) -> Vec<u8> {
         let rest = packed(&(self.program(), &*locked(&self.now))).unwrap_or_default();
         [&digest([&rest])[..], &rest].concat()
@@ -110,7 +110,8 @@ impl AnswerCache {
     }
 }
 
-/// The digest of several parts with the length of each, so that the same bytes in other parts have another digest.
+/// The digest of several parts with the length of each, so that the same bytes in other parts have another
+/// digest.
 pub fn digest<T: AsRef<[u8]>>(parts: impl IntoIterator<Item = T>) -> Digest {
     let mut hash = Sha256::new();
     for part in parts {

@@ -1,10 +1,12 @@
-//! Ranges of the numbers in options of the command line and keys of a campaign, in one table for both. Values of a
-//! rig, of its excitation and of the settings of a model are checked by the model: [`crate::model::Parameter`].
+//! Ranges of the numbers in options of the command line and keys of a campaign, in one table for both. Values
+//! of a rig, of its excitation and of the settings of a model are checked by the model:
+//! [`crate::model::Parameter`].
 
 use crate::error::{Error, Result};
 use toml::de::DeValue;
 
-/// Largest magnitude of a quantity. Estimators multiply at most six stated values, so products stay below 1e308.
+/// Largest magnitude of a quantity. Estimators multiply at most six stated values, so products stay below
+/// 1e308.
 const LARGEST: f64 = 1e50;
 /// Smallest magnitude of a quantity that is not 0, for the same reason.
 const LEAST: f64 = 1e-50;

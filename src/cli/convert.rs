@@ -36,8 +36,8 @@ pub struct Convert {
     reading: Reading,
 }
 
-/// Peak memory while a file is written, as a multiple of the memory of its values. Measured with ten million samples
-/// of twenty digits.
+/// Peak memory while a file is written, as a multiple of the memory of its values. Measured with ten million
+/// samples of twenty digits.
 const PEAK_MEMORY: [(Target, f64); 5] =
     [(Target::Uff, 3.0), (Target::Csv, 4.5), (Target::Tsv, 4.5), (Target::Npy, 2.2), (Target::Wav, 1.2)];
 

@@ -54,8 +54,8 @@ pub fn answer(mut answer: Answer, output: Option<Output>, json: bool) -> Result<
 const FILE_ENDINGS: &str = "csv tsv txt dat asc uff unv ufb wav npy mat h5 hdf5 tdms lvm zip xlsx xlsm xls ods \
                      svg png jpg pdf html json toml md";
 
-/// A folder for results, with the chosen style of figures. `elsewhere` is the hint of the error if an existing file
-/// would be replaced.
+/// A folder for results, with the chosen style of figures. `elsewhere` is the hint of the error if an
+/// existing file would be replaced.
 ///
 /// # Errors
 /// As [`Output::new`]; if a new folder has the name of a file.

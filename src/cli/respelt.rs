@@ -1,5 +1,5 @@
-//! Rewrites the typed words before they are parsed. File name patterns that the shell did not expand are expanded;
-//! renamed options are replaced, with a note.
+//! Rewrites the typed words before they are parsed. File name patterns that the shell did not expand are
+//! expanded; renamed options are replaced, with a note.
 
 use super::complain;
 use crate::analysis::matching;
@@ -24,8 +24,8 @@ const RENAMED: [(&str, &str, &str); 8] = [
 /// pattern, since one of its words names the file to write.
 const MULTI_FILE_COMMANDS: [&str; 2] = ["info", "restitution"];
 
-/// Files that match a word with a pattern, in numerical order (`run2` before `run10`); the word itself if no file
-/// matches. As in a shell, a hidden file needs an explicit dot.
+/// Files that match a word with a pattern, in numerical order (`run2` before `run10`); the word itself if no
+/// file matches. As in a shell, a hidden file needs an explicit dot.
 fn matching_files(word: OsString, command: &str) -> Vec<OsString> {
     let pattern =
         word.to_str().filter(|w| w.contains(['*', '?']) && !w.starts_with('-') && !Path::new(w).exists());

@@ -122,8 +122,8 @@ pub struct Rungs {
     pub finding: Option<Finding>,
 }
 
-/// Number of frequencies at which the ladder is evaluated: two per Hz in the range of both resonances of the thesis'
-/// rig.
+/// Number of frequencies at which the ladder is evaluated: two per Hz in the range of both resonances of the
+/// thesis' rig.
 const LADDER_POINTS: usize = 24;
 
 /// Evaluates the ladder at evenly spaced frequencies (Hz) of a sweep: whether a model is adequate for the

@@ -1,5 +1,5 @@
-//! Groups of similar files. Up to [`PROBE_FILES`] of a group are analysed first; if their tables agree, the other
-//! files get the same tables without an analysis.
+//! Groups of similar files. Up to [`PROBE_FILES`] of a group are analysed first; if their tables agree, the
+//! other files get the same tables without an analysis.
 
 use super::folder::FileSeries;
 use super::found::FoundTables;
@@ -17,12 +17,12 @@ const PROBE_FILES: usize = 8;
 /// averaged frequency responses.
 const BUDGET: usize = 256;
 
-/// Smallest mean number of consecutive files of one kind, a run, for which the first and last file of each run
-/// are searched by bisection. In a random mixture of two kinds the mean is two.
+/// Smallest mean number of consecutive files of one kind, a run, for which the first and last file of each
+/// run are searched by bisection. In a random mixture of two kinds the mean is two.
 const LEAST_MEAN_RUN: usize = 8;
 
-/// The tables of each series, in order, analysed in parallel. A series is first tried as a whole, as a sweep or
-/// as drops of one body. Files of the series that are neither are analysed in groups of probably one kind.
+/// The tables of each series, in order, analysed in parallel. A series is first tried as a whole, as a sweep
+/// or as drops of one body. Files of the series that are neither are analysed in groups of probably one kind.
 pub(super) fn tables_of_each<'a>(
     series: &'a [FileSeries],
     folder: &'a Folder,
@@ -81,10 +81,10 @@ pub(super) fn spread(n: usize, most: usize) -> Vec<usize> {
 
 /// Analyses some of `n` files; returns the number of analyses and the result for each file.
 ///
-/// Up to [`PROBE_FILES`] files are analysed first, and up to [`BUDGET`] if the results differ. If files of one
-/// kind follow one another in runs, bisection finds the first and last file of each run. A file between two
-/// analysed ones with the same result gets this result; in a mixture without runs its result is `None`. The
-/// choice of files does not depend on the number of cores.
+/// Up to [`PROBE_FILES`] files are analysed first, and up to [`BUDGET`] if the results differ. If files of
+/// one kind follow one another in runs, bisection finds the first and last file of each run. A file between
+/// two analysed ones with the same result gets this result; in a mixture without runs its result is `None`.
+/// The choice of files does not depend on the number of cores.
 fn analysed<T: Clone + Send + Sync>(
     (n, share): (usize, usize),
     agree: impl Fn(&T, &T) -> bool,
@@ -133,8 +133,8 @@ impl FileSeries {
     }
 
     /// The tables of the series from the `results` of its files: common tables for more than [`PROBE_FILES`]
-    /// files that agree and have a pattern, else the tables of each file. Files without a result are listed as
-    /// not tried. `analyses` is the number of analysed files of the group.
+    /// files that agree and have a pattern, else the tables of each file. Files without a result are listed
+    /// as not tried. `analyses` is the number of analysed files of the group.
     fn gathered(&self, results: &[Option<FoundTables>], analyses: usize) -> FoundTables {
         if let (Some(pattern), [Some(one), more @ ..]) = (&self.pattern, results)
             && results.len() > PROBE_FILES

@@ -20,8 +20,8 @@ const LENGTH_TOLERANCE: f64 = 0.01;
 /// Smallest share of the strongest sine in the power of the force, for a file to count as a sweep step. A
 /// shaker distorts at resonance, but the sine stays the larger part.
 const LEAST_SINE_SHARE: f64 = 0.5;
-/// Number of files probed, at even distances. The rest are read only if these look like steps of one sweep, or
-/// drops of one series.
+/// Number of files probed, at even distances. The rest are read only if these look like steps of one sweep,
+/// or drops of one series.
 const PROBE_FILES: usize = 8;
 /// Most single files with unrelated names that are compared as drops: each takes an analysis.
 const MOST_DROPS: usize = 64;
@@ -58,13 +58,13 @@ pub(super) fn join_all(series: Vec<FileSeries>, folder: &Folder, kept: &AnswerCa
     result.into_iter().flatten().collect()
 }
 
-/// Merges series of steps into sweeps; returns each sweep with the indices of its series in `members`. `force`
-/// is the index of the force channel.
+/// Merges series of steps into sweeps; returns each sweep with the indices of its series in `members`.
+/// `force` is the index of the force channel.
 ///
-/// Only series with the record length of the longest and mostly with a sine as force count, longer ones first.
-/// A series of [`LEAST_SWEEP_FILES`] or more with most of its frequencies already in
-/// a sweep repeats that sweep, and begins another one. Any other is added to the only sweep in its direction;
-/// if several sweeps could take it, it is added to none.
+/// Only series with the record length of the longest and mostly with a sine as force count, longer ones
+/// first. A series of [`LEAST_SWEEP_FILES`] or more with most of its frequencies already in a sweep repeats
+/// that sweep, and begins another one. Any other is added to the only sweep in its direction; if several
+/// sweeps could take it, it is added to none.
 fn sweeps(trial: &Trial<'_>, members: &[&FileSeries], force: usize) -> Vec<(Vec<usize>, FileSeries)> {
     let count = |k: usize| members[k].files.len();
     let Some(longest) = (0..members.len()).rev().max_by_key(|k| count(*k)) else { return Vec::new() };
@@ -111,8 +111,8 @@ fn sweeps(trial: &Trial<'_>, members: &[&FileSeries], force: usize) -> Vec<(Vec<
 }
 
 /// Joins single files of drops to the one numbered series if their restitutions agree ([`Trial::drops`]).
-/// Without a numbered series, joins the single files if all agree. Returns the indices of the joined series in
-/// `members` and the merged series; `None` with two or more numbered series, whose names separate them.
+/// Without a numbered series, joins the single files if all agree. Returns the indices of the joined series
+/// in `members` and the merged series; `None` with two or more numbered series, whose names separate them.
 fn drops(trial: &Trial<'_>, members: &[&FileSeries]) -> Option<(Vec<usize>, FileSeries)> {
     let (numbered, single): (Vec<usize>, Vec<usize>) =
         (0..members.len()).partition(|k| members[*k].files.len() > 1);
@@ -164,8 +164,8 @@ impl FileSeries {
         words.find(|word| ["up", "down"].contains(word)).map(str::to_owned)
     }
 
-    /// Merges several series into one. It has the name of the longest, or the common part of the file names if
-    /// each has one file.
+    /// Merges several series into one. It has the name of the longest, or the common part of the file names
+    /// if each has one file.
     fn merged(members: &[&FileSeries]) -> FileSeries {
         let headers = named_alike(&members.iter().map(|one| one.headers.as_slice()).collect::<Vec<_>>());
         let mut files: Vec<PathBuf> = members.iter().flat_map(|one| &one.files).map(PathBuf::from).collect();

@@ -36,8 +36,8 @@ fn bench(noise: &mut LinearNoise) -> String {
         let shown = v + 1e-4 * noise.next();
         // Writing to a string cannot fail.
         let _ = writeln!(text, "{:.10},{force:.6},{shown:.7}", f64::from(i) / 1024.0);
-        // The mean of two values shifts most of the force's power below a quarter of the sampling rate. So the force
-        // is nearly a straight line between samples.
+        // The mean of two values shifts most of the force's power below a quarter of the sampling rate. So
+        // the force is nearly a straight line between samples.
         let raw = 2.0 * noise.next();
         let next = 0.5 * (raw + last_raw);
         last_raw = raw;

@@ -3,7 +3,8 @@
 //!
 //! - `DROP01.CSV` … `DROP05.CSV`: drops from 0.57 m, recorded until after the second impact;
 //! - `BOUNCE.CSV`: one longer record with a train of bounces;
-//! - `CONTACT.DAT`: a contact trace sampled at 2.56 × 50 Hz, one impact in two cycles of 11.2 Hz, with mains hum;
+//! - `CONTACT.DAT`: a contact trace sampled at 2.56 × 50 Hz, one impact in two cycles of 11.2 Hz, with mains
+//!   hum;
 //! - `TRUTH.csv`: the values from which the recordings are made.
 
 use super::Sink;
@@ -39,8 +40,8 @@ fn bounces(restitution: f64, impacts: usize) -> Vec<(f64, f64)> {
     found
 }
 
-/// Acceleration of the plate in m/s² as CSV text over `seconds`, from the time `from` (s) on. Each of the `impacts`
-/// (time in s, speed in m/s) is a pulse of 0.6 ms, followed by a decaying ringing at 1300 Hz.
+/// Acceleration of the plate in m/s² as CSV text over `seconds`, from the time `from` (s) on. Each of the
+/// `impacts` (time in s, speed in m/s) is a pulse of 0.6 ms, followed by a decaying ringing at 1300 Hz.
 fn plate(impacts: &[(f64, f64)], from: f64, seconds: f64, seed: u64) -> String {
     let mut noise = Noise::from_state(seed);
     let mut text = String::from("time (s),acceleration (m/s²)\n");
@@ -61,8 +62,8 @@ fn plate(impacts: &[(f64, f64)], from: f64, seconds: f64, seed: u64) -> String {
     text
 }
 
-/// Contact trace in volts with mains hum, one value a line without a header, as the analyser wrote it; and its
-/// number of impacts.
+/// Contact trace in volts with mains hum, one value a line without a header, as the analyser wrote it; and
+/// its number of impacts.
 fn contact(seed: u64) -> (String, usize) {
     let (rate, n) = (128.0, 1024);
     let mut noise = Noise::from_state(seed);

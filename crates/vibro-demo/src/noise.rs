@@ -1,5 +1,5 @@
-//! Noise of the recordings. Documents and tests quote numbers from the files of the examples, so each example stays
-//! with the generator of its first version.
+//! Noise of the recordings. Documents and tests quote numbers from the files of the examples, so each example
+//! stays with the generator of its first version.
 
 use std::f64::consts::TAU;
 use vibro_math::Noise;
@@ -7,8 +7,8 @@ use vibro_math::Noise;
 /// Step between uniform numbers of 53 binary digits.
 const UNIFORM_STEP: f64 = 1.0 / (1u64 << 53) as f64;
 
-/// A nearly normal number of variance 1: the sum of twelve uniform numbers, minus six. It uses no function of a
-/// mathematics library, so it is the same on every machine.
+/// A nearly normal number of variance 1: the sum of twelve uniform numbers, minus six. It uses no function of
+/// a mathematics library, so it is the same on every machine.
 pub fn near_normal(noise: &mut Noise) -> f64 {
     (0..12).map(|_| noise.uniform()).sum::<f64>() - 6.0
 }
@@ -21,9 +21,9 @@ pub struct PairedNoise {
 }
 
 impl PairedNoise {
-    /// Noise of one channel at one point of a sweep. Each point and channel has its own seed, so that any point can
-    /// be made without the others. `draw` 0 gives the files of the example; other draws repeat the measurement
-    /// with other noise.
+    /// Noise of one channel at one point of a sweep. Each point and channel has its own seed, so that any
+    /// point can be made without the others. `draw` 0 gives the files of the example; other draws repeat the
+    /// measurement with other noise.
     pub fn new(draw: u64, direction: u64, point: u64, channel: u64) -> PairedNoise {
         let state = (draw << 40) | (direction << 32) | (point << 8) | channel;
         let mut noise = PairedNoise { uniform: Noise::from_state(state), spare: None };

@@ -36,8 +36,8 @@ impl Figure {
         }
     }
 
-    /// The figure in one column, panels one below the other. All have the same ratio of height to width: that of
-    /// the figure divided evenly into its panels, limited to 0.75 to 1.1.
+    /// The figure in one column, panels one below the other. All have the same ratio of height to width: that
+    /// of the figure divided evenly into its panels, limited to 0.75 to 1.1.
     fn in_column(&self) -> Figure {
         if self.width <= COLUMN {
             return self.clone();

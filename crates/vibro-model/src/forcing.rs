@@ -54,8 +54,9 @@ impl Tone {
 
 /// State of the excitation from now on.
 ///
-/// At phase exactly 0 the impulse or pulse of the cycle has not yet been applied. When it is applied, the phase
-/// becomes the smallest number above 0. So a motion that is started again from its phase gets it exactly once.
+/// At phase exactly 0 the impulse or pulse of the cycle has not yet been applied. When it is applied, the
+/// phase becomes the smallest number above 0. So a motion that is started again from its phase gets it
+/// exactly once.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Forcing {
     tones: [Option<Tone>; MOST_SINES],
@@ -69,8 +70,9 @@ pub(super) struct Forcing {
 }
 
 impl Forcing {
-    /// The excitation at `phase` (rad) of its cycle: a sine is F₀ cos(phase), an impulse or the start of a pulse is at
-    /// phase 0. Several sines advance from their own phases by the time `phase`/ω₁ of the first one.
+    /// The excitation at `phase` (rad) of its cycle: a sine is F₀ cos(phase), an impulse or the start of a
+    /// pulse is at phase 0. Several sines advance from their own phases by the time `phase`/ω₁ of the first
+    /// one.
     pub fn new(excitation: &Excitation, phase: f64) -> Result<Forcing> {
         excitation.check()?;
         number("phase", phase, "rad", NumberRange::Any)?;
@@ -181,11 +183,11 @@ impl Forcing {
         terms
     }
 
-    /// Time in s to the next tick in a motion of `span` seconds up to the time `end`, and the tick; infinite and `None`
-    /// without one.
+    /// Time in s to the next tick in a motion of `span` seconds up to the time `end`, and the tick; infinite
+    /// and `None` without one.
     ///
-    /// A tick at `end`, within the errors of time and phase, belongs to the next motion: a cycle begins with its
-    /// impulse.
+    /// A tick at `end`, within the errors of time and phase, belongs to the next motion: a cycle begins with
+    /// its impulse.
     #[inline]
     pub fn next(&self, span: f64, end: f64) -> (f64, Option<Tick>) {
         let begin = match self.train {

@@ -90,9 +90,11 @@ pub struct Cell {
     pub spectral_radius: Option<f64>,
 }
 
-/// Share of the cycles of a cell before those from which the regime is judged, for a motion that has not settled.
+/// Share of the cycles of a cell before those from which the regime is judged, for a motion that has not
+/// settled.
 const SETTLING_SHARE: f64 = 0.6;
-/// A cell ends early if the motion approaches a stable one, and its last repetitions differ by less than this.
+/// A cell ends early if the motion approaches a stable one, and its last repetitions differ by less than
+/// this.
 const NEARLY_SETTLED: f64 = 1e-3;
 /// Number of cycles between two tests whether the motion has settled.
 const TEST_INTERVAL: u32 = 16;
@@ -204,8 +206,8 @@ fn judged(rig: &Rig, excitation: &Excitation, cycles: u32) -> Result<Cell> {
     })
 }
 
-/// The cell of a pattern. Under a sine force the pattern's periodic orbit gives the shortest period, if the orbit is
-/// admissible and not unstable. Without this orbit the pattern counts only if settled.
+/// The cell of a pattern. Under a sine force the pattern's periodic orbit gives the shortest period, if the
+/// orbit is admissible and not unstable. Without this orbit the pattern counts only if settled.
 fn periodic(rig: &Rig, excitation: &Excitation, found: &Pattern) -> Option<Cell> {
     let Regime::Periodic { cycles, .. } = found.regime else { return None };
     let cell_of_pattern = |settled: bool| {
@@ -249,8 +251,8 @@ fn radius(rig: &Rig, excitation: &Excitation, cycles: u32, strikes: &[Strike]) -
     floquet::multipliers(&whole).ok().map(|m| m[0].norm())
 }
 
-/// Spectral radius of a cycle T without impacts: e^{−bT}, with the smaller decay rate b of both masses. Above critical
-/// damping the decay rate of a mass is that of its slower decay.
+/// Spectral radius of a cycle T without impacts: e^{−bT}, with the smaller decay rate b of both masses. Above
+/// critical damping the decay rate of a mass is that of its slower decay.
 fn free_radius(rig: &Rig, excitation: &Excitation) -> f64 {
     let decay = rig.oscillators().map(|o| o.slowest());
     (-decay[0].min(decay[1]) / excitation.frequency()).exp()

@@ -122,8 +122,8 @@ impl PeriodicOrbit {
         self.shorter(EQUAL_IMPACTS).is_none()
     }
 
-    /// Whether its impacts repeat within its period, with phases (rad) and impulses (relative) equal to within
-    /// `tolerance`.
+    /// Whether its impacts repeat within its period, with phases (rad) and impulses (relative) equal to
+    /// within `tolerance`.
     pub(crate) fn repeats_within(&self, tolerance: f64) -> bool {
         self.shorter(tolerance).is_some()
     }

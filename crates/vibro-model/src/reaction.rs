@@ -22,12 +22,12 @@ pub struct Reaction {
 /// Nodes and weights of the three-point Gauss rule on 0..1.
 const GAUSS: [(f64, f64); 3] =
     [(0.112_701_665_379_258_31, 5.0 / 18.0), (0.5, 8.0 / 18.0), (0.887_298_334_620_741_7, 5.0 / 18.0)];
-/// Number of parts into which a piece in contact is divided for the Gauss rule. The piece lasts at most a radian of
-/// its fastest motion. The error of a part is h⁷/2016000 of the sixth derivative, and 2⁶ times that for the square
-/// of the force: 5e-8 of the force or its square.
+/// Number of parts into which a piece in contact is divided for the Gauss rule. The piece lasts at most a
+/// radian of its fastest motion. The error of a part is h⁷/2016000 of the sixth derivative, and 2⁶ times that
+/// for the square of the force: 5e-8 of the force or its square.
 const PARTS: u32 = 4;
-/// Steps of the golden section search for the peak: they shorten the interval to 1e-6 of its length, within which
-/// the force at a peak changes by 1e-13 of it.
+/// Steps of the golden section search for the peak: they shorten the interval to 1e-6 of its length, within
+/// which the force at a peak changes by 1e-13 of it.
 const GOLDEN_STEPS: u32 = 30;
 
 /// Sums the force between the masses piece by piece.

@@ -1,7 +1,8 @@
 //! Regime of a motion: the number of impacts and cycles in its repeating pattern.
 //!
-//! States are compared: p impacts repeat if state and phase at each impact equal those at the p-th impact before it.
-//! A count of impacts alone could not distinguish two different impacts in two cycles from one impact in one cycle.
+//! States are compared: p impacts repeat if state and phase at each impact equal those at the p-th impact
+//! before it. A count of impacts alone could not distinguish two different impacts in two cycles from one
+//! impact in one cycle.
 
 use super::flow::State;
 use super::motion::{Event, Motion, Piece};
@@ -15,13 +16,13 @@ use vibro_record::Result;
 
 /// Longest pattern that is searched, in impacts and in cycles.
 pub const LONGEST: u32 = 32;
-/// Two impacts are equal if their phases (in cycles) and states differ by less than this. States are velocities and
-/// ω × displacements, divided by the largest speed.
+/// Two impacts are equal if their phases (in cycles) and states differ by less than this. States are
+/// velocities and ω × displacements, divided by the largest speed.
 pub const SAME: f64 = 1e-6;
 /// A pattern counts as settling if its repetitions differ by less than this and the differences fall.
 const SETTLING_DISTANCE: f64 = 1e-2;
-/// Differences fall if the largest in each third of the watched impacts is at most this share of that in the third
-/// before.
+/// Differences fall if the largest in each third of the watched impacts is at most this share of that in the
+/// third before.
 const FALLING_RATIO: f64 = 0.95;
 /// Largest number of impacts in memory: ten times the longest pattern, to see whether differences fall.
 const MOST_STRIKES: usize = 320;
@@ -87,8 +88,8 @@ pub struct Strike {
 }
 
 impl Strike {
-    /// Distance from another impact: the largest of the differences of the phase in cycles, and of velocities and ω ×
-    /// displacements divided by `speed`.
+    /// Distance from another impact: the largest of the differences of the phase in cycles, and of velocities
+    /// and ω × displacements divided by `speed`.
     fn distance(&self, other: &Strike, omega: f64, speed: f64) -> f64 {
         let turn = (self.phase - other.phase + PI).rem_euclid(TAU) - PI;
         let (a, b) = (&self.before, &other.before);
@@ -102,11 +103,11 @@ impl Strike {
 pub struct Pattern {
     /// The regime.
     pub regime: Regime,
-    /// Whether the pattern repeats within [`SAME`]. Near the stability limit settling takes thousands of cycles, so a
-    /// pattern is also reported unsettled, if its differences are below 1e-2 and fall.
+    /// Whether the pattern repeats within [`SAME`]. Near the stability limit settling takes thousands of
+    /// cycles, so a pattern is also reported unsettled, if its differences are below 1e-2 and fall.
     pub settled: bool,
-    /// Largest difference between the last two repetitions, of phases (in cycles) and of states divided by the
-    /// largest speed; `None` without a pattern.
+    /// Largest difference between the last two repetitions, of phases (in cycles) and of states divided by
+    /// the largest speed; `None` without a pattern.
     pub distance: Option<f64>,
     /// The impacts of the last repetition.
     pub strikes: Vec<Strike>,
@@ -203,8 +204,8 @@ impl ComparedStrikes<'_> {
         range.map(far).fold(0.0, f64::max)
     }
 
-    /// Compares the last `p` impacts with the `p` before them; `None` if they differ by more than [`SETTLING_DISTANCE`], or take
-    /// no whole cycle or more than [`LONGEST`].
+    /// Compares the last `p` impacts with the `p` before them; `None` if they differ by more than
+    /// [`SETTLING_DISTANCE`], or take no whole cycle or more than [`LONGEST`].
     fn last(&self, p: usize) -> Option<Repeated> {
         let n = self.strikes.len();
         // A quick test: the last impact alone rules out most patterns.

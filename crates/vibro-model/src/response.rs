@@ -174,8 +174,8 @@ fn changes_between(
     solve: &impl Fn(f64) -> ResponsePoint,
 ) -> Vec<Change> {
     let mut changes = Vec::new();
-    // Upwards in frequency first, then downwards for motions that appear. Two motions vanish at a fold: only the
-    // upper one reports it.
+    // Upwards in frequency first, then downwards for motions that appear. Two motions vanish at a fold: only
+    // the upper one reports it.
     for (here, there) in [(a, b), (b, a)] {
         for orbit in &here.orbits {
             let next = orbit.continued(&there.orbits);
@@ -240,8 +240,8 @@ fn locate(
     Some(Change { frequency, kind, amplitude: here.peak_to_peak.map(|p| p / 2.0) })
 }
 
-/// Frequency between `near` and `far` at which `same` becomes false, to a millionth of their distance; `None` if `same`
-/// has no answer at a frequency in between.
+/// Frequency between `near` and `far` at which `same` becomes false, to a millionth of their distance; `None`
+/// if `same` has no answer at a frequency in between.
 fn change_frequency(near: f64, far: f64, same: impl FnMut(f64) -> Option<bool>) -> Option<f64> {
     /// 2⁻²⁰ is about a millionth.
     const BISECTIONS: usize = 20;

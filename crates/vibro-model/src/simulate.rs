@@ -1,10 +1,10 @@
 //! Any motion of the rig, event by event: exact flights between guaranteed contacts.
 //!
-//! Nothing is integrated in steps. Each flight is a closed form and ends at the first root of the gap. The impact
-//! changes the velocities, and the next flight starts from the state after it. So errors do not grow with a
-//! flight's length. Where impacts accumulate (chatter), the time of their end is computed. From then on both masses
-//! move together, again in closed form, up to the first root of the force between them. The phase stays between 0
-//! and 2π, and is continuous when the frequency changes.
+//! Nothing is integrated in steps. Each flight is a closed form and ends at the first root of the gap. The
+//! impact changes the velocities, and the next flight starts from the state after it. So errors do not grow
+//! with a flight's length. Where impacts accumulate (chatter), the time of their end is computed. From then
+//! on both masses move together, again in closed form, up to the first root of the force between them. The
+//! phase stays between 0 and 2π, and is continuous when the frequency changes.
 
 mod meet;
 
@@ -26,8 +26,8 @@ pub const GRAZING_SPEED: f64 = 1e-3;
 
 /// Most legs in one call of [`Simulation::run`]: about ten seconds of work.
 const MOST_LEGS: f64 = 2e7;
-/// A call of [`Simulation::run`] may have as many events as this many cycles, however short it is: it may begin with
-/// a long chatter.
+/// A call of [`Simulation::run`] may have as many events as this many cycles, however short it is: it may
+/// begin with a long chatter.
 const LEAST_BUDGET_CYCLES: f64 = 10.0;
 
 /// Motion of both masses in a leg.

@@ -143,8 +143,8 @@ impl Pair {
     }
 }
 
-/// Relative motion at the start of a flight from contact. With the separation speed w the gap after the time t
-/// is wt − at²/2 + jt³/6: a closes the gap, and j > 0 opens it.
+/// Relative motion at the start of a flight from contact. With the separation speed w the gap after the time
+/// t is wt − at²/2 + jt³/6: a closes the gap, and j > 0 opens it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Press {
     /// Relative acceleration a of mass 1 towards mass 2 in m/s².
@@ -162,8 +162,8 @@ impl Press {
         Press { acceleration: a1 - a2, jerk: j2 - j1, noise: flight.noise() }
     }
 
-    /// Whether the masses count as resting: a rebound at `w` (m/s) would open the gap, at most w²/2a, by no more
-    /// than four rounding errors.
+    /// Whether the masses count as resting: a rebound at `w` (m/s) would open the gap, at most w²/2a, by no
+    /// more than four rounding errors.
     pub(crate) fn is_rest(&self, w: f64) -> bool {
         w * w <= 8.0 * self.acceleration * self.noise
     }

@@ -30,8 +30,8 @@ pub struct FittedParameter {
     pub reason: Option<Unidentified>,
     /// Prior value and its standard uncertainty, if stated.
     pub prior: Option<[f64; 2]>,
-    /// Whether the prior determines the parameter more than the points do: the variance of the estimate is above
-    /// half of the prior's.
+    /// Whether the prior determines the parameter more than the points do: the variance of the estimate is
+    /// above half of the prior's.
     pub rests_on_prior: bool,
 }
 
@@ -211,8 +211,8 @@ impl AssessedFit<'_> {
             identifiable,
             reason,
             prior,
-            // A prior with the uncertainty s adds 1/s² to the reciprocal variance (exactly in a linear model).
-            // This is more than half of it if the variance is above s²/2.
+            // A prior with the uncertainty s adds 1/s² to the reciprocal variance (exactly in a linear
+            // model). This is more than half of it if the variance is above s²/2.
             rests_on_prior: prior.is_some_and(|[_, s]| std.powi(2) > 0.5 * s * s),
         }
     }
@@ -228,22 +228,23 @@ impl AssessedFit<'_> {
 /// A prior and the points contradict each other if they differ by more than this many combined standard
 /// uncertainties: chance does so in one of 1.7 million cases.
 const CONTRADICTION: f64 = 5.0;
-/// The variance of this difference is taken as at least this share of the prior's variance: below, it is rounding.
+/// The variance of this difference is taken as at least this share of the prior's variance: below, it is
+/// rounding.
 const LEAST_VARIANCE_SHARE: f64 = 0.01;
 /// The points contradict a bound if they would move the parameter beyond it by more than this many standard
 /// deviations: chance does so in one of 700 cases.
 const BOUND_PULL: f64 = 3.0;
-/// A profile shows another, lower minimum if the sum of squares falls by more than this along it: one standard
-/// uncertainty raises the sum by 1.
+/// A profile shows another, lower minimum if the sum of squares falls by more than this along it: one
+/// standard uncertainty raises the sum by 1.
 const PROFILE_FALL: f64 = 1.0;
-/// The answer is in doubt if more than this share of the amplitudes are outliers, or are left out because of a long
-/// contact.
+/// The answer is in doubt if more than this share of the amplitudes are outliers, or are left out because of
+/// a long contact.
 const MOST_LEFT_OUT: f64 = 0.1;
-/// χ²/ν beyond which a lack of fit is a doubt. The fitted parameters absorb most of a model's error, so they err by
-/// more than the residuals show.
+/// χ²/ν beyond which a lack of fit is a doubt. The fitted parameters absorb most of a model's error, so they
+/// err by more than the residuals show.
 const LACK_OF_FIT: f64 = 1.25;
-/// Relative difference of the fitted from the stated force beyond which it is a caution: load cells err by 1 or
-/// 2 %.
+/// Relative difference of the fitted from the stated force beyond which it is a caution: load cells err by 1
+/// or 2 %.
 const FORCE_DIFFERENCE: f64 = 0.05;
 
 impl AssessedFit<'_> {
@@ -277,9 +278,9 @@ impl AssessedFit<'_> {
             let (name, unit) = (unknown.parameter.name(), unknown.parameter.unit());
             let pulled = |doubt: Finding, deviations| doubt.about(name).number("deviations", deviations);
             if let Some([known, std]) = unknown.prior {
-                // With the uncertainties s of the prior and p of the answer, the answer is (s² − p²)/s² of the way
-                // from the prior to the value by the points alone. So |answer − prior|/√(s² − p²) is the
-                // difference of prior and points divided by their combined uncertainty.
+                // With the uncertainties s of the prior and p of the answer, the answer is (s² − p²)/s² of
+                // the way from the prior to the value by the points alone. So |answer − prior|/√(s² − p²) is
+                // the difference of prior and points divided by their combined uncertainty.
                 let shift_std =
                     (std * std - self.std(i).powi(2)).max(LEAST_VARIANCE_SHARE * std * std).sqrt();
                 let deviations = (setting.get(unknown.parameter) - known).abs() / shift_std;

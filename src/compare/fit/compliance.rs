@@ -5,8 +5,8 @@ use crate::error::Result;
 use crate::model::{Compliance, Excitation, Sine, orbits, shown, softened};
 use std::f64::consts::PI;
 
-/// Most rounds of correction and fit. With 2.5 % of the period in contact, the limit of the correction, three rounds
-/// reduce the error to 2e-5 of the change.
+/// Most rounds of correction and fit. With 2.5 % of the period in contact, the limit of the correction, three
+/// rounds reduce the error to 2e-5 of the change.
 const ROUNDS: usize = 8;
 /// The rounds end when no amplitude changes by more than this many standard deviations.
 const SETTLED: f64 = 0.1;

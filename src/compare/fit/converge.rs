@@ -13,13 +13,13 @@ use crate::record::median;
 use rayon::prelude::*;
 use std::collections::BTreeSet;
 
-/// From this round on, steps whose motion still changes are left out: near a fold each new set of parameters may
-/// have another motion.
+/// From this round on, steps whose motion still changes are left out: near a fold each new set of parameters
+/// may have another motion.
 const ROUNDS_TO_EXCLUSION: usize = 3;
 /// Largest number of rounds.
 const MOST_ROUNDS: usize = 6;
-/// Cycles at each point of the simulated sweeps of the search, fewer than at the end: errors of the parameters are
-/// still larger than a residual transient.
+/// Cycles at each point of the simulated sweeps of the search, fewer than at the end: errors of the
+/// parameters are still larger than a residual transient.
 const SEARCH_PACE: Pace = Pace { settle: 60, measure: 36 };
 /// χ² is too large for chance above this quantile of its distribution for a correct model and correct stated
 /// uncertainties.
@@ -46,8 +46,8 @@ pub struct Converged<'a> {
     pub far: usize,
     /// Whether the motions stayed the same in the last round.
     pub agreed: bool,
-    /// Distance of all points from the simulated sweep, or from their assigned motion where nearer, plus that of the
-    /// parameters from their priors. The smallest is the best fit.
+    /// Distance of all points from the simulated sweep, or from their assigned motion where nearer, plus that
+    /// of the parameters from their priors. The smallest is the best fit.
     pub unexplained: f64,
 }
 
@@ -132,8 +132,8 @@ impl<'a> Problem<'a> {
         }
     }
 
-    /// Distance of all points from the simulated sweep, or from their assigned motion where nearer: Σ min(z², 1),
-    /// summed over all κ of [`FINE_KAPPA`].
+    /// Distance of all points from the simulated sweep, or from their assigned motion where nearer: Σ min(z²,
+    /// 1), summed over all κ of [`FINE_KAPPA`].
     fn left_over(&self, u: &[f64], motions: &Motions) -> f64 {
         let (data, setting) = (self.data, self.setting(u));
         let one = |((step, kind), simulated): ((&SweepStep, &Option<MotionKind>), &Option<[f64; 2]>)| {
@@ -186,9 +186,9 @@ pub struct Motions {
     pub simulated: Vec<Option<[f64; 2]>>,
 }
 
-/// Assigns a motion to each step. A sweep simulated through all steps of its sequence shows which motion a step
-/// reaches; a step whose motion has no closed form gets `None`. Else the step gets the stable motion nearest to
-/// its measured amplitudes, since which of several a sweep reaches may depend on unknown details.
+/// Assigns a motion to each step. A sweep simulated through all steps of its sequence shows which motion a
+/// step reaches; a step whose motion has no closed form gets `None`. Else the step gets the stable motion
+/// nearest to its measured amplitudes, since which of several a sweep reaches may depend on unknown details.
 ///
 /// # Errors
 /// If the rig is impossible.
@@ -203,8 +203,8 @@ pub fn assigned(data: &Data, setting: &Setting, pace: Pace) -> Result<Motions> {
             let history = simulated.as_ref().and_then(|simulated| reached(simulated, &motions));
             let seen = motions.iter().filter(|m| m.is_seen());
             let nearest = seen.min_by(|a, b| log_distance(step, a).total_cmp(&log_distance(step, b)));
-            // A step where mass 2 measurably moves is not a free motion. The closed form of a fit gives the upper of
-            // two impacting motions, so an impacting step counts only if that one can be observed.
+            // A step where mass 2 measurably moves is not a free motion. The closed form of a fit gives the
+            // upper of two impacting motions, so an impacting step counts only if that one can be observed.
             let upper = motions.first().filter(|m| m.kind == MotionKind::Impacting);
             let kind = history.and(nearest).map(|m| m.kind).filter(|kind| match kind {
                 MotionKind::Free => step.readings[1].as_ref().is_none_or(|r| r.upper_limit.is_some()),
@@ -223,8 +223,8 @@ pub fn assigned(data: &Data, setting: &Setting, pace: Pace) -> Result<Motions> {
     Ok(motions)
 }
 
-/// Distance of the amplitudes from a motion: Σ |ln (measured/predicted)|, at most 20 for each mass. An amplitude
-/// below the noise floor counts only if predicted above its upper limit.
+/// Distance of the amplitudes from a motion: Σ |ln (measured/predicted)|, at most 20 for each mass. An
+/// amplitude below the noise floor counts only if predicted above its upper limit.
 fn log_distance(step: &SweepStep, motion: &Motion) -> f64 {
     let above = |(mass, limit): (usize, f64)| (motion.amplitude[mass] / limit).ln().max(0.0);
     let moves = |(mass, reading): (usize, &StepAmplitude)| reading.log_ratio(motion.amplitude[mass]).abs();
@@ -243,7 +243,8 @@ const MOST_OUTLIERS: f64 = 0.25;
 /// Removes the motions of outliers: steps with another motion, or in a sweep that had not settled.
 ///
 /// Outliers are removed one by one, the farthest first, since each also shifts the shared errors of the other
-/// points. If the median scatter exceeds the stated standard deviation, distances are measured by the scatter.
+/// points. If the median scatter exceeds the stated standard deviation, distances are measured by the
+/// scatter.
 pub fn without_outliers(
     data: &Data,
     setting: &Setting,

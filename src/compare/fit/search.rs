@@ -1,37 +1,40 @@
 //! Searches from several starting points, with every step on the motion nearest to its measured amplitudes.
 //!
-//! Far from the truth a simulated sweep does not resemble the measured one. So no sweep is simulated here, and
-//! points with other patterns of impacts are not recognised.
+//! Far from the truth a simulated sweep does not resemble the measured one. So no sweep is simulated here,
+//! and points with other patterns of impacts are not recognised.
 //!
-//! A residual is z = ln (measured/predicted)/√(κ² + (3s)²), with the relative standard uncertainty s and a width
-//! κ. It costs ln (1 + z²) (Cauchy's: P. J. Huber, *Robust Statistics* (1981), 4.8): the farther away an
-//! outlier, the less its influence. κ falls in steps: a large κ finds the valley that most points share, a small
-//! one its lowest point (graduated non-convexity: A. Blake & A. Zisserman, *Visual Reconstruction* (1987), 7).
+//! A residual is z = ln (measured/predicted)/√(κ² + (3s)²), with the relative standard uncertainty s and a
+//! width κ. It costs ln (1 + z²) (Cauchy's: P. J. Huber, *Robust Statistics* (1981), 4.8): the farther away
+//! an outlier, the less its influence. κ falls in steps: a large κ finds the valley that most points share, a
+//! small one its lowest point (graduated non-convexity: A. Blake & A. Zisserman, *Visual Reconstruction*
+//! (1987), 7).
 
 use super::{Data, MotionKind, Problem, Setting, SweepStep, Unknown};
 use crate::math::minimise;
 use crate::model::Parameter;
 use rayon::prelude::*;
 
-/// Widths κ of the search, one after another: at first as large as the relative errors of the starts, up to a half.
+/// Widths κ of the search, one after another: at first as large as the relative errors of the starts, up to a
+/// half.
 const COARSE_KAPPA: [f64; 2] = [0.3, 0.1];
-/// Widths κ after the search, one after another, when motions are those of simulated sweeps; the last is about the
-/// noise.
+/// Widths κ after the search, one after another, when motions are those of simulated sweeps; the last is
+/// about the noise.
 pub(crate) const FINE_KAPPA: [f64; 4] = [0.1, 0.03, 0.01, 0.003];
 /// Factor on the relative standard uncertainty s of a point in its residual z, so that noise is no outlier.
 const STD_FACTOR: f64 = 3.0;
-/// Largest difference in cost between two results of the search that are one minimum: a tenth of a point's cost.
+/// Largest difference in cost between two results of the search that are one minimum: a tenth of a point's
+/// cost.
 const SAME_COST: f64 = 0.1;
-/// Largest relative difference in each coordinate between two results that are one minimum. An equal cost alone
-/// proves nothing: dampers and impact losses can replace each other at the same cost.
+/// Largest relative difference in each coordinate between two results that are one minimum. An equal cost
+/// alone proves nothing: dampers and impact losses can replace each other at the same cost.
 const SAME_PLACE: f64 = 0.02;
 /// Starts lie within this factor of the stated values, since a person knows a rig about so well.
 const START_FACTOR: f64 = 1.5;
-/// For a parameter with two bounds, starts lie within this distance of the stated value's logit: a factor of 4.5 in
-/// the loss 1 − R of the restitution R.
+/// For a parameter with two bounds, starts lie within this distance of the stated value's logit: a factor of
+/// 4.5 in the loss 1 − R of the restitution R.
 const START_LOGIT: f64 = 1.5;
-/// Number of candidates for each start of the search: those of the lowest cost are used. A cost takes a hundredth of
-/// the time of a search.
+/// Number of candidates for each start of the search: those of the lowest cost are used. A cost takes a
+/// hundredth of the time of a search.
 const SCREENED_PER_START: usize = 16;
 /// Number of starting points around an answer in one turn ([`Problem::around`]).
 const STARTS_AROUND: usize = 8;
@@ -50,8 +53,8 @@ pub struct LocalMinimum {
 }
 
 impl Problem<'_> {
-    /// Searches from `starts` starting points, the first of them the stated rig. Returns the minima found, each once,
-    /// by rising cost.
+    /// Searches from `starts` starting points, the first of them the stated rig. Returns the minima found,
+    /// each once, by rising cost.
     pub fn search(&self, starts: usize) -> Vec<LocalMinimum> {
         let ranked = |places: Vec<Vec<f64>>| {
             let mut costs: Vec<_> = places.into_par_iter().map(|u| (self.cost(&u), u)).collect();
@@ -76,8 +79,8 @@ impl Problem<'_> {
         minima.into_iter().map(|minimum| minimum.1).collect()
     }
 
-    /// Starting point number `i` of Halton's sequence (1960), within [`START_FACTOR`] or [`START_LOGIT`] of the stated
-    /// value, or within two standard uncertainties of a prior.
+    /// Starting point number `i` of Halton's sequence (1960), within [`START_FACTOR`] or [`START_LOGIT`] of
+    /// the stated value, or within two standard uncertainties of a prior.
     fn spread(&self, i: usize) -> Vec<f64> {
         const PRIMES: [usize; 9] = [2, 3, 5, 7, 11, 13, 17, 19, 23];
         let one = |(unknown, prime): (&Unknown, usize)| {
@@ -93,8 +96,8 @@ impl Problem<'_> {
         self.unknowns.iter().zip(PRIMES).map(one).collect()
     }
 
-    /// Starting points around the answer `u` with other dampers and restitutions: these can replace one another, so
-    /// the points determine them worst. Empty if none of them is fitted.
+    /// Starting points around the answer `u` with other dampers and restitutions: these can replace one
+    /// another, so the points determine them worst. Empty if none of them is fitted.
     pub fn around(&self, u: &[f64], turn: usize) -> Vec<Vec<f64>> {
         let is_loss =
             |k: &Unknown| matches!(k.parameter, Parameter::Restitution | Parameter::C1 | Parameter::C2);
@@ -144,8 +147,8 @@ impl Problem<'_> {
         found.map_or(u, |minimum| self.folded(minimum).parameters)
     }
 
-    /// Σ ln (1 + z²) of all points at the smaller κ of [`COARSE_KAPPA`], each on its nearest motion, plus Σ z² of
-    /// the priors.
+    /// Σ ln (1 + z²) of all points at the smaller κ of [`COARSE_KAPPA`], each on its nearest motion, plus Σ
+    /// z² of the priors.
     fn cost(&self, u: &[f64]) -> f64 {
         let setting = self.setting(u);
         let one = |step: &SweepStep| self.nearest(&setting, step, COARSE_KAPPA[1]).1;
@@ -167,8 +170,8 @@ impl Problem<'_> {
     fn nearest(&self, setting: &Setting, step: &SweepStep, kappa: f64) -> (MotionKind, f64) {
         let [impacting, free] =
             [MotionKind::Impacting, MotionKind::Free].map(|kind| self.data.shows(setting, kind, step));
-        // A mass below the noise floor excludes an impacting motion that is predicted above twice its upper limit.
-        // It adds no cost.
+        // A mass below the noise floor excludes an impacting motion that is predicted above twice its upper
+        // limit. It adds no cost.
         let excludes_impacts = step.faint().any(|(mass, limit)| impacting[mass] > 2.0 * limit);
         // A free motion may be predicted up to 1.5 times the gap, since the parameters are still wrong.
         let may_be_free = free[0] < START_FACTOR * setting.rig.gap;

@@ -1,8 +1,8 @@
 //! Uncertainty of each parameter θ: from the Jacobian at the minimum of the sum of squares, and from its
 //! profile.
 //!
-//! u is the fitted coordinate of a parameter: √(θ − lower bound), or between two bounds the logit of its relative
-//! position ([`Coordinate`](super::unknown::Coordinate)).
+//! u is the fitted coordinate of a parameter: √(θ − lower bound), or between two bounds the logit of its
+//! relative position ([`Coordinate`](super::unknown::Coordinate)).
 
 use super::{LeastSquares, MotionKind, Problem};
 use crate::error::{Error, Result};
@@ -13,21 +13,21 @@ use serde::Serialize;
 
 /// Normal deviate of a two-sided 95 % interval (Abramowitz & Stegun, table 26.1).
 pub const NORMAL: f64 = 1.959_964;
-/// Largest relative standard uncertainty of an identifiable parameter: beyond it, half or twice the value would
-/// fit. For a parameter with two bounds the measure is instead the width of the 95 % interval divided by the
-/// distance of the bounds.
+/// Largest relative standard uncertainty of an identifiable parameter: beyond it, half or twice the value
+/// would fit. For a parameter with two bounds the measure is instead the width of the 95 % interval divided
+/// by the distance of the bounds.
 const LOOSE: f64 = 0.5;
 /// Correlation r beyond which two parameters are known only in combination: knowing one would divide the
 /// uncertainty of the other by 1/√(1 − r²) = 3.
 const TIED: f64 = 0.95;
-/// Smallest singular value, relative to the largest, that a Jacobian by central differences distinguishes from 0:
-/// about ε^(2/3).
+/// Smallest singular value, relative to the largest, that a Jacobian by central differences distinguishes
+/// from 0: about ε^(2/3).
 const RESOLVED: f64 = 4e-11;
 /// A parameter lies at its limit if their distance in u is at most this, times 1 + |u|: far below what data
 /// resolve.
 const AT_LIMIT: f64 = 1e-6;
-/// Step inwards for the derivatives at a limit, relative to u there: larger steps err by curvature, smaller by
-/// rounding.
+/// Step inwards for the derivatives at a limit, relative to u there: larger steps err by curvature, smaller
+/// by rounding.
 const INWARDS: f64 = 1e-2;
 
 /// Why a parameter is not identifiable.
@@ -58,8 +58,8 @@ pub struct Limit {
 /// Uncertainties by the Jacobian at the minimum of the sum of squares.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Uncertainty {
-    /// Covariance of the coordinates u. The variance of a combination that the points do not determine is large,
-    /// but finite.
+    /// Covariance of the coordinates u. The variance of a combination that the points do not determine is
+    /// large, but finite.
     pub covariance: DMatrix<f64>,
     /// Relative standard uncertainty of each parameter.
     pub relative: Vec<f64>,
@@ -72,9 +72,9 @@ pub struct Uncertainty {
 impl Uncertainty {
     /// Uncertainty of a minimum.
     ///
-    /// The Jacobian ∂r/∂ln θ of the residuals r is for relative changes of the parameters, so that its singular
-    /// values do not depend on units. With singular values s and right singular vectors v the variance of ln θᵢ
-    /// is Σ vᵢ²/s².
+    /// The Jacobian ∂r/∂ln θ of the residuals r is for relative changes of the parameters, so that its
+    /// singular values do not depend on units. With singular values s and right singular vectors v the
+    /// variance of ln θᵢ is Σ vᵢ²/s².
     ///
     /// # Errors
     /// If the singular values cannot be computed.
@@ -171,8 +171,8 @@ impl Uncertainty {
 /// If parameter number `i` lies at a limit of its range, the direction outwards in u (1 or −1) and the bound;
 /// else `None`.
 ///
-/// The residuals are constant beyond a limit. So this replaces the parameter's column of the `jacobian` by the
-/// derivative from the limit inwards.
+/// The residuals are constant beyond a limit. So this replaces the parameter's column of the `jacobian` by
+/// the derivative from the limit inwards.
 fn at_limit(problem: &Problem<'_>, u: &[f64], i: usize, jacobian: &mut DMatrix<f64>) -> Option<(f64, f64)> {
     let (unknown, span) = (&problem.unknowns[i], AT_LIMIT * (1.0 + u[i].abs()));
     let (coordinate, limits) = (unknown.coordinate, unknown.limits(&problem.base));
@@ -199,8 +199,8 @@ fn at_limit(problem: &Problem<'_>, u: &[f64], i: usize, jacobian: &mut DMatrix<f
 const CHI2_95: f64 = 3.841;
 /// Number of values of a profile on each side of the minimum.
 const VALUES_PER_SIDE: i32 = 12;
-/// Distance of the outermost values of a profile from the minimum, in standard uncertainties: twice that of the
-/// ends of a 95 % interval.
+/// Distance of the outermost values of a profile from the minimum, in standard uncertainties: twice that of
+/// the ends of a 95 % interval.
 const PROFILE_REACH: f64 = 4.0;
 
 /// Profile of a parameter.
@@ -216,8 +216,8 @@ pub struct Profile {
     pub rise: Vec<f64>,
     /// Rise at the ends of the 95 % confidence interval.
     pub limit: f64,
-    /// 95 % confidence interval; `None` for an end that the profile does not reach, its rise below the limit at
-    /// all values.
+    /// 95 % confidence interval; `None` for an end that the profile does not reach, its rise below the limit
+    /// at all values.
     pub interval: [Option<f64>; 2],
 }
 
@@ -268,7 +268,8 @@ pub fn profile(least: &LeastSquares<'_>, uncertainty: &Uncertainty, which: usize
     })
 }
 
-/// Value of the parameter at which the rise reaches [`CHI2_95`], by interpolation of its square root, which is nearly linear.
+/// Value of the parameter at which the rise reaches [`CHI2_95`], by interpolation of its square root, which
+/// is nearly linear.
 fn crossing<'a>(points: impl Iterator<Item = (&'a f64, &'a f64)>) -> Option<f64> {
     let points: Vec<(f64, f64)> = points.map(|(v, r)| (*v, r.max(0.0).sqrt())).collect();
     let (limit, above) = (CHI2_95.sqrt(), points.iter().position(|p| p.1 > CHI2_95.sqrt())?);

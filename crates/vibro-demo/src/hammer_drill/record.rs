@@ -32,10 +32,11 @@ const NOISE: f64 = 0.003;
 
 /// A record of `seconds`, the same every time.
 pub fn record(seconds: f64) -> Record {
-    // Velocity of the striker after an impact divided by that before it, by balance of momentum with the bit at
-    // rest: (m − R M)/(m + M), with the mass m of the striker, M of the bit.
+    // Velocity of the striker after an impact divided by that before it, by balance of momentum with the bit
+    // at rest: (m − R M)/(m + M), with the mass m of the striker, M of the bit.
     let rebound = (STRIKER - RESTITUTION * BIT) / (STRIKER + BIT);
-    // 47.3 impacts per second, each at 0.62 of a turn after top dead centre with 7.5 m/s and a contact of 60 µs.
+    // 47.3 impacts per second, each at 0.62 of a turn after top dead centre with 7.5 m/s and a contact of 60
+    // µs.
     let machine = Machine {
         speed: 47.3,
         speed_scatter: 0.004,
@@ -77,8 +78,8 @@ pub fn still(seconds: f64) -> Vec<f64> {
     (0..(seconds * RATE) as usize).map(|_| NOISE * laser.normal()).collect()
 }
 
-/// Velocity of the bit in m/s. It gains the momentum that the striker loses, as half a sine during the contact.
-/// Then it returns to its place as a critically damped oscillator of time constant 2 ms, for 20 ms.
+/// Velocity of the bit in m/s. It gains the momentum that the striker loses, as half a sine during the
+/// contact. Then it returns to its place as a critically damped oscillator of time constant 2 ms, for 20 ms.
 fn bit(impacts: &[Struck], count: usize, contact: f64) -> Vec<f64> {
     let mut velocity = vec![0.0; count];
     for impact in impacts {
@@ -94,8 +95,8 @@ fn bit(impacts: &[Struck], count: usize, contact: f64) -> Vec<f64> {
     velocity
 }
 
-/// Sets the signal to 0 for 0.1 to 1 ms about three times a second, as a decoder does when the laser signal is
-/// lost. Returns the number of drop-outs.
+/// Sets the signal to 0 for 0.1 to 1 ms about three times a second, as a decoder does when the laser signal
+/// is lost. Returns the number of drop-outs.
 fn drop_out(volts: &mut [f64], noise: &mut ShiftedNoise) -> usize {
     let (mut at, mut count) = (3000, 0);
     while at + 500 < volts.len() {

@@ -1,9 +1,9 @@
 //! A striker that goes back and forth once per turn of the crank; its motion is known exactly.
 //!
-//! Between two impacts its velocity is a straight line from the velocity after the first to the one before the
-//! second, minus half a sine. The half sine makes the displacement over this time zero, so that all impacts are at
-//! the same place. During a contact the velocity changes from one flight to the next as half a sine. Duration of a
-//! turn, phase of the impact and velocities vary from turn to turn.
+//! Between two impacts its velocity is a straight line from the velocity after the first to the one before
+//! the second, minus half a sine. The half sine makes the displacement over this time zero, so that all
+//! impacts are at the same place. During a contact the velocity changes from one flight to the next as half a
+//! sine. Duration of a turn, phase of the impact and velocities vary from turn to turn.
 
 use super::noise::ShiftedNoise;
 use std::f64::consts::PI;
@@ -58,8 +58,8 @@ pub struct Run {
 }
 
 impl Machine {
-    /// A run of `duration` seconds and one or two turns more. The recording begins during the first turn, so the
-    /// first top dead centre is before it.
+    /// A run of `duration` seconds and one or two turns more. The recording begins during the first turn, so
+    /// the first top dead centre is before it.
     pub fn run(&self, duration: f64, noise: &mut ShiftedNoise) -> Run {
         let mut edges = vec![-noise.uniform() / self.speed];
         let mut impacts = Vec::new();
@@ -98,7 +98,8 @@ impl Run {
             .collect()
     }
 
-    /// Velocity in m/s at the time `t` (s) of the flight between impact `k` and the next; 0 without one of them.
+    /// Velocity in m/s at the time `t` (s) of the flight between impact `k` and the next; 0 without one of
+    /// them.
     fn flight(&self, k: usize, t: f64) -> f64 {
         let (Some(from), Some(to)) = (self.impacts.get(k), self.impacts.get(k.wrapping_add(1))) else {
             return 0.0;
@@ -108,8 +109,8 @@ impl Run {
         from.after * (1.0 - s) + to.before * s - half_sine * (PI * s).sin()
     }
 
-    /// `count` samples at the sampling `rate` in Hz of a signal with one pulse from 0 to 1 per turn. The pulse rises
-    /// within a few samples at the top dead centre and lasts a tenth of a turn.
+    /// `count` samples at the sampling `rate` in Hz of a signal with one pulse from 0 to 1 per turn. The
+    /// pulse rises within a few samples at the top dead centre and lasts a tenth of a turn.
     pub fn pulse(&self, rate: f64, count: usize) -> Vec<f64> {
         let rise = |samples: f64| 0.5 + 0.5 * (samples / 3.0).tanh();
         let mut k = 0;

@@ -2,8 +2,9 @@
 //! analyser.
 //!
 //! The converter runs at 32 times the rate of the final record and averages over each of its intervals, as
-//! integrating converters do. A digital filter then passes only the base band, so that jumps of velocity do not
-//! alias. Here the filter is a windowed Fourier transform of the fast record, of which lines 0 to 400 are used.
+//! integrating converters do. A digital filter then passes only the base band, so that jumps of velocity do
+//! not alias. Here the filter is a windowed Fourier transform of the fast record, of which lines 0 to 400 are
+//! used.
 
 use super::noise::PairedNoise;
 use std::f64::consts::{PI, TAU};
@@ -44,8 +45,9 @@ const VELOCITY: Input = Input { noise: 4e-5, hum: 2e-4, full_scale: 1.0 };
 const ACCELERATION_NOISE: f64 = 8e-4;
 /// Offset of an accelerometer in m/s².
 const ACCELERATION_OFFSET: f64 = 4e-3;
-/// Lower limiting frequency in Hz of the integrating charge amplifier. Above it the accelerometer's noise is divided
-/// by 2πf; the offset is divided by 2π times this frequency. Both make the velocity spectrum rise towards 0 Hz.
+/// Lower limiting frequency in Hz of the integrating charge amplifier. Above it the accelerometer's noise is
+/// divided by 2πf; the offset is divided by 2π times this frequency. Both make the velocity spectrum rise
+/// towards 0 Hz.
 const LOWER_LIMIT: f64 = 0.01;
 
 /// Force spectrum, in N.
@@ -95,8 +97,8 @@ pub fn hann(i: usize) -> f64 {
 
 /// Spectral lines 0 to 400 of a Hann-windowed block as peak amplitudes.
 ///
-/// Each line is a plain sum, the same to the last bit on any processor. A fast Fourier transform would depend on the
-/// vector instructions of the processor.
+/// Each line is a plain sum, the same to the last bit on any processor. A fast Fourier transform would depend
+/// on the vector instructions of the processor.
 fn spectrum(signal: &[f64]) -> Vec<f64> {
     let table: Vec<(f64, f64)> = (0..SAMPLES).map(|i| (TAU * i as f64 / SAMPLES as f64).sin_cos()).collect();
     let windowed: Vec<f64> = signal.iter().enumerate().map(|(i, v)| v * hann(i)).collect();

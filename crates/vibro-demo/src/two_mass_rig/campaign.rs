@@ -9,13 +9,13 @@ use vibro_model::portrait::Samples;
 use vibro_model::{Motion, Rig, Simulation, Sine, State};
 use vibro_record::Result;
 
-/// Force amplitude in N. At this force the rig of the thesis shows the in-phase (grazing) resonance in sweeps in
-/// both directions, but the out-of-phase (clapping) resonance only in the sweep up.
+/// Force amplitude in N. At this force the rig of the thesis shows the in-phase (grazing) resonance in sweeps
+/// in both directions, but the out-of-phase (clapping) resonance only in the sweep up.
 const FORCE: f64 = 0.1;
 
-/// Coefficient of restitution. The clapping branch ends where the force no longer supplies the losses in dampers
-/// and impacts: at 10.67 Hz for this value, and at 10.79 Hz for 0.998, that of the thesis' contact (1e5 N/m, 0.1
-/// N s/m).
+/// Coefficient of restitution. The clapping branch ends where the force no longer supplies the losses in
+/// dampers and impacts: at 10.67 Hz for this value, and at 10.79 Hz for 0.998, that of the thesis' contact
+/// (1e5 N/m, 0.1 N s/m).
 const RESTITUTION: f64 = 0.98;
 
 /// Frequencies of the generator in Hz, ascending; none lies on a line of the analyser (multiples of 0.05 Hz).
@@ -25,7 +25,8 @@ const FREQUENCIES: [f64; 40] = [
     10.183, 10.364, 10.478, 10.567, 10.622, 10.689, 10.861, 11.262, 11.918, 12.842,
 ];
 
-/// Time in s from a frequency step to its measurement: the slowest transient without impacts decays to e^{−16}.
+/// Time in s from a frequency step to its measurement: the slowest transient without impacts decays to
+/// e^{−16}.
 const SETTLE: f64 = 40.0;
 
 /// Direction of a sweep.
@@ -41,7 +42,8 @@ impl Direction {
         if self == Direction::Up { "up" } else { "down" }
     }
 
-    /// File names of the force spectrum and the two velocity spectra of point `number`, eleven characters each.
+    /// File names of the force spectrum and the two velocity spectra of point `number`, eleven characters
+    /// each.
     fn names(self, number: usize) -> [String; 3] {
         let (long, short) = if self == Direction::Up { ("UP", 'U') } else { ("DN", 'D') };
         [
@@ -91,8 +93,8 @@ pub fn simulate(direction: Direction, last: usize, mut show: impl FnMut(&Point) 
 
 /// Impacts per cycle of the periodic motion, or `irregular`; `2/2` has two impacts in a period of two cycles.
 ///
-/// States at one phase of the force are compared in the last cycles of a block. The motion is periodic with q cycles
-/// if every state differs from the one q cycles later by less than a thousandth of the largest state.
+/// States at one phase of the force are compared in the last cycles of a block. The motion is periodic with q
+/// cycles if every state differs from the one q cycles later by less than a thousandth of the largest state.
 fn impacts_per_cycle(mut motion: Simulation) -> Result<String> {
     /// Longest period in cycles that is recognised.
     const LONGEST_PERIOD: usize = 12;
@@ -115,8 +117,8 @@ fn impacts_per_cycle(mut motion: Simulation) -> Result<String> {
     let repeats = |q: &usize| tail.iter().zip(&tail[*q..]).all(|((a, _), (b, _))| close(a, b));
     Ok(match (1..=LONGEST_PERIOD).find(repeats) {
         Some(q) => {
-            // An impact at the compared phase may be counted in the cycle before or after it. The mean over many
-            // periods, rounded, is not affected.
+            // An impact at the compared phase may be counted in the cycle before or after it. The mean over
+            // many periods, rounded, is not affected.
             let whole = tail.len() / q * q;
             let total: usize = tail[tail.len() - whole..].iter().map(|(_, n)| n).sum();
             let p = (total as f64 / (whole / q) as f64).round() as usize;
@@ -148,8 +150,8 @@ impl Point {
         spectra.map(|spectrum| (names.next().unwrap_or_default(), analyser::print(&spectrum)))
     }
 
-    /// Row of `TRUTH.csv`: displacement amplitudes in m at the excitation frequency, from this block with the Hann
-    /// window and without noise.
+    /// Row of `TRUTH.csv`: displacement amplitudes in m at the excitation frequency, from this block with the
+    /// Hann window and without noise.
     pub fn truth(&self) -> String {
         let omega = TAU * self.frequency;
         let (mut sums, mut weight) = ([Complex64::ZERO; 2], 0.0);
@@ -175,8 +177,8 @@ pub fn truth_header() -> String {
     "direction,point,frequency,x1,x2,impacts_per_cycle\n".to_owned()
 }
 
-/// Name and content of the list file of one mass. The content is, one a line: number of points, number of spectral
-/// lines, base band in Hz, file names of the force spectra, file names of the response spectra.
+/// Name and content of the list file of one mass. The content is, one a line: number of points, number of
+/// spectral lines, base band in Hz, file names of the force spectra, file names of the response spectra.
 pub fn list(direction: Direction, mass: usize) -> (String, String) {
     let names: Vec<[String; 3]> = (1..=FREQUENCIES.len()).map(|number| direction.names(number)).collect();
     let mut text = format!("{}\n{LINES}\n{BASE_BAND}\n", names.len());

@@ -15,12 +15,13 @@ use vibro_record::{Error, Result};
 const MOST_POINTS: usize = 20_000;
 /// Most Newton steps of a corrector.
 const CORRECTOR_STEPS: usize = 12;
-/// Largest difference in phase (rad) and relative impulse at which the two halves of a doubled period count as equal,
-/// as they are at a flip. Branches cross at a flip, so the equations are nearly singular and the flip is located
-/// only roughly.
+/// Largest difference in phase (rad) and relative impulse at which the two halves of a doubled period count
+/// as equal, as they are at a flip. Branches cross at a flip, so the equations are nearly singular and the
+/// flip is located only roughly.
 const EQUAL_HALVES: f64 = 1e-2;
 
-/// Start of a continuation, the varied parameter `over` with its range, and the largest step along the branch.
+/// Start of a continuation, the varied parameter `over` with its range, and the largest step along the
+/// branch.
 pub struct Walk<'a> {
     pub start: &'a PeriodicOrbit,
     pub over: Parameter,
@@ -36,8 +37,8 @@ pub struct BranchPart {
     pub end: End,
 }
 
-/// A point of a branch in the extended space (unknowns, then the coordinate of the varied parameter), with the tangent
-/// of the branch.
+/// A point of a branch in the extended space (unknowns, then the coordinate of the varied parameter), with
+/// the tangent of the branch.
 #[derive(Clone)]
 pub struct BranchPoint {
     z: DVector<f64>,
@@ -45,8 +46,8 @@ pub struct BranchPoint {
 }
 
 impl Walk<'_> {
-    /// Coordinate of a value of the varied parameter: its logarithm; the gap divided by the length scale of the branch;
-    /// or the restitution itself.
+    /// Coordinate of a value of the varied parameter: its logarithm; the gap divided by the length scale of
+    /// the branch; or the restitution itself.
     fn coordinate(&self, value: f64) -> f64 {
         match self.over {
             Parameter::Gap => value / self.length(),
@@ -292,8 +293,8 @@ impl Walk<'_> {
         for (kind, point) in found {
             let orbit = self.orbit(&point.z)?;
             if confirmed(kind, &orbit) {
-                // A branch of doubled period turns back at a flip, too: it continues with the halves of its period
-                // exchanged.
+                // A branch of doubled period turns back at a flip, too: it continues with the halves of its
+                // period exchanged.
                 let is_flip = kind == Loss::Fold && orbit.repeats_within(EQUAL_HALVES);
                 let kind = if is_flip { Loss::Flip } else { kind };
                 branch.marks.push(Mark { kind, orbit, after });
@@ -351,8 +352,8 @@ fn pair(orbit: &PeriodicOrbit) -> Option<f64> {
     Some((wedge - Matrix6::identity()).determinant())
 }
 
-/// Whether the orbit has the property of a mark of this `kind`. If not, the test function changed its sign by a
-/// jump.
+/// Whether the orbit has the property of a mark of this `kind`. If not, the test function changed its sign by
+/// a jump.
 fn confirmed(kind: Loss, orbit: &PeriodicOrbit) -> bool {
     let near = |distance: &dyn Fn(&Complex64) -> f64| {
         orbit.multipliers.is_some_and(|m| m.iter().any(|z| distance(z) < 1e-5))

@@ -12,8 +12,8 @@ use vibro_record::{Error, Result};
 /// Largest contact duration as a share of the period. The correction was checked up to here.
 pub(crate) const LONGEST_CONTACT: f64 = 0.025;
 
-/// A contact of spring k₃ and damper c₃ (Kelvin–Voigt) that cannot pull, and how the reduced mass M of the rig
-/// rebounds from it without other forces.
+/// A contact of spring k₃ and damper c₃ (Kelvin–Voigt) that cannot pull, and how the reduced mass M of the
+/// rig rebounds from it without other forces.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Compliance {
     /// Stiffness k₃ in N/m.
@@ -36,8 +36,8 @@ pub struct Compliance {
 }
 
 impl Compliance {
-    /// Contact of stiffness k₃ (N/m) on a rig. `damping` is c₃ in N s/m; `None` computes the one that gives the
-    /// rig's restitution.
+    /// Contact of stiffness k₃ (N/m) on a rig. `damping` is c₃ in N s/m; `None` computes the one that gives
+    /// the rig's restitution.
     ///
     /// Approach speed v, natural frequency `ω₀ = √(k₃/M)`, damped one `ω_d = ω₀√(1 − ζ²)`, ψ = asin ζ:
     /// - duration `t_c = (π − 2ψ)/ω_d` and restitution `R = e^{−ζω₀t_c}`;
@@ -107,8 +107,8 @@ pub struct Softened {
 /// t* = ∫tf dt/∫f dt after the first touch: the motion after the contact is the same. Three corrections:
 /// 1. Timing. At t* the rigid motions overlap by vt*. So C + t*/(M(1+R)) replaces C = χ₁(0) + χ₂(0), with the
 ///    periodic impulse responses χᵢ of both masses (`Green`).
-/// 2. Pressing. An acceleration a that presses the masses together raises the approach speed to v + at* at the
-///    impact. It changes the restitution to `R + (a/v)((1 − R)t_c − 2d_r/v)`, to first order.
+/// 2. Pressing. An acceleration a that presses the masses together raises the approach speed to v + at* at
+///    the impact. It changes the restitution to `R + (a/v)((1 − R)t_c − 2d_r/v)`, to first order.
 /// 3. The rig's dampers. They slow a relative speed u by κu per second, κ = M(c₁/m₁² + c₂/m₂²). The rigid
 ///    flights lose the share `κt_c` of u between touch and parting. In the contact u reverses, and its
 ///    envelope loses only half of that. So `R(1 + κt_c/2)` replaces R, and a is taken without the dampers.

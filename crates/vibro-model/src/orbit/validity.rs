@@ -116,9 +116,9 @@ pub struct Judged {
 impl Judged {
     /// Verdicts on a motion along `courses`, each from one impact to the next.
     ///
-    /// `exists`: whether all impulses are positive. `energy_rule`: the energy rule, if known. `impact_grazing`: change
-    /// of the gap in m at which an impact itself grazes. `amplified`: factor on the rounding error; `None` for a
-    /// free motion.
+    /// `exists`: whether all impulses are positive. `energy_rule`: the energy rule, if known.
+    /// `impact_grazing`: change of the gap in m at which an impact itself grazes. `amplified`: factor on the
+    /// rounding error; `None` for a free motion.
     pub fn new(
         rig: &Rig,
         courses: &[Course],
@@ -137,8 +137,8 @@ impl Judged {
                 multipliers.as_ref().map_or(stable, |m| floquet::inside(&whole, m, amplified * rounding));
             monodromy = Some(whole);
         }
-        // For one impact the energy rule is equivalent to an even number of multipliers beyond +1. For several impacts
-        // this number replaces the rule.
+        // For one impact the energy rule is equivalent to an even number of multipliers beyond +1. For
+        // several impacts this number replaces the rule.
         let even = || monodromy.is_some_and(|m| (Matrix4::identity() - m).determinant() > 0.0);
         let surveys: Vec<_> = courses.iter().map(Course::survey).collect();
         let clearance = surveys.iter().filter_map(|s| s.closest).reduce(f64::min);

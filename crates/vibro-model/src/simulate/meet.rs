@@ -10,11 +10,11 @@ use crate::stick::Press;
 use std::f64::consts::TAU;
 use vibro_record::Result;
 
-/// Approach speed in m/s below which the end of a chatter is searched: at higher speeds the impacts do not yet follow
-/// one another closely enough.
+/// Approach speed in m/s below which the end of a chatter is searched: at higher speeds the impacts do not
+/// yet follow one another closely enough.
 const CHATTER_SPEED: f64 = 1e-3;
-/// The same limit relative to the scale of the speeds. A bounce at 6e-8 of this scale, √(16ε), rises no higher than
-/// the rounding error of the gap and counts as rest.
+/// The same limit relative to the scale of the speeds. A bounce at 6e-8 of this scale, √(16ε), rises no
+/// higher than the rounding error of the gap and counts as rest.
 const CHATTER_SPEED_RATIO: f64 = 1e-7;
 
 impl Simulation {

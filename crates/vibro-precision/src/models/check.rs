@@ -8,8 +8,9 @@ use std::f64::consts::TAU;
 use std::fmt::Debug;
 use vibro_model::{Orbit, State, orbits};
 
-/// Largest error allowed to every method: for times as a share of a cycle, for speeds as a share of the fastest
-/// approach speed. A method with a thousand fixed steps a cycle reaches this error within some impacts.
+/// Largest error allowed to every method: for times as a share of a cycle, for speeds as a share of the
+/// fastest approach speed. A method with a thousand fixed steps a cycle reaches this error within some
+/// impacts.
 const TOLERANCE: f64 = 0.01;
 /// Approach speed in m/s above which an impact is compared; slower ones may be missing or additional.
 const LEAST_SPEED: f64 = 1e-3;
@@ -22,8 +23,8 @@ const SAME_ORBIT: f64 = 1e-8;
 const SAME_AS_SETTLED: f64 = 1e-4;
 
 /// Judges a motion by its impacts and rests, one by one in their order. Each impact faster than
-/// [`LEAST_SPEED`] must agree within [`TOLERANCE`]. Each rest longer than twice the time tolerance must begin and
-/// end within this tolerance. This holds for both lists: none may be missing, and none additional.
+/// [`LEAST_SPEED`] must agree within [`TOLERANCE`]. Each rest longer than twice the time tolerance must begin
+/// and end within this tolerance. This holds for both lists: none may be missing, and none additional.
 pub fn motion(log: &Log, truth: &Log, task: &Task) -> OutcomeWithReason {
     let time_error = TOLERANCE * task.cycle();
     // An impact or rest that begins later may lie beyond the end of one of the lists.
@@ -135,9 +136,9 @@ fn impact_of(orbit: &Orbit) -> PeriodicImpact {
 
 /// Compares every admissible orbit, corrected for a soft contact, with the periodic motion with this contact.
 ///
-/// The correction is of first order in the phase `ωt_c` of the contact time. So restitution, delay and speed at
-/// the touch keep errors of second order, `3(ωt_c)²` in all. The error must also be below half the error without
-/// the correction; otherwise an orbit without any correction could pass.
+/// The correction is of first order in the phase `ωt_c` of the contact time. So restitution, delay and speed
+/// at the touch keep errors of second order, `3(ωt_c)²` in all. The error must also be below half the error
+/// without the correction; otherwise an orbit without any correction could pass.
 pub fn corrected(task: &Task) -> Result<OutcomeWithReason, OutcomeWithReason> {
     let (found, soft, compliance) = soft_forms(task)?;
     let omega = TAU * task.frequency;

@@ -78,7 +78,8 @@ impl Spring {
         Spring { stiffness, damping, undamped_duration: PI * (mass / stiffness).sqrt() }
     }
 
-    /// Force in N of spring and damper in the state `y`, as if fastened to both masses: negative where it pulls.
+    /// Force in N of spring and damper in the state `y`, as if fastened to both masses: negative where it
+    /// pulls.
     pub fn bilateral_force(&self, task: &Task, y: &[f64; 4]) -> f64 {
         -self.stiffness * task.gap(y) + self.damping * (y[1] - y[3])
     }
@@ -116,8 +117,8 @@ impl Task {
         1.0 / self.frequency
     }
 
-    /// Time derivative of the state (x₁, v₁, x₂, v₂) at the time `t` (s), with the contact force `contact` in N
-    /// between the masses, positive in compression.
+    /// Time derivative of the state (x₁, v₁, x₂, v₂) at the time `t` (s), with the contact force `contact` in
+    /// N between the masses, positive in compression.
     #[inline]
     pub fn derivative(&self, t: f64, y: &[f64; 4], contact: f64) -> [f64; 4] {
         let rig = &self.rig;
@@ -130,8 +131,8 @@ impl Task {
         ]
     }
 
-    /// Contact force in N at which the relative acceleration of the masses vanishes, so that they stay in contact;
-    /// negative where the contact would have to pull.
+    /// Contact force in N at which the relative acceleration of the masses vanishes, so that they stay in
+    /// contact; negative where the contact would have to pull.
     pub fn holding_force(&self, t: f64, y: &[f64; 4]) -> f64 {
         let [_, first, _, second] = self.derivative(t, y, 0.0);
         self.rig.reduced_mass() * (first - second)

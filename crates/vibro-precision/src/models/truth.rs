@@ -1,5 +1,5 @@
-//! The true motions, independent of this library's models: integration of order 8 with a relative tolerance of
-//! 1e-13 from event to event, and Newton's method for periodic motions.
+//! The true motions, independent of this library's models: integration of order 8 with a relative tolerance
+//! of 1e-13 from event to event, and Newton's method for periodic motions.
 
 use super::rivals::{IntegratorKind, Locate, Trajectory, events};
 use super::task::{Log, Spring, Task};
@@ -13,8 +13,8 @@ const INTEGRATOR: IntegratorKind = IntegratorKind::Dop853(1e-13);
 const LENGTH_SCALE: f64 = 1e-3;
 /// Most iterations of Newton's method.
 const ITERATIONS: usize = 30;
-/// Change of an unknown for a central difference, in units of [`LENGTH_SCALE`], [`LENGTH_SCALE`]·ω and rad: about
-/// half the digits of a number.
+/// Change of an unknown for a central difference, in units of [`LENGTH_SCALE`], [`LENGTH_SCALE`]·ω and rad:
+/// about half the digits of a number.
 const DIFFERENCE: f64 = 1e-7;
 /// Largest change of an unknown from one impact to the next for a motion to count as periodic, in units of
 /// [`LENGTH_SCALE`], [`LENGTH_SCALE`]·ω and rad. It allows errors of some ten steps, enlarged near grazing.
@@ -46,16 +46,16 @@ impl PeriodicImpact {
         self.before[1] - self.before[3]
     }
 
-    /// √(relative speed error² + phase error²) of a computed impact, `speed` in m/s and `phase` in rad, against
-    /// this one.
+    /// √(relative speed error² + phase error²) of a computed impact, `speed` in m/s and `phase` in rad,
+    /// against this one.
     pub fn error_of(&self, speed: f64, phase: f64) -> f64 {
         let phase_error = (phase - self.phase + PI).rem_euclid(TAU) - PI;
         (speed / self.speed() - 1.0).hypot(phase_error)
     }
 }
 
-/// Time in s of the next impact of a motion, and the state before it; `None` if there is none. Skips the other
-/// events, within a contact.
+/// Time in s of the next impact of a motion, and the state before it; `None` if there is none. Skips the
+/// other events, within a contact.
 fn next_impact(trajectory: &mut Trajectory<'_>) -> Result<Option<(f64, [f64; 4])>, OutcomeWithReason> {
     while let Some((which, t, y)) = trajectory.next()? {
         let impact = trajectory.is_apart().then_some((t, y));
@@ -108,7 +108,8 @@ pub fn periodic_motion(
             slope.set_column(i, &((closing_error(&up)? - closing_error(&down)?) / (2.0 * DIFFERENCE)));
         }
         let step = slope.lu().solve(&error)?;
-        // Halves the step up to seven times until the error falls. If it does not fall, only rounding is left.
+        // Halves the step up to seven times until the error falls. If it does not fall, only rounding is
+        // left.
         let improved = (0..8).find_map(|halvings| {
             let candidate = u - step * 0.5_f64.powi(halvings);
             let closing_error = closing_error(&candidate)?;

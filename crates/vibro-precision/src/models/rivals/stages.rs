@@ -80,8 +80,8 @@ pub enum Locate {
     Ends,
     /// The first root of the dense output. No root is missed.
     Dense,
-    /// As `Dense`, and a chatter that ends in rest is cut short: its last flights, from the separation speed w
-    /// against the pressing acceleration a, are summed as a geometric series of duration 2w/(a(1 − R)).
+    /// As `Dense`, and a chatter that ends in rest is cut short: its last flights, from the separation speed
+    /// w against the pressing acceleration a, are summed as a geometric series of duration 2w/(a(1 − R)).
     Summed,
 }
 
@@ -101,8 +101,9 @@ pub struct Trajectory<'a> {
 }
 
 impl<'a> Trajectory<'a> {
-    /// The start of a task, with rigid impacts or with a contact. Impacts count as rest below the speed √(2gh) at
-    /// which a bounce is as high as the integrator's error h, 1 mm times its relative tolerance, at g = 10 m/s².
+    /// The start of a task, with rigid impacts or with a contact. Impacts count as rest below the speed
+    /// √(2gh) at which a bounce is as high as the integrator's error h, 1 mm times its relative tolerance, at
+    /// g = 10 m/s².
     pub fn new(
         task: &'a Task,
         spring: Option<Spring>,
@@ -122,8 +123,8 @@ impl<'a> Trajectory<'a> {
         }
     }
 
-    /// Follows the motion to the next event, the end of its stage. Returns the number of the guard that fell to
-    /// zero, the time in s and the state; `None` if the task ends before.
+    /// Follows the motion to the next event, the end of its stage. Returns the number of the guard that fell
+    /// to zero, the time in s and the state; `None` if the task ends before.
     pub fn next(&mut self) -> Result<Option<(usize, f64, [f64; 4])>, OutcomeWithReason> {
         let (system, stage) = (self.system, self.stage);
         let (task, guards) = (system.task, system.guards(stage));
@@ -163,8 +164,8 @@ impl<'a> Trajectory<'a> {
         self.stage == Stage::Apart
     }
 
-    /// Begins the next stage after guard number `which` has fallen to zero at the time `t` (s) in the state `y`:
-    /// applies the impact law, if any, and logs the impact or rest.
+    /// Begins the next stage after guard number `which` has fallen to zero at the time `t` (s) in the state
+    /// `y`: applies the impact law, if any, and logs the impact or rest.
     pub fn apply_event(&mut self, which: usize, t: f64, mut y: [f64; 4]) {
         let System { task, spring } = self.system;
         self.t = t;
@@ -200,8 +201,8 @@ impl<'a> Trajectory<'a> {
             }
             (Stage::Together, _) => {
                 self.log.release(t);
-                // The gap opens with the cube of time and is first below rounding. So no event is searched during
-                // the first 1e-4 of a cycle.
+                // The gap opens with the cube of time and is first below rounding. So no event is searched
+                // during the first 1e-4 of a cycle.
                 let skipped = 1e-4 * task.cycle();
                 y[0] = y[2] + task.rig.gap;
                 y = rk4(&|t: f64, y: &[f64; 4]| task.derivative(t, y, 0.0), t, &y, skipped);

@@ -6,13 +6,13 @@ use crate::OutcomeWithReason;
 use vibro_math::bisected;
 use vibro_math::runge_kutta::{Dop853, DormandPrince, Integrator, Step, Tolerance};
 
-/// Values of x₁, v₁, x₂, v₂ in m and m/s below which the error is controlled absolutely: the relative tolerance
-/// then refers to these values.
+/// Values of x₁, v₁, x₂, v₂ in m and m/s below which the error is controlled absolutely: the relative
+/// tolerance then refers to these values.
 pub(super) const FLOOR: [f64; 4] = [1e-3, 0.05, 1e-3, 0.05];
 
-/// First step in s from the state `y` at `t` (s): a hundredth of a cycle. After a rebound at speed w against a
-/// pressing acceleration a it is also at most a tenth of the flight time 2w/a, since a sign test misses a flight
-/// that ends within its first step.
+/// First step in s from the state `y` at `t` (s): a hundredth of a cycle. After a rebound at speed w against
+/// a pressing acceleration a it is also at most a tenth of the flight time 2w/a, since a sign test misses a
+/// flight that ends within its first step.
 pub(super) fn first_step(task: &Task, t: f64, y: &[f64; 4]) -> f64 {
     let (rebound, pressing) = (y[3] - y[1], task.holding_force(t, y) / task.rig.reduced_mass());
     let flight = if rebound > 0.0 && pressing > 0.0 { 2.0 * rebound / pressing } else { f64::INFINITY };
@@ -31,8 +31,8 @@ pub enum IntegratorKind {
 }
 
 impl IntegratorKind {
-    /// Relative tolerance; for fixed steps h, (ωh)⁴ with the angular frequency ω of the excitation, as the order is
-    /// 4.
+    /// Relative tolerance; for fixed steps h, (ωh)⁴ with the angular frequency ω of the excitation, as the
+    /// order is 4.
     pub fn relative(self) -> f64 {
         match self {
             IntegratorKind::Rk4(n) => (std::f64::consts::TAU / n).powi(4),
@@ -143,12 +143,12 @@ pub(super) fn rk4(f: &impl Fn(f64, &[f64; 4]) -> [f64; 4], t: f64, y: &[f64; 4],
     std::array::from_fn(|i| y[i] + h / 6.0 * (a[i] + 2.0 * (b[i] + c[i]) + d[i]))
 }
 
-/// One step of a plain loop, from time (s), state and step size (s). Returns the state at the end of the step;
-/// and time (s) and approach speed (m/s) of an impact in the step, if any.
+/// One step of a plain loop, from time (s), state and step size (s). Returns the state at the end of the
+/// step; and time (s) and approach speed (m/s) of an impact in the step, if any.
 pub type StepFunction = fn(&Task, f64, &[f64; 4], f64) -> ([f64; 4], Option<(f64, f64)>);
 
-/// Runs a loop of `n` fixed steps per cycle. A run of impacts at most four steps apart that lasts twenty steps
-/// or more is logged as a rest of the masses against each other.
+/// Runs a loop of `n` fixed steps per cycle. A run of impacts at most four steps apart that lasts twenty
+/// steps or more is logged as a rest of the masses against each other.
 pub fn fixed_step_loop(task: &Task, step: StepFunction, n: f64) -> Result<Log, OutcomeWithReason> {
     let h = task.cycle() / n;
     let steps = (task.until / h).ceil();
