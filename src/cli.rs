@@ -1,5 +1,5 @@
-//! The command `vibro`: checks and runs what was typed and prints the result. Nothing in the library uses
-//! this folder.
+//! The command `vibro`: parses and checks the command line, runs the command and prints the result. Nothing
+//! in the library uses this folder.
 
 mod campaign;
 mod complain;
@@ -28,8 +28,8 @@ use clap::{Arg, ArgAction, ArgMatches, Args, Command as Typed};
 use std::any::TypeId;
 use std::path::PathBuf;
 
-/// All commands by purpose, in the order of the help. A row has an example of what is typed after `vibro`,
-/// and what the command does. A new command is a new row.
+/// All commands by purpose, in the order of the help. Each row states an example, without `vibro`, and what
+/// the command does. A new command is a new row.
 const GROUPS: &[(&str, &[CommandRow])] = &[
     (
         "Begin with a folder of recordings",
@@ -136,9 +136,10 @@ fn rows() -> impl Iterator<Item = &'static CommandRow> {
     GROUPS.iter().flat_map(|(_, rows)| rows.iter())
 }
 
-/// Arguments of a command, and its work.
+/// Arguments of a command, and the function that runs it.
 trait CommandArgs: Args {
-    /// How messages name settings: as options, or as keys where a campaign must be corrected.
+    /// How messages name settings: as options, or as keys for commands whose settings stand in a campaign
+    /// file.
     const VOICE: Voice = Voice::Command;
 
     /// Runs the command and returns the exit code.
@@ -189,7 +190,7 @@ const ABOUT: &str = "Measure impacting machines: from analyser files to answers,
 /// The commands that a newcomer needs.
 const FIRST: [&str; 5] = ["init", "run", "demo", "info", "response"];
 
-/// Help where no command was typed.
+/// Help that is printed if no command was typed.
 fn short() -> String {
     let lines: String = rows().filter(|row| FIRST.contains(&row.name())).map(CommandRow::line).collect();
     format!(
@@ -243,7 +244,7 @@ pub fn main() -> u8 {
     if let Some(limit) = typed.get_one::<Limit>("max_memory") {
         limit.state();
     }
-    if respelt::pipes() {
+    if respelt::repeats_stdin() {
         let twice = Error::usage("- stands twice", "standard input once: it is one record");
         return complain::error(&twice, Voice::Command, json);
     }
@@ -267,7 +268,8 @@ pub fn main() -> u8 {
     (row.run)(typed, json).unwrap_or_else(|error| complain::error(&error, row.voice, json))
 }
 
-/// Checks the ranges of all numbers typed after a command: alone, in a range or in a list.
+/// Checks that each number typed after a command is in the range of its option: a single number, one in a
+/// range such as 1:2, or one in a list.
 fn numbers(typed: &ArgMatches) -> Result<()> {
     for key in typed.ids().map(clap::Id::as_str) {
         for words in typed.try_get_raw(key).ok().flatten().into_iter().flatten() {
@@ -279,27 +281,29 @@ fn numbers(typed: &ArgMatches) -> Result<()> {
     Ok(())
 }
 
-/// Turns the fields of all keys into options, in their order. An option has the name of its field and,
-/// unless it states another, a value name by its type. Negative numbers are accepted here: a later check
-/// explains them better than an error about an unknown option.
+/// Turns the fields of all keys into options, in their order. The field `field_name` becomes the option
+/// `--field-name`, unless a long name is declared. The placeholder of its value in the help is by its type,
+/// unless declared. Negative numbers are accepted here: [`numbers`] explains them better than an error about
+/// an unknown option.
 fn options(command: Typed) -> Typed {
     let mut order = 0;
     let option = |arg: Arg| {
         order += 1;
-        let takes = arg.get_action().takes_values();
-        // Options of all commands come after a command's own.
+        let takes_value = arg.get_action().takes_values();
+        // Options that all commands have come after those of the command.
         let order = if arg.is_global_set() { usize::MAX } else { order };
-        let arg = arg.allow_negative_numbers(takes).display_order(order);
+        let arg = arg.allow_negative_numbers(takes_value).display_order(order);
         if arg.get_index().is_some() {
             return arg;
         }
         let id = arg.get_id().to_string();
         let long = arg.get_long().map_or_else(|| id.replace('_', "-"), str::to_owned);
-        let own = arg.get_value_names().is_none_or(|names| names[0] != id.to_uppercase().as_str());
-        let kind = kind(&arg);
+        let placeholder_declared =
+            arg.get_value_names().is_none_or(|names| names[0] != id.to_uppercase().as_str());
+        let placeholder = placeholder(&arg);
         let arg = read_by_type(arg.long(long));
         let arg = if id == "out" { arg.help_heading(OUTPUT) } else { arg };
-        if takes && !own { arg.value_name(kind) } else { arg }
+        if takes_value && !placeholder_declared { arg.value_name(placeholder) } else { arg }
     };
     let command = command.mut_args(option).mut_subcommands(options).next_help_heading(OUTPUT);
     let has = |name: &str| command.get_arguments().any(|arg| arg.get_id() == name);
@@ -311,19 +315,19 @@ fn options(command: Typed) -> Typed {
     command.args(more.into_iter().filter(|(wanted, _)| *wanted).map(|(_, arg)| arg))
 }
 
-/// Heading in the help for options of printed and written output. Options for reading files have a heading
-/// at their struct; those of an analysis have none and come first.
+/// Heading in the help for options of printed and written output. The heading of options for reading files is
+/// at their struct; options of an analysis have no heading and come first.
 const OUTPUT: &str = "Output";
 
-/// Options of commands that write files.
+/// Options that name files to write: a command with one of these also gets `--replace`.
 const WRITES: [&str; 4] = ["out", "output", "each_cycle", "write_lists"];
 
 /// Help of the option `--replace`.
 const REPLACE: &str =
     "Replace files that vibro did not write, or that were changed since; never what the command reads";
 
-/// Placeholder in the help for the value of an option, by its type.
-fn kind(arg: &Arg) -> &'static str {
+/// Placeholder for the value of an option in the help, by the type of the value.
+fn placeholder(arg: &Arg) -> &'static str {
     let is = arg.get_value_parser().type_id();
     if is == TypeId::of::<PathBuf>() {
         return "FILE";
@@ -342,8 +346,7 @@ fn kind(arg: &Arg) -> &'static str {
     }
 }
 
-/// Sets the parser of a value by its type where none is stated, so that a wrong value gives an error of our
-/// own type.
+/// Sets the parser of a number by its type, so that a wrong value gives an error with its expected [`Kind`].
 fn read_by_type(arg: Arg) -> Arg {
     let is = arg.get_value_parser().type_id();
     match () {

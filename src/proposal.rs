@@ -279,8 +279,8 @@ impl Proposal {
             let table = table.open("window", "", "\"hann\", \"flat-top\", ... as the analyser was set");
             proposal.tables.push(table.open("scaling", "", "\"peak\" or \"rms\""));
         }
-        let all = joined::all(found.series, within, kept);
-        for series in alike::all(&all, within, kept, progress) {
+        let all = joined::join_all(found.series, within, kept);
+        for series in alike::tables_of_each(&all, within, kept, progress) {
             proposal.tables.extend(series.tables);
             proposal.left.extend(series.left);
         }

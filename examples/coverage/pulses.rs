@@ -12,7 +12,7 @@ pub const KINDS: &[Kind] = &[
     Kind {
         name: "pulse, spring and damper",
         ranges: "ξ 0.01 to 0.45, 15 to 300 samples a contact; behind a stated low-pass of order 1 to 4 in a \
-        third, its corner 0.7 to 10 over the duration; white noise 0.0003 to 0.03 of the peak, 1/f noise, hum and 12 bits as in decays",
+        third, its corner frequency × contact duration from 0.7 to 10; white noise 0.0003 to 0.03 of the peak, 1/f noise, hum and 12 bits as in decays",
         every: 1,
         draw: |mix| draw(mix, Family::SpringDamper),
     },
@@ -24,7 +24,7 @@ pub const KINDS: &[Kind] = &[
     },
     Kind {
         name: "pulse, ringing behind",
-        ranges: "a force pulse of either law whose sensor rings: a mode at 0.7 to 8 over the duration, ζ 0.005 to \
+        ranges: "a force pulse of either law whose sensor rings: a mode with frequency × contact duration from 0.7 to 8, ζ 0.005 to \
         0.1, that takes 0.3 to 20 % of the force; no low-pass",
         every: 1,
         draw: |mix| draw(mix, Family::Ringing),
@@ -46,8 +46,8 @@ enum Family {
     Other,
 }
 
-/// Contact law F = δⁿ + c δˢ δ̇ of a unit mass with the compression δ. A linear spring may be stiffer in
-/// restitution than in compression.
+/// Contact law F = δⁿ + c δˢ δ̇ of a unit mass with the compression δ. A linear spring may be stiffer while
+/// it unloads than while it is compressed.
 #[derive(Clone, Copy)]
 struct Law {
     /// Exponent n of the spring.
@@ -56,12 +56,12 @@ struct Law {
     s: f64,
     /// Coefficient c of the loss.
     loss: f64,
-    /// Stiffness in restitution over that in compression; 1 for the same.
+    /// Quotient of the stiffness of unloading and that of compression; 1 for the same.
     unloading: f64,
 }
 
 impl Law {
-    /// Contact force at compression `d` and its rate `v`; `most` is the largest compression so far.
+    /// Contact force at the compression `d` and its rate `v`; `most` is the largest compression so far.
     fn force(&self, d: f64, v: f64, most: f64) -> f64 {
         let d = d.max(0.0);
         if self.unloading > 1.0 && v < 0.0 {
@@ -75,11 +75,11 @@ impl Law {
 
 /// The contact of a unit mass that arrives with velocity 1.
 struct Contact {
-    /// Time from one value of the force to the next.
+    /// Interval between values of the force.
     step: f64,
     force: Vec<f64>,
     duration: f64,
-    /// Velocity at the end, opposite to that at the start.
+    /// Coefficient of restitution: separation velocity, at an approach velocity of 1.
     restitution: f64,
 }
 
@@ -102,8 +102,8 @@ impl Contact {
             most = f64::max(most, next.0);
             let (before, after) = (force[force.len() - 1], law.force(next.0, next.1, most));
             if next.1 < 0.0 && (after <= 0.0 || next.0 <= 0.0) {
-                // The step is small beside the contact: the end is found on a straight line between two
-                // steps.
+                // The end of the contact is interpolated linearly between two steps: they are short against
+                // the contact.
                 let part = if after < 0.0 { before / (before - after) } else { d / (d - next.0).max(1e-300) };
                 let duration = (force.len() as f64 - 1.0 + part.min(1.0)) * step;
                 return Contact { step, force, duration, restitution: -(v + part.min(1.0) * (next.1 - v)) };
@@ -146,12 +146,13 @@ fn draw_law(mix: &mut Mix, family: Family) -> Law {
     }
 }
 
-/// What a sensor and its electronics change of a contact force.
+/// Errors of a sensor and its electronics in a contact force.
 struct Sensor {
-    /// Corner of the low-pass over one per duration of the contact, and its order; 0 without a low-pass.
+    /// Corner frequency of the low-pass × contact duration; 0 without a low-pass.
     corner: f64,
+    /// Order of the low-pass.
     order: usize,
-    /// Share of the force that the ringing mode takes; 0 without ringing.
+    /// Share of the force that passes through the ringing mode of the sensor; 0 without ringing.
     ringing: f64,
     /// Natural angular frequency and damping ratio of the ringing mode.
     omega: f64,
@@ -176,9 +177,10 @@ impl Sensor {
         Sensor { corner, order, ringing, omega, zeta }
     }
 
-    /// The force that the sensor shows at `n` times `interval` apart; the contact starts at `onset`.
+    /// `n` samples of the force that the sensor shows, at this `interval`; the contact starts at the time
+    /// `onset`.
     fn shown(&self, contact: &Contact, n: usize, interval: f64, onset: f64) -> Vec<f64> {
-        // Steps of the sensor's integration in an interval: finer than the steps of the contact.
+        // Steps of the sensor's integration in a sampling interval: no longer than the steps of the contact.
         let substeps = (interval / contact.step).ceil().max(4.0) as usize;
         let step = interval / substeps as f64;
         let mut sections = butterworth(self.order, TAU * self.corner / contact.duration);
@@ -206,8 +208,9 @@ impl Sensor {
     }
 }
 
-/// Draws a contact of a family as the sensor shows it, with noise, hum and converter. Compares restitution,
-/// duration and approach velocity with the truth; damping ratio and frequency, too, for spring and damper.
+/// Draws a contact of a family as the sensor shows it, with noise, hum and rounding of the converter.
+/// Compares restitution, duration and approach velocity with the truth; for spring and damper also damping
+/// ratio and frequency.
 fn draw(mix: &mut Mix, family: Family) -> Record {
     let law = draw_law(mix, family);
     let contact = Contact::of(law);
@@ -215,12 +218,12 @@ fn draw(mix: &mut Mix, family: Family) -> Record {
     let samples = mix.log(15.0, 300.0);
     mix.note("samples a contact", samples);
     let sensor = Sensor::draw(mix, family, &contact);
-    // Record before and after the contact, over its duration.
+    // Lengths of record before and after the contact, in contact durations.
     let (before, after) = (mix.random.between(1.0, 4.0), mix.random.between(2.0, 8.0));
     let n = ((before + 1.0 + after) * samples) as usize;
     let onset = (before * samples + mix.random.uniform()) / samples * contact.duration;
     let mut shown = sensor.shown(&contact, n, contact.duration / samples, onset);
-    // From the scales of the integration to those of a bench: velocity in m/s, duration in s.
+    // Scales from unit mass and velocity to a bench: approach velocity in m/s, contact duration in s.
     let (velocity, duration) = (mix.log(0.05, 5.0), mix.log(2e-5, 5e-3));
     let scale = velocity * contact.duration / duration;
     for a in &mut shown {
@@ -280,7 +283,7 @@ impl Section {
 
 /// Sections of a Butterworth low-pass with its corner at ω.
 fn butterworth(order: usize, omega: f64) -> Vec<Section> {
-    // Damping ratio of each pair of poles; an odd order has one real pole beside.
+    // Damping ratio of pole pair number k; an odd order also has one real pole.
     let zeta = |k: usize| ((2 * k + 1) as f64 * TAU / (4.0 * order as f64)).sin();
     let pairs = (0..order / 2).map(|k| Some(zeta(k)));
     pairs

@@ -1,5 +1,5 @@
-//! Cache of answers and pictures for the next run. They are computed again only where their keys, their
-//! files or the program changed.
+//! Cache of answers and figures for the next run. They are computed again only if their keys, their files or
+//! the program changed.
 
 use crate::error::Result;
 use crate::read::{Digest, Folder};
@@ -25,13 +25,13 @@ pub struct AnswerCache {
     old: BTreeMap<Digest, Vec<u8>>,
     /// Answers of this run.
     now: Mutex<BTreeMap<Digest, Vec<u8>>>,
-    /// Digests of files, with the size and time that the file had before it was hashed, to notice later
-    /// changes.
+    /// Digests of files, with the size and modification time of each before it was hashed. A different stamp
+    /// later shows that the file changed.
     files: Mutex<BTreeMap<PathBuf, (Digest, Stamp)>>,
 }
 
 impl AnswerCache {
-    /// Name of the file of a folder of results in which the cache is kept.
+    /// Name of the cache file in a folder of results.
     pub const FILE: &str = Output::KEPT;
 
     /// A cache without an earlier run.
@@ -39,38 +39,40 @@ impl AnswerCache {
         AnswerCache { folder: folder.clone(), ..AnswerCache::default() }
     }
 
-    /// The cache that the last run of exactly this program left in a folder of results; empty if it cannot
-    /// be read.
+    /// The cache that the last run wrote to a folder of results; empty if it cannot be read, or if another
+    /// build of the program wrote it.
     pub fn of(folder: &Folder) -> AnswerCache {
-        let kept = AnswerCache::none(folder);
+        let cache = AnswerCache::none(folder);
         let old = folder.own_file(AnswerCache::FILE).and_then(|bytes| {
             let (sum, rest) = bytes.split_at_checked(size_of::<Digest>())?;
             let (program, old): (Digest, BTreeMap<Digest, Vec<u8>>) =
                 rmp_serde::from_slice(rest).ok().filter(|_| digest([rest]) == *sum)?;
-            (Some(program) == kept.program()).then_some(old)
+            (Some(program) == cache.program()).then_some(old)
         });
-        AnswerCache { old: old.unwrap_or_default(), ..kept }
+        AnswerCache { old: old.unwrap_or_default(), ..cache }
     }
 
-    /// Whether the last run kept an answer for these inputs.
+    /// Whether the last run cached an answer for these inputs.
     pub fn is_old(&self, inputs: &Digest) -> bool {
         self.old.contains_key(inputs)
     }
 
-    /// The kept answer for the digest `inputs`, else the one that `make` computes. The computed one is kept
-    /// unless one of the files changed since it was hashed.
+    /// The cached answer for the digest `inputs`, else the one that `make` computes, which is then cached.
+    ///
+    /// Call [`file`](Self::file) on each of `files` first. An answer is not cached if one of them changed
+    /// since, or was not hashed.
     ///
     /// # Errors
-    /// Those of `make`; they are not kept.
+    /// Those of `make`; they are not cached.
     pub fn or_make<T>(&self, inputs: Digest, files: &[PathBuf], make: impl FnOnce() -> Result<T>) -> Result<T>
     where
         T: Serialize + DeserializeOwned,
     {
-        let kept = locked(&self.now).get(&inputs).or_else(|| self.old.get(&inputs)).cloned();
-        let kept = kept.and_then(|bytes| Some((rmp_serde::from_slice(&bytes).ok()?, bytes)));
-        if let Some((found, bytes)) = kept {
+        let cached = locked(&self.now).get(&inputs).or_else(|| self.old.get(&inputs)).cloned();
+        let cached = cached.and_then(|bytes| Some((rmp_serde::from_slice(&bytes).ok()?, bytes)));
+        if let Some((answer, bytes)) = cached {
             locked(&self.now).insert(inputs, bytes);
-            return Ok(found);
+            return Ok(answer);
         }
         let made = make()?;
         let hashed_stamp = |path: &PathBuf| locked(&self.files).get(path).map(|(_, stamp)| *stamp);
@@ -80,13 +82,14 @@ impl AnswerCache {
         Ok(made)
     }
 
-    /// Content of the file of the cache: a digest, then the program and the answers of this run.
+    /// Content of the cache file: a digest of the rest, then the digest of the program and the answers of
+    /// this run.
     pub fn bytes(&self) -> Vec<u8> {
         let rest = packed(&(self.program(), &*locked(&self.now))).unwrap_or_default();
         [&digest([&rest])[..], &rest].concat()
     }
 
-    /// The digest of a file, which is read once a run.
+    /// The digest of a file. A file is read for it once in a run.
     ///
     /// # Errors
     /// If the file cannot be read.
@@ -107,7 +110,8 @@ impl AnswerCache {
     }
 }
 
-/// The digest of several parts, with their lengths so that their borders count.
+/// The digest of several parts with the length of each, so that the same bytes in other parts have another
+/// digest.
 pub fn digest<T: AsRef<[u8]>>(parts: impl IntoIterator<Item = T>) -> Digest {
     let mut hash = Sha256::new();
     for part in parts {
@@ -124,7 +128,7 @@ pub fn packed(value: &impl Serialize) -> Option<Vec<u8>> {
     value.serialize(&mut packer).ok().map(|()| bytes)
 }
 
-/// The content of a mutex. One that another thread left by a panic is used as it is.
+/// The content of a mutex; also of one that is poisoned by the panic of another thread.
 fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }

@@ -1,27 +1,30 @@
-//! Ranges of the numbers in options of the command line and keys of a campaign, in one table for both. A
-//! model itself checks the values of a rig, of its excitation and of questions to it:
+//! Ranges of the numbers in options of the command line and keys of a campaign, in one table for both. Values
+//! of a rig, of its excitation and of the settings of a model are checked by the model:
 //! [`crate::model::Parameter`].
 
 use crate::error::{Error, Result};
 use toml::de::DeValue;
 
-/// Largest size of any quantity, and smallest size that is not 0. Estimators multiply at most six stated
-/// values: such products stay within 10^±308.
+/// Largest magnitude of a quantity. Estimators multiply at most six stated values, so products stay below
+/// 1e308.
 const LARGEST: f64 = 1e50;
+/// Smallest magnitude of a quantity that is not 0, for the same reason.
 const LEAST: f64 = 1e-50;
-/// Longest and shortest time in s: thirty years, and less than any contact or sampling interval.
+/// Longest time in s: thirty years.
 const LONGEST: f64 = 1e9;
+/// Shortest time in s: less than any contact or sampling interval.
 const SHORTEST: f64 = 1e-12;
 
-/// Lower end of a range, and the expectation in the error for a number below it, or not a number.
+/// Lower bound of a number, and what the error says was expected if the number is below it or not finite.
 type Sign = (f64, &'static str);
 const ABOVE: Sign = (f64::MIN_POSITIVE, "a finite number above 0");
 const ZERO: Sign = (0.0, "a finite number of 0 or more");
 const ANY: Sign = (f64::NEG_INFINITY, "a finite number");
 
-/// Keys of one kind: sign, largest size, smallest size that is not 0, unit.
+/// Range of some keys: lower bound, largest magnitude, smallest magnitude that is not 0, unit, and the keys.
 type Row = (Sign, f64, f64, &'static str, &'static [&'static str]);
 
+/// Ranges of all keys and options.
 const ROWS: &[Row] = &[
     (ABOVE, LARGEST, LEAST, "Hz", &["rate", "base_band", "shape_rate", "excitation", "instrument"]),
     (ABOVE, LARGEST, LEAST, "Hz", &["low_pass", "high_pass", "fmin", "fmax", "resample"]),
@@ -33,7 +36,7 @@ const ROWS: &[Row] = &[
     (ANY, LONGEST, SHORTEST, "s", &["delay"]),
     // Times since 1970, even if written in ns.
     (ANY, 4e18, SHORTEST, "s", &["span"]),
-    // A drill compares these with the duration of its turn.
+    // The analysis of a drill checks these against the duration of a turn.
     (ABOVE, f64::MAX, SHORTEST, "s", &["contact", "fit_duration"]),
     (ABOVE, LARGEST, LEAST, "kg", &["mass", "struck_mass", "masses"]),
     (ABOVE, LARGEST, LEAST, "", &["height", "gravity", "grazing", "decibel", "force_calibration"]),

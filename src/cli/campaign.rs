@@ -51,7 +51,7 @@ pub struct Compare {
     out: Option<PathBuf>,
 }
 
-/// Opens a campaign file, or the campaign of a folder. A folder without a campaign gives an empty one.
+/// Opens a campaign file, or the campaign of a folder; an empty campaign for a folder without one.
 fn opened(within: &Folder, path: &Path) -> Result<Campaign> {
     let of_folder = path.join(Proposal::FILE);
     if !path.is_dir() {
@@ -63,7 +63,7 @@ fn opened(within: &Folder, path: &Path) -> Result<Campaign> {
     }
 }
 
-/// The campaign itself, or, where it has no file, the one proposed for the recordings of its folder.
+/// The campaign itself; if it has no file, the campaign proposed for the recordings of its folder.
 fn proposed(campaign: Campaign, kept: &AnswerCache, json: bool) -> Result<Campaign> {
     if campaign.is_file() {
         return Ok(campaign);
@@ -71,7 +71,7 @@ fn proposed(campaign: Campaign, kept: &AnswerCache, json: bool) -> Result<Campai
     let (folder, within) = (campaign.folder(), campaign.within());
     let look = |bar: &ProgressBar| Proposal::of(within, &Reading::default(), None, kept, bar);
     let proposal = print::busy(json, "looking at files", look)?;
-    init::tell(&proposal);
+    init::print_tables(&proposal);
     complain::line(&format!("to change any of it: vibro init {}", typed(folder)));
     proposal.campaign()
 }
@@ -133,7 +133,7 @@ impl Run {
         all.map(|path| (path.clone(), within.stamp(&path))).collect()
     }
 
-    /// Runs the campaign once. Gives the exit code: 1 where no record could be answered.
+    /// Runs the campaign once. Returns the exit code: 1 if no record gives an answer.
     fn once(&self, json: bool) -> Result<u8> {
         let campaign = opened(&self.within(), &self.campaign)?;
         let folder = self.out.clone().unwrap_or_else(|| campaign.out());
@@ -171,7 +171,7 @@ impl Run {
 impl super::CommandArgs for Compare {
     const VOICE: Voice = Voice::Campaign;
 
-    /// Prints measured responses over the model.
+    /// Prints measured responses against the model.
     fn run(&self, json: bool) -> Result<u8> {
         let within = Folder::default().allow_outside(self.allow_outside);
         let output = print::results(&within, self.out.as_deref(), COMPARISON)?;

@@ -23,7 +23,7 @@ pub fn errors(all: &[Error], voice: Voice, json: bool) -> u8 {
     let spoken = |error: &Error| {
         let text = error.text_with(|key, value| voice.set(key, value), |hint| spelt(hint, error));
         let help = voice == Voice::Command && error.is_bare_usage();
-        if help { format!("{text}\n  try: {} --help", Words::typed().command) } else { text }
+        if help { format!("{text}\n  try: {} --help", TypedCommand::of_args().command) } else { text }
     };
     let texts: Vec<String> = all.iter().map(spoken).collect();
     for text in &texts {
@@ -84,32 +84,33 @@ fn file_of(error: &Error, words: impl Iterator<Item = OsString>) -> Option<OsStr
 }
 
 /// The command that was typed.
-struct Words {
-    /// Its full name: `vibro model orbit`.
+struct TypedCommand {
+    /// Full name: `vibro model orbit`.
     command: String,
     row: Option<&'static CommandRow>,
-    /// Its definition: subcommands and arguments.
-    own: Typed,
+    /// Definition of the command: subcommands and arguments.
+    definition: Typed,
 }
 
-impl Words {
-    fn typed() -> Words {
+impl TypedCommand {
+    fn of_args() -> TypedCommand {
         let words = std::env::args_os().skip(1).map(|word| word.to_string_lossy().into_owned());
         let words: Vec<String> = words.filter(|word| !word.starts_with('-')).collect();
         let row = rows().find(|row| words.first().is_some_and(|word| word == row.name()));
-        let mut found = Words { command: "vibro".to_owned(), row, own: super::command() };
+        let mut found = TypedCommand { command: "vibro".to_owned(), row, definition: super::command() };
         for word in words.iter().take(2) {
-            let Some(part) = found.own.find_subcommand(word).cloned() else { break };
-            found.own = part;
+            let Some(part) = found.definition.find_subcommand(word).cloned() else { break };
+            found.definition = part;
             found.command = format!("{} {word}", found.command);
         }
         found
     }
 
-    /// Names of its subcommands and options.
+    /// Names of the subcommands and options of the command.
     fn names(&self) -> Vec<String> {
-        let parts = self.own.get_subcommands().map(|part| part.get_name().to_owned());
-        let options = self.own.get_arguments().filter_map(|arg| Some(format!("--{}", arg.get_long()?)));
+        let parts = self.definition.get_subcommands().map(|part| part.get_name().to_owned());
+        let options =
+            self.definition.get_arguments().filter_map(|arg| Some(format!("--{}", arg.get_long()?)));
         parts.chain(options).collect()
     }
 
@@ -123,7 +124,7 @@ impl Words {
             }
             None => named.trim_matches(['<', '>', '[', ']', '.']) == name(arg),
         };
-        match self.own.get_arguments().find(is) {
+        match self.definition.get_arguments().find(is) {
             Some(arg) => {
                 let long = arg.get_long().map(|long| format!("--{long} "));
                 format!("{}{}", long.unwrap_or_default(), name(arg)).trim_end().to_owned()
@@ -133,8 +134,8 @@ impl Words {
     }
 }
 
-/// Terms of the field that are no commands, with the command for each.
-const WORDS: [(&str, &str); 11] = [
+/// Terms of the field that are not names of commands, each with the command for it.
+const FIELD_TERMS: [(&str, &str); 11] = [
     ("modes", "modal"),
     ("hammer", "modal"),
     ("frf", "modal"),
@@ -157,10 +158,10 @@ fn commands_with(option: &str) -> Vec<String> {
     super::command().get_subcommands().filter(|c| has(c)).map(|c| c.get_name().to_owned()).collect()
 }
 
-/// A message of clap as an error of ours, made from its kind and context; its text is not used.
+/// Turns an error of clap into an [`Error`], by its kind and context; its text is not used.
 fn plain(complaint: &clap::Error) -> Error {
     let context = |kind| complaint.get(kind).map(ToString::to_string).unwrap_or_default();
-    let words = Words::typed();
+    let words = TypedCommand::of_args();
     let command = &words.command;
     let name = command.strip_prefix("vibro ");
     let help = format!("{command} --help");
@@ -212,9 +213,10 @@ fn plain(complaint: &clap::Error) -> Error {
 }
 
 /// The error of an unknown command.
-fn unknown_command(words: &Words, name: &str) -> Error {
-    let Words { command, .. } = words;
-    let called = WORDS.iter().find(|(word, _)| *word == name && command == "vibro").map(|(_, own)| *own);
+fn unknown_command(words: &TypedCommand, name: &str) -> Error {
+    let TypedCommand { command, .. } = words;
+    let called =
+        FIELD_TERMS.iter().find(|(word, _)| *word == name && command == "vibro").map(|(_, own)| *own);
     let own = words.names();
     let near = called.or_else(|| nearest(name, own.iter().map(String::as_str)));
     // The hint keeps the arguments that were typed after the command.
@@ -230,7 +232,7 @@ fn unknown_command(words: &Words, name: &str) -> Error {
 }
 
 /// The error of an argument that the command does not take.
-fn unknown_argument(words: &Words, argument: &str) -> Error {
+fn unknown_argument(words: &TypedCommand, argument: &str) -> Error {
     let option = argument.split([' ', '=']).next().unwrap_or_default();
     if Path::new(argument).exists() {
         return Error::usage(format!("one file too many: {argument}"), "")

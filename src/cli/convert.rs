@@ -36,9 +36,9 @@ pub struct Convert {
     reading: Reading,
 }
 
-/// Peak memory while a file is written, as a multiple of its values. Measured with ten million samples of
-/// twenty digits.
-const BESIDE: [(Target, f64); 5] =
+/// Peak memory while a file is written, as a multiple of the memory of its values. Measured with ten million
+/// samples of twenty digits.
+const PEAK_MEMORY: [(Target, f64); 5] =
     [(Target::Uff, 3.0), (Target::Csv, 4.5), (Target::Tsv, 4.5), (Target::Npy, 2.2), (Target::Wav, 1.2)];
 
 impl CommandArgs for Convert {
@@ -62,8 +62,8 @@ impl CommandArgs for Convert {
         let one = self.channel.channel.is_some() || self.channel.calibration.is_some();
         let reader = self.reading.reader()?.within(&folder);
         let reader = if one || self.change.wanted() { reader.rate_of_base_band() } else { reader };
-        let beside = BESIDE.iter().find(|row| row.0 == target).map_or(1.0, |row| row.1);
-        let reader = reader.beside(beside).only(self.channel.channel.clone());
+        let multiple = PEAK_MEMORY.iter().find(|row| row.0 == target).map_or(1.0, |row| row.1);
+        let reader = reader.beside(multiple).only(self.channel.channel.clone());
         let mut recording = reader.from_path(&self.input)?;
         if one {
             let trace = recording.take_trace(self.channel.channel.as_deref(), self.channel.calibration)?;
@@ -115,7 +115,7 @@ struct TraceProcessing {
     excitation: Option<f64>,
 }
 
-/// Filter order of one pass.
+/// Order of a Butterworth filter in one of its two passes, forward and backward.
 const ORDER: usize = 4;
 
 impl TraceProcessing {

@@ -20,9 +20,10 @@ pub struct Info {
     reading: Reading,
 }
 
-/// Number of notes of a file that are printed, and characters of each.
+/// Number of notes of a file that are printed.
 const NOTES: usize = 8;
-const WIDE: usize = 90;
+/// Number of characters that are printed of a note.
+const NOTE_LENGTH: usize = 90;
 
 impl CommandArgs for Info {
     /// Lists each file and reports those that cannot be read; returns the exit code of the first failure.
@@ -112,8 +113,8 @@ fn known(value: f64, unit: &str) -> String {
 
 fn notes(text: &mut String, notes: &[String]) {
     let shown = notes.iter().take(NOTES).map(|note| {
-        let long = note.chars().count() > WIDE;
-        if long { note.chars().take(WIDE - 1).chain(['…']).collect() } else { note.clone() }
+        let long = note.chars().count() > NOTE_LENGTH;
+        if long { note.chars().take(NOTE_LENGTH - 1).chain(['…']).collect() } else { note.clone() }
     });
     let mut shown: Vec<String> = shown.collect();
     if notes.len() > NOTES {

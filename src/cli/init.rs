@@ -80,7 +80,7 @@ impl super::CommandArgs for Init {
                 "findings": [],
             }))?;
         } else {
-            tell(&proposal);
+            print_tables(&proposal);
             for (file, why) in &proposal.left {
                 complain::line(&format!("not used: {file}: {why}"));
             }
@@ -128,7 +128,7 @@ fn refused(proposal: &Proposal) -> Vec<Value> {
 }
 
 /// Prints which tables are proposed, with guessed and missing keys.
-pub fn tell(proposal: &Proposal) {
+pub fn print_tables(proposal: &Proposal) {
     let mut series: Vec<(&str, &str)> = Vec::new();
     for table in &proposal.tables {
         if series.contains(&(table.section, table.name())) {

@@ -51,11 +51,11 @@ pub fn answer(mut answer: Answer, output: Option<Output>, json: bool) -> Result<
 }
 
 /// File name endings that a folder for results must not have: `--out book.xlsx` is a mistake for a file.
-const FILES: &str = "csv tsv txt dat asc uff unv ufb wav npy mat h5 hdf5 tdms lvm zip xlsx xlsm xls ods \
+const FILE_ENDINGS: &str = "csv tsv txt dat asc uff unv ufb wav npy mat h5 hdf5 tdms lvm zip xlsx xlsm xls ods \
                      svg png jpg pdf html json toml md";
 
-/// A folder for results, with the chosen style of figures. `elsewhere` is the hint where an existing file is
-/// in the way.
+/// A folder for results, with the chosen style of figures. `elsewhere` is the hint of the error if an
+/// existing file would be replaced.
 ///
 /// # Errors
 /// As [`Output::new`]; if a new folder has the name of a file.
@@ -63,7 +63,7 @@ pub fn output(folder: Folder, owner: Owner, elsewhere: String) -> Result<Output>
     let OutputSettings { medium, replace } = WRITTEN.get().copied().unwrap_or_default();
     let root = folder.root();
     let ending = root.extension().map_or_else(String::new, |ending| ending.to_string_lossy().to_lowercase());
-    if FILES.split(' ').any(|known| known == ending) && !folder.exists(root) {
+    if FILE_ENDINGS.split(' ').any(|known| known == ending) && !folder.exists(root) {
         let plain = root.with_extension("");
         let plain = if folder.exists(&plain) && !folder.is_folder(&plain) { unused(&plain) } else { plain };
         let found = format!("a folder named like a file: {}", shown(root));
@@ -152,7 +152,7 @@ pub struct OutputSettings {
     pub replace: bool,
 }
 
-/// These options, set once from the command line.
+/// The options for written files, set once from the command line.
 pub static WRITTEN: OnceLock<OutputSettings> = OnceLock::new();
 
 /// Runs the work with a progress bar on standard error; without one if that is no terminal or `json` is set.

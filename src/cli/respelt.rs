@@ -1,5 +1,5 @@
-//! Rewrites the typed words before they are parsed: patterns of file names are expanded where the shell did
-//! not, and renamed options are replaced, with a note.
+//! Rewrites the typed words before they are parsed. File name patterns that the shell did not expand are
+//! expanded; renamed options are replaced, with a note.
 
 use super::complain;
 use crate::analysis::matching;
@@ -9,7 +9,7 @@ use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
 /// Renamed options: command, old spelling, new spelling.
-const OLD: [(&str, &str, &str); 8] = [
+const RENAMED: [(&str, &str, &str); 8] = [
     ("drill", "--from", "--beam-from"),
     ("drill", "--fit", "--fit-duration"),
     ("drill", "--noise", "--noise-record"),
@@ -22,28 +22,29 @@ const OLD: [(&str, &str, &str); 8] = [
 
 /// Commands that take several files. For others a pattern must match a single file. `convert` takes no
 /// pattern, since one of its words names the file to write.
-const SEVERAL: [&str; 2] = ["info", "restitution"];
+const MULTI_FILE_COMMANDS: [&str; 2] = ["info", "restitution"];
 
-/// Files that match a pattern, in numerical order (`run2` before `run10`). A word without a match is kept. As
-/// in a shell, a hidden file needs an explicit dot.
-fn named(word: OsString, command: &str) -> Vec<OsString> {
+/// Files that match a word with a pattern, in numerical order (`run2` before `run10`); the word itself if no
+/// file matches. As in a shell, a hidden file needs an explicit dot.
+fn matching_files(word: OsString, command: &str) -> Vec<OsString> {
     let pattern =
         word.to_str().filter(|w| w.contains(['*', '?']) && !w.starts_with('-') && !Path::new(w).exists());
     let any = Folder::default().allow_outside(true);
     let files = pattern.and_then(|pattern| matching(&any, Path::new(&pattern.replace('[', "[[]"))).ok());
     let files = files.unwrap_or_default();
-    let expands = files.len() == 1 && command != "convert" || files.len() > 1 && SEVERAL.contains(&command);
+    let expands =
+        files.len() == 1 && command != "convert" || files.len() > 1 && MULTI_FILE_COMMANDS.contains(&command);
     if expands { files.into_iter().map(PathBuf::into_os_string).collect() } else { vec![word] }
 }
 
-/// Whether standard input is named more than once; it can be read only once.
-pub fn pipes() -> bool {
+/// Whether standard input, `-`, is named more than once: it can be read only once.
+pub fn repeats_stdin() -> bool {
     std::env::args_os().filter(|word| word == "-").count() > 1
 }
 
 /// Joins a number and the unit typed after it, so that the error about the unit names its option: `--height
 /// 0.4 m`.
-fn with_units(mut typed: Vec<OsString>) -> Vec<OsString> {
+fn joined_units(mut typed: Vec<OsString>) -> Vec<OsString> {
     let is_unit =
         |unit: &str| without_unit("mass", &format!("1{unit}")).is_some() && !Path::new(unit).exists();
     let joined = |words: &[OsString]| {
@@ -62,20 +63,20 @@ fn with_units(mut typed: Vec<OsString>) -> Vec<OsString> {
 
 /// The typed words with patterns expanded and current spellings.
 pub fn args() -> impl Iterator<Item = OsString> {
-    let typed = with_units(std::env::args_os().collect());
+    let typed = joined_units(std::env::args_os().collect());
     let words = typed.iter().skip(1).filter_map(|word| word.to_str()).filter(|word| !word.starts_with('-'));
     let command = words.take(2).collect::<Vec<_>>().join(" ");
     let first = command.split(' ').next().unwrap_or_default().to_owned();
     let of = move |row: &&(&str, &str, &str)| command == row.0 || command.starts_with(&format!("{} ", row.0));
-    let rows: Vec<_> = OLD.iter().filter(of).collect();
+    let rows: Vec<_> = RENAMED.iter().filter(of).collect();
     // A word after an option may be its value and is not rewritten.
-    let mut free = true;
-    let named = move |word: OsString| {
+    let mut may_be_file = true;
+    let expanded = move |word: OsString| {
         let is_option = word.to_str().is_some_and(|w| w.starts_with('-'));
-        let before = std::mem::replace(&mut free, !is_option);
-        if before { named(word, &first) } else { vec![word] }
+        let rewritten = std::mem::replace(&mut may_be_file, !is_option);
+        if rewritten { matching_files(word, &first) } else { vec![word] }
     };
-    typed.into_iter().flat_map(named).map(move |word| {
+    typed.into_iter().flat_map(expanded).map(move |word| {
         let (option, value) = word.to_str().and_then(|w| w.split_once('=')).unzip();
         let option = option.or(word.to_str());
         let Some((_, old, new)) = rows.iter().find(|row| option == Some(row.1)) else { return word };
@@ -90,7 +91,7 @@ mod tests {
 
     #[test]
     fn old_spellings_are_no_option_of_their_commands_and_new_ones_are() {
-        for (command, old, new) in OLD {
+        for (command, old, new) in RENAMED {
             let all = crate::cli::command();
             let of = command.split(' ').fold(&all, |at, name| at.find_subcommand(name).unwrap());
             let has =

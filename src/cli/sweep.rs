@@ -113,7 +113,7 @@ impl SweepSource {
     fn listed(&self, folder: &Folder) -> Result<Listed> {
         let SweepPlace { path, name, campaign } = SweepPlace::of(&self.paths[0]);
         let mut listed = if let Some(proposal) = self.proposed(folder)? {
-            init::tell(&proposal);
+            init::print_tables(&proposal);
             let mut listed = named(&proposal.campaign()?, None)?;
             if let Files::Traces(steps) = &listed.files {
                 listed.findings.extend(more_steps(&folder.clone().allow_outside(true), &steps.files));

@@ -38,7 +38,7 @@ use data::{Data, GUESS, StepAmplitude, SweepStep};
 use hold_out::rungs;
 use problem::{Problem, shown};
 use rayon::prelude::*;
-use search::{FINE, LocalMinimum, distances};
+use search::{FINE_KAPPA, LocalMinimum, distances};
 use uncertainty::{NORMAL, Uncertainty, profile};
 use unknown::{Setting, Unknown};
 

@@ -1,4 +1,4 @@
-//! Measured sweeps, their prediction, and the models of the ladder that they need.
+//! Measured sweeps, their prediction, and the models of the ladder that the prediction needs.
 
 use super::forcing::Forcing;
 use super::prediction::{MotionKind, Prediction, in_order};
@@ -58,15 +58,16 @@ pub(super) struct Predictor<'a> {
     pub pace: Pace,
 }
 
-/// Largest number of points of a simulated curve: their spacing is far below the width of a resonance.
-const FOLLOWED: usize = 400;
-/// Cycles at each of these: fewer than at a measured point, since the motion continues to the next point.
-const PASSING: Pace = Pace { settle: 100, measure: 16 };
+/// Largest number of points of a simulated curve, spaced far below the width of a resonance.
+const CURVE_POINTS: usize = 400;
+/// Cycles at each point of a simulated curve: fewer than at a measured point, since the next point is close.
+const CURVE_PACE: Pace = Pace { settle: 100, measure: 16 };
 
-/// A point of a predicted curve as a sweep follows it.
+/// A point of the predicted curve that a sweep follows.
 pub(super) struct Followed {
+    /// Excitation frequency in Hz.
     pub frequency: f64,
-    /// NaN where the motion cannot be followed.
+    /// Amplitude in m of the mass of the sweep; NaN where the motion cannot be followed.
     pub amplitude: f64,
     /// Whether the masses meet once a cycle.
     pub impacting: bool,
@@ -86,10 +87,10 @@ impl Predictor<'_> {
                 curve.followed(sweep.direction).into_iter().map(|m| m.map(|m| (m.kind, m.amplitude)));
             return curve.frequency.iter().zip(motions).map(|(f, motion)| point(*f, motion)).collect();
         }
-        let step = curve.frequency.len().div_ceil(FOLLOWED).max(1);
+        let step = curve.frequency.len().div_ceil(CURVE_POINTS).max(1);
         let points = curve.frequency.iter().step_by(step).map(|f| (*f, sweep.forcing.at(*f)));
         let points = in_order(sweep.direction, points.collect());
-        let simulated = simulated(self.rig, self.law, &points, PASSING).into_iter();
+        let simulated = simulated(self.rig, self.law, &points, CURVE_PACE).into_iter();
         let motions = simulated.map(|s| s.ok().map(|s| (MotionKind::of(s.regime), s.amplitude)));
         let followed = points.iter().zip(motions).map(|((f, _), motion)| point(*f, motion));
         in_order(sweep.direction, followed.collect())
@@ -121,8 +122,9 @@ pub struct Rungs {
     pub finding: Option<Finding>,
 }
 
-/// Frequencies at which the ladder is evaluated: two a Hz over both resonances of the thesis' rig.
-const ASKED: usize = 24;
+/// Number of frequencies at which the ladder is evaluated: two per Hz in the range of both resonances of the
+/// thesis' rig.
+const LADDER_POINTS: usize = 24;
 
 /// Evaluates the ladder at evenly spaced frequencies (Hz) of a sweep: whether a model is adequate for the
 /// fundamental of the displacement.
@@ -142,7 +144,7 @@ pub fn rungs(
         history: Some(direction),
         ..Question::new(Observable::Fundamental)
     };
-    let survey = choose_over(&scene, low, high, ASKED, &question)?;
+    let survey = choose_over(&scene, low, high, LADDER_POINTS, &question)?;
     let moves = |p: &&Choice| p.sensitivity.iter().map(|s| s.change.abs()).fold(0.0, f64::max);
     let open = survey.points.iter().filter(|p| p.chosen.is_none());
     let open = open.max_by(|a, b| moves(a).total_cmp(&moves(b)));

@@ -243,7 +243,7 @@ impl FileSeries {
         let (force, responses) = self.force_and_responses()?;
         let table = Table::new("sweep", "a stepped sweep, one file a step", &self.in_words());
         let table = table.found("name", &self.name);
-        let table = match self.way() {
+        let table = match self.direction() {
             Some(way) => table.guessed("direction", way, "the name says it"),
             None => table,
         };

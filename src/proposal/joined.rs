@@ -14,122 +14,129 @@ use rayon::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
-/// Largest relative difference in length between the records of one sweep, each stopped by a person or a
-/// timer.
+/// Largest relative difference in number of samples between records of one sweep. A person or a timer stops
+/// each of them.
 const LENGTH_TOLERANCE: f64 = 0.01;
-/// Least share of the strongest sine in the power of the force of a sweep step. A shaker distorts at
-/// resonance, but the sine stays the larger part.
+/// Smallest share of the strongest sine in the power of the force, for a file to count as a sweep step. A
+/// shaker distorts at resonance, but the sine stays the larger part.
 const LEAST_SINE_SHARE: f64 = 0.5;
-/// Number of files that are read first; they decide whether the others are read.
-const FEW: usize = 8;
-/// Most drops with unrelated names that are read one by one: each takes an analysis.
+/// Number of files probed, at even distances. The rest are read only if these look like steps of one sweep,
+/// or drops of one series.
+const PROBE_FILES: usize = 8;
+/// Most single files with unrelated names that are compared as drops: each takes an analysis.
 const MOST_DROPS: usize = 64;
 
-/// Joins the series that belong together but for their names; the others stay.
-pub(super) fn all(series: Vec<FileSeries>, folder: &Folder, kept: &AnswerCache) -> Vec<FileSeries> {
+/// Merges series that belong together although their names differ; returns the others unchanged.
+pub(super) fn join_all(series: Vec<FileSeries>, folder: &Folder, kept: &AnswerCache) -> Vec<FileSeries> {
     let mut families: BTreeMap<String, Vec<usize>> = BTreeMap::new();
     for (i, series) in series.iter().enumerate() {
         families.entry(series.family()).or_default().push(i);
     }
-    let sets = |places: &Vec<usize>| {
-        let members: Vec<&FileSeries> = places.iter().map(|i| &series[*i]).collect();
+    // Merged series of a family, each with the indices of the series in it.
+    let merged_in = |family: &Vec<usize>| {
+        let members: Vec<&FileSeries> = family.iter().map(|i| &series[*i]).collect();
         let trial = Trial { folder, reading: &members[0].reading, kept };
-        let sets = match members[0].force_and_responses() {
+        let merged = match members[0].force_and_responses() {
             _ if members.len() < 2 => Vec::new(),
             Some((force, _)) => sweeps(&trial, &members, force),
             None => drops(&trial, &members).into_iter().collect(),
         };
-        let in_folder = |(set, joined): (Vec<usize>, FileSeries)| {
-            (set.into_iter().map(|k| places[k]).collect::<Vec<_>>(), joined)
+        let with_series_indices = |(indices, merged): (Vec<usize>, FileSeries)| {
+            (indices.into_iter().map(|k| family[k]).collect::<Vec<_>>(), merged)
         };
-        sets.into_iter().map(in_folder).collect::<Vec<_>>()
+        merged.into_iter().map(with_series_indices).collect::<Vec<_>>()
     };
-    let joined: Vec<(Vec<usize>, FileSeries)> = families.values().flat_map(sets).collect();
-    let mut all: Vec<Option<FileSeries>> = series.into_iter().map(Some).collect();
-    for (places, merged) in joined {
-        let first = places[0];
-        for place in places {
-            all[place] = None;
+    let merged: Vec<(Vec<usize>, FileSeries)> = families.values().flat_map(merged_in).collect();
+    let mut result: Vec<Option<FileSeries>> = series.into_iter().map(Some).collect();
+    for (indices, merged) in merged {
+        let first = indices[0];
+        for i in indices {
+            result[i] = None;
         }
-        all[first] = Some(merged);
+        result[first] = Some(merged);
     }
-    all.into_iter().flatten().collect()
+    result.into_iter().flatten().collect()
 }
 
-/// Sweeps made of several series of steps, each with the indices of its members. Frequencies decide: a
-/// series that covers the frequencies of a sweep again is a sweep of its own. One with other frequencies,
-/// or with a few files, belongs to the sweep. `force` is the index of the force channel.
+/// Merges series of steps into sweeps; returns each sweep with the indices of its series in `members`.
+/// `force` is the index of the force channel.
+///
+/// Only series with the record length of the longest and mostly with a sine as force count, longer ones
+/// first. A series of [`LEAST_SWEEP_FILES`] or more with most of its frequencies already in a sweep repeats
+/// that sweep, and begins another one. Any other is added to the only sweep in its direction; if several
+/// sweeps could take it, it is added to none.
 fn sweeps(trial: &Trial<'_>, members: &[&FileSeries], force: usize) -> Vec<(Vec<usize>, FileSeries)> {
     let count = |k: usize| members[k].files.len();
     let Some(longest) = (0..members.len()).rev().max_by_key(|k| count(*k)) else { return Vec::new() };
     let samples = |k: usize| members[k].headers[force].n as f64;
-    let mut alike: Vec<usize> = (0..members.len())
+    let mut same_length: Vec<usize> = (0..members.len())
         .filter(|k| (samples(*k) / samples(longest) - 1.0).abs() <= LENGTH_TOLERANCE)
         .collect();
-    alike.sort_by_key(|k| std::cmp::Reverse(count(*k)));
-    let files: Vec<&String> = alike.iter().flat_map(|k| &members[*k].files).collect();
-    let few: Vec<&String> = spread(files.len(), FEW).into_iter().map(|k| files[k]).collect();
+    same_length.sort_by_key(|k| std::cmp::Reverse(count(*k)));
+    let files: Vec<&String> = same_length.iter().flat_map(|k| &members[*k].files).collect();
+    let probed: Vec<&String> = spread(files.len(), PROBE_FILES).into_iter().map(|k| files[k]).collect();
     let tones = |files: &[&String]| trial.frequencies(force, files);
-    if files.len() < LEAST_SWEEP_FILES || 2 * tones(&few).iter().flatten().count() < few.len() {
+    if files.len() < LEAST_SWEEP_FILES || 2 * tones(&probed).iter().flatten().count() < probed.len() {
         return Vec::new();
     }
     let frequency: BTreeMap<&String, f64> =
         files.iter().zip(tones(&files)).filter_map(|(file, f)| Some((*file, f?))).collect();
     let frequencies = |k: usize| members[k].files.iter().filter_map(|file| frequency.get(file).copied());
-    let mut sets: Vec<Vec<usize>> = Vec::new();
-    for k in alike.into_iter().filter(|k| 2 * frequencies(*k).count() >= count(*k)) {
-        let repeats = |set: &Vec<usize>| {
-            let covered = |f: f64| set.iter().any(|m| frequencies(*m).any(|other| same(f, other)));
+    let mut sweeps: Vec<Vec<usize>> = Vec::new();
+    for k in same_length.into_iter().filter(|k| 2 * frequencies(*k).count() >= count(*k)) {
+        let repeats = |sweep: &Vec<usize>| {
+            let covered = |f: f64| sweep.iter().any(|m| frequencies(*m).any(|other| same(f, other)));
             count(k) >= LEAST_SWEEP_FILES && 2 * frequencies(k).filter(|f| covered(*f)).count() > count(k)
         };
-        let fits = |set: &Vec<usize>| members[set[0]].way() == members[k].way() && !repeats(set);
-        let fitting: Vec<usize> = (0..sets.len()).filter(|i| fits(&sets[*i])).collect();
+        let fits =
+            |sweep: &Vec<usize>| members[sweep[0]].direction() == members[k].direction() && !repeats(sweep);
+        let fitting: Vec<usize> = (0..sweeps.len()).filter(|i| fits(&sweeps[*i])).collect();
         match fitting[..] {
-            [] => sets.push(vec![k]),
-            [only] => sets[only].push(k),
-            // A step that could belong to several sweeps is joined to none.
+            [] => sweeps.push(vec![k]),
+            [only] => sweeps[only].push(k),
             [..] => {}
         }
     }
-    let joined = |set: Vec<usize>| {
-        let mut series = FileSeries::of_all(&set.iter().map(|k| members[*k]).collect::<Vec<_>>());
-        let at = |file: &String| frequency.get(file).copied().unwrap_or(f64::INFINITY);
-        series.files.sort_by(|a, b| at(a).total_cmp(&at(b)));
-        if series.way().as_deref() == Some("down") {
+    let merged = |sweep: Vec<usize>| {
+        let mut series = FileSeries::merged(&sweep.iter().map(|k| members[*k]).collect::<Vec<_>>());
+        let frequency = |file: &String| frequency.get(file).copied().unwrap_or(f64::INFINITY);
+        series.files.sort_by(|a, b| frequency(a).total_cmp(&frequency(b)));
+        if series.direction().as_deref() == Some("down") {
             series.files.reverse();
         }
-        (set, series)
+        (sweep, series)
     };
-    let several = sets.into_iter().filter(|set| set.len() > 1).map(joined);
-    several.filter(|(_, series)| series.files.len() >= LEAST_SWEEP_FILES).collect()
+    let of_several = sweeps.into_iter().filter(|sweep| sweep.len() > 1).map(merged);
+    of_several.filter(|(_, series)| series.files.len() >= LEAST_SWEEP_FILES).collect()
 }
 
-/// A numbered series of drops with the drops under other names that agree with it, and the indices of these
-/// members; or drops under unrelated names that all agree. Where two series are numbered, their names keep
-/// them apart: `None`.
+/// Joins single files of drops to the one numbered series if their restitutions agree ([`Trial::drops`]).
+/// Without a numbered series, joins the single files if all agree. Returns the indices of the joined series
+/// in `members` and the merged series; `None` with two or more numbered series, whose names separate them.
 fn drops(trial: &Trial<'_>, members: &[&FileSeries]) -> Option<(Vec<usize>, FileSeries)> {
-    let (several, alone): (Vec<usize>, Vec<usize>) =
+    let (numbered, single): (Vec<usize>, Vec<usize>) =
         (0..members.len()).partition(|k| members[*k].files.len() > 1);
-    let joined = |set: &[usize]| FileSeries::of_all(&set.iter().map(|k| members[*k]).collect::<Vec<_>>());
+    let merged =
+        |indices: &[usize]| FileSeries::merged(&indices.iter().map(|k| members[*k]).collect::<Vec<_>>());
     let agree = |series: &FileSeries| trial.drops(series, series).is_some();
-    let set = match several[..] {
-        [base] if alone.len() <= MOST_DROPS => {
-            let base_few = members[base].part(spread(members[base].files.len(), FEW));
-            agree(&base_few).then_some(())?;
+    let indices = match numbered[..] {
+        [base] if single.len() <= MOST_DROPS => {
+            let base_probe = members[base].part(spread(members[base].files.len(), PROBE_FILES));
+            agree(&base_probe).then_some(())?;
             let agrees_with_base = |k: &usize| {
-                let pair = members[base].part(vec![0]);
-                agree(&FileSeries::of_all(&[&pair, members[*k]]))
+                let base_file = members[base].part(vec![0]);
+                agree(&FileSeries::merged(&[&base_file, members[*k]]))
             };
-            [base].into_iter().chain(alone.into_iter().filter(agrees_with_base)).collect::<Vec<_>>()
+            [base].into_iter().chain(single.into_iter().filter(agrees_with_base)).collect::<Vec<_>>()
         }
-        [] if alone.len() <= MOST_DROPS => agree(&joined(&alone)).then_some(alone)?,
+        [] if single.len() <= MOST_DROPS => agree(&merged(&single)).then_some(single)?,
         _ => return None,
     };
-    (set.len() > 1).then(|| (set.clone(), joined(&set)))
+    (indices.len() > 1).then(|| (indices.clone(), merged(&indices)))
 }
 
 impl Trial<'_> {
-    /// Force frequency of each file in Hz, if the force is a sine.
+    /// Force frequency of each file in Hz; `None` for a force that is no sine ([`LEAST_SINE_SHARE`]).
     fn frequencies(&self, force: usize, files: &[&String]) -> Vec<Option<f64>> {
         let Ok(reader) = self.reading.reader() else { return vec![None; files.len()] };
         let reader = reader.within(self.folder);
@@ -143,22 +150,23 @@ impl Trial<'_> {
 }
 
 impl FileSeries {
-    /// Key of files that may form a series whatever their names: folder, settings for reading, columns and
-    /// sampling rate.
+    /// Files with an equal key may form a series whatever their names. It states the folder, settings for
+    /// reading, columns and sampling rate.
     fn family(&self) -> String {
         let folder = Path::new(&self.files[0]).parent();
         format!("{folder:?}\n{:?}\n{}", self.reading.stated(), columns(&self.headers))
     }
 
-    /// Direction of a sweep, if the name of its first file has the word `up` or `down`.
-    pub(super) fn way(&self) -> Option<String> {
+    /// Direction of a sweep, `up` or `down`, if the name of its first file has this word.
+    pub(super) fn direction(&self) -> Option<String> {
         let name = self.files[0].rsplit('/').next().unwrap_or_default().to_lowercase();
         let mut words = name.split(|c: char| !c.is_alphanumeric());
         words.find(|word| ["up", "down"].contains(word)).map(str::to_owned)
     }
 
-    /// Several series merged into one.
-    fn of_all(members: &[&FileSeries]) -> FileSeries {
+    /// Merges several series into one. It has the name of the longest, or the common part of the file names
+    /// if each has one file.
+    fn merged(members: &[&FileSeries]) -> FileSeries {
         let headers = named_alike(&members.iter().map(|one| one.headers.as_slice()).collect::<Vec<_>>());
         let mut files: Vec<PathBuf> = members.iter().flat_map(|one| &one.files).map(PathBuf::from).collect();
         in_order(&mut files);
@@ -170,8 +178,8 @@ impl FileSeries {
     }
 }
 
-/// A note on the files beside those of a sweep that look like further steps: they have its channels and a
-/// sine as force. `None` without such files.
+/// A note on files in the folder of a sweep, not in its list, that look like further steps: they have its
+/// channels and a sine as force. `None` without any of these.
 pub fn more_steps(within: &Folder, files: &[PathBuf]) -> Option<Finding> {
     let first = files.first()?;
     let parent = first.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
@@ -205,8 +213,8 @@ pub fn more_steps(within: &Folder, files: &[PathBuf]) -> Option<Finding> {
     let (force, _) = series.force_and_responses()?;
     let trial = Trial { folder: &folder, reading: &series.reading, kept: &AnswerCache::default() };
     let tones = |files: &[&String]| trial.frequencies(force, files);
-    let few: Vec<&String> = spread(alike.len(), FEW).into_iter().map(|k| &alike[k]).collect();
-    tones(&few).iter().flatten().next()?;
+    let probed: Vec<&String> = spread(alike.len(), PROBE_FILES).into_iter().map(|k| &alike[k]).collect();
+    tones(&probed).iter().flatten().next()?;
     let all: Vec<&String> = alike.iter().collect();
     let more = all.iter().zip(tones(&all)).filter(|(_, f)| f.is_some()).map(|(file, _)| file.as_str());
     let more: Vec<&str> = more.collect();

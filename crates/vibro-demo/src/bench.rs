@@ -1,10 +1,10 @@
-//! The records of the example bench: a mass on a spring, shaken at random and let go, and one contact pulse.
+//! Recordings of the example bench: a mass on a spring, shaken at random and released, and a contact pulse.
 //!
 //! - `BENCH.CSV`: force and velocity of 0.125 kg on a spring and a damper (60 Hz, ζ = 0.02), 4 s at 1024 Hz;
-//! - `DECAY.CSV`: displacement of the same mass, held 2 mm aside and let go at 0.25 s, 2 s at 512 Hz;
+//! - `DECAY.CSV`: displacement of the same mass, deflected by 2 mm and released at 0.25 s, 2 s at 512 Hz;
 //! - `PULSE.CSV`: deceleration in a contact of spring and damper (500 Hz, ζ = 0.2), 4 ms at 50 kHz;
-//! - `FILTERED.CSV`: the same behind a Butterworth low-pass of order 2 at 2 kHz;
-//! - `TRUTH.csv`: what a perfect instrument would have found.
+//! - `FILTERED.CSV`: the same pulse after a Butterworth low-pass of order 2 at 2 kHz;
+//! - `TRUTH.csv`: the values from which the recordings are made.
 
 use super::Sink;
 use super::noise::LinearNoise;
@@ -12,29 +12,35 @@ use std::f64::consts::TAU;
 use std::fmt::Write as _;
 use vibro_record::Result;
 
+/// Mass on the spring in kg.
 const MASS: f64 = 0.125;
+/// Natural frequency of the mass on its spring in Hz.
 const FREQUENCY: f64 = 60.0;
+/// Damping ratio of the mass on its spring.
 const ZETA: f64 = 0.02;
+/// Natural frequency of the contact in Hz.
 const CONTACT: f64 = 500.0;
+/// Damping ratio of the contact.
 const XI: f64 = 0.2;
-/// Corner in Hz of the low-pass of the second pulse.
+/// Corner frequency in Hz of the low-pass of `FILTERED.CSV`.
 const CORNER: f64 = 2000.0;
-/// Integration steps for one sample of the bench.
+/// Integration steps per sample of `BENCH.CSV`.
 const STEPS: u32 = 64;
 
+/// `BENCH.CSV`: a random force and the velocity of the mass.
 fn bench(noise: &mut LinearNoise) -> String {
     let (w, step) = (TAU * FREQUENCY, 1.0 / 1024.0 / f64::from(STEPS));
-    let (mut x, mut v, mut force, mut before) = (0.0, 0.0, 0.0, 0.0);
+    let (mut x, mut v, mut force, mut last_raw) = (0.0, 0.0, 0.0, 0.0);
     let mut text = String::from("time [s],force [N],velocity [m/s]\n");
     for i in 0..4096 {
         let shown = v + 1e-4 * noise.next();
         // Writing to a string cannot fail.
         let _ = writeln!(text, "{:.10},{force:.6},{shown:.7}", f64::from(i) / 1024.0);
-        // The mean of two values puts most of the noise below a quarter of the sampling rate, so that little
-        // of it acts between the samples.
+        // The mean of two values shifts most of the force's power below a quarter of the sampling rate. So
+        // the force is nearly a straight line between samples.
         let raw = 2.0 * noise.next();
-        let next = 0.5 * (raw + before);
-        before = raw;
+        let next = 0.5 * (raw + last_raw);
+        last_raw = raw;
         for k in 0..STEPS {
             let f = force + (next - force) * f64::from(k) / f64::from(STEPS);
             v += step * (f / MASS - 2.0 * ZETA * w * v - w * w * x);
@@ -45,6 +51,7 @@ fn bench(noise: &mut LinearNoise) -> String {
     text
 }
 
+/// `DECAY.CSV`: displacement of the released mass.
 fn decay(noise: &mut LinearNoise) -> String {
     let mut text = String::from("time [s],displacement [mm]\n");
     let w = TAU * FREQUENCY;
@@ -58,7 +65,7 @@ fn decay(noise: &mut LinearNoise) -> String {
     text
 }
 
-/// Force in N on a unit mass, at `t` in s after the contact began.
+/// Contact force in N on a unit mass with an approach speed of 1 m/s, `t` (s) after the first touch.
 fn contact(t: f64) -> f64 {
     let w = TAU * CONTACT;
     let damped = w * (1.0 - XI * XI).sqrt();
@@ -68,7 +75,7 @@ fn contact(t: f64) -> f64 {
     if t > 0.0 && t < 0.5 * TAU / w && force > 0.0 { force } else { 0.0 }
 }
 
-/// The pulse after the low-pass, y″ + √2 Ω y′ + Ω² y = Ω² F, integrated in small steps.
+/// `FILTERED.CSV`: the pulse F after the low-pass, y″ + √2 Ω y′ + Ω² y = Ω² F, integrated in small steps.
 fn filtered(noise: &mut LinearNoise) -> String {
     let mut text = String::from("time [s],acceleration [m/s²]\n");
     let (w, parts) = (TAU * CORNER, 2000);
@@ -85,6 +92,7 @@ fn filtered(noise: &mut LinearNoise) -> String {
     text
 }
 
+/// `PULSE.CSV`: the pulse of a contact that begins 50.3 samples after the start.
 fn pulse(noise: &mut LinearNoise) -> String {
     let mut text = String::from("time [s],acceleration [m/s²]\n");
     for i in 0..200 {

@@ -3,8 +3,9 @@
 //!
 //! - `DROP01.CSV` … `DROP05.CSV`: drops from 0.57 m, recorded until after the second impact;
 //! - `BOUNCE.CSV`: one longer record with a train of bounces;
-//! - `CONTACT.DAT`: a contact trace of 2.56 × 50 Hz, one impact in two cycles of 11.2 Hz, with mains hum;
-//! - `TRUTH.csv`: what a perfect instrument would have found.
+//! - `CONTACT.DAT`: a contact trace sampled at 2.56 × 50 Hz, one impact in two cycles of 11.2 Hz, with mains
+//!   hum;
+//! - `TRUTH.csv`: the values from which the recordings are made.
 
 use super::Sink;
 use super::noise::near_normal;
@@ -15,12 +16,13 @@ use vibro_record::Result;
 
 /// Height of the drops in m.
 pub const HEIGHT: f64 = 0.57;
-/// Restitution of every impact.
+/// Mean restitution of the drops; it scatters from drop to drop.
 pub const RESTITUTION: f64 = 0.2112;
-/// Restitution of the ball that bounces longer.
+/// Restitution of the ball in the train of bounces, which bounces for longer.
 pub const LIVELY: f64 = 0.62;
 /// Excitation frequency of the contact trace in Hz; it has an impact every two cycles.
 pub const EXCITATION: f64 = 11.2;
+/// Gravitational acceleration in m/s².
 const GRAVITY: f64 = 9.806_65;
 /// Sampling rate of the accelerometer in Hz: low, so that the files stay small.
 const RATE: f64 = 5000.0;
@@ -38,8 +40,8 @@ fn bounces(restitution: f64, impacts: usize) -> Vec<(f64, f64)> {
     found
 }
 
-/// Acceleration of the plate in m/s² as text: pulses of 0.6 ms, each followed by a decaying ringing at 1300
-/// Hz.
+/// Acceleration of the plate in m/s² as CSV text over `seconds`, from the time `from` (s) on. Each of the
+/// `impacts` (time in s, speed in m/s) is a pulse of 0.6 ms, followed by a decaying ringing at 1300 Hz.
 fn plate(impacts: &[(f64, f64)], from: f64, seconds: f64, seed: u64) -> String {
     let mut noise = Noise::from_state(seed);
     let mut text = String::from("time (s),acceleration (m/s²)\n");
@@ -60,8 +62,8 @@ fn plate(impacts: &[(f64, f64)], from: f64, seconds: f64, seed: u64) -> String {
     text
 }
 
-/// Contact trace with mains hum: volts, one a line, without a header, as the analyser wrote them; and its
-/// number of impacts.
+/// Contact trace in volts with mains hum, one value a line without a header, as the analyser wrote it; and
+/// its number of impacts.
 fn contact(seed: u64) -> (String, usize) {
     let (rate, n) = (128.0, 1024);
     let mut noise = Noise::from_state(seed);

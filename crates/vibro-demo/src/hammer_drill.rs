@@ -1,8 +1,8 @@
-//! The record of the example hammer drill: striker and bit under a laser, with a pulse once a turn.
+//! Recordings of the example hammer drill: striker and bit under a laser vibrometer, with a pulse per turn.
 //!
 //! - `data/drill.wav`: striker, bit and pulse in volts, 20 s at 102.4 kHz (25 MB);
-//! - `data/still.wav`: the same laser with the machine at rest;
-//! - `TRUTH.csv`: every impact, as it would be seen without noise and faults.
+//! - `data/still.wav`: noise of the same vibrometer with the machine at rest;
+//! - `TRUTH.csv`: turn, time, phase and velocities of every impact, without noise and faults.
 
 mod record;
 mod stroke;
@@ -34,6 +34,7 @@ pub fn recordings(sink: &mut Sink<'_>) -> Result<()> {
     sink("TRUTH.csv", truth.as_bytes())
 }
 
+/// A channel in volts.
 fn volts(name: &str, values: Vec<f64>) -> Record {
     let meta = Meta::new(name, Unit::parse_or_opaque("V"));
     Record::Trace(Trace { meta, axis: Axis::time(0.0, 1.0 / record::RATE, values.len()), values })

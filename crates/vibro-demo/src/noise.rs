@@ -1,14 +1,14 @@
-//! Noise of the recordings. Each example keeps the generator with which it was first made, since documents
-//! and tests quote numbers from these files.
+//! Noise of the recordings. Documents and tests quote numbers from the files of the examples, so each example
+//! stays with the generator of its first version.
 
 use std::f64::consts::TAU;
 use vibro_math::Noise;
 
-/// Step of uniform numbers with 53 binary digits.
-const DIGIT: f64 = 1.0 / (1u64 << 53) as f64;
+/// Step between uniform numbers of 53 binary digits.
+const UNIFORM_STEP: f64 = 1.0 / (1u64 << 53) as f64;
 
-/// A sum of twelve uniform numbers less six: nearly normal, of variance 1, and without a function of a
-/// mathematics library, so the same on every machine.
+/// A nearly normal number of variance 1: the sum of twelve uniform numbers, minus six. It uses no function of
+/// a mathematics library, so it is the same on every machine.
 pub fn near_normal(noise: &mut Noise) -> f64 {
     (0..12).map(|_| noise.uniform()).sum::<f64>() - 6.0
 }
@@ -16,23 +16,25 @@ pub fn near_normal(noise: &mut Noise) -> f64 {
 /// Normal numbers, made in pairs (Box and Muller 1958).
 pub struct PairedNoise {
     uniform: Noise,
+    /// Second number of a pair, for the next call.
     spare: Option<f64>,
 }
 
 impl PairedNoise {
-    /// Noise of one channel at one point. Each has its own, so that any point can be made without the others.
-    /// `draw` 0 gives the files of the example, other draws repeat the measurement.
+    /// Noise of one channel at one point of a sweep. Each point and channel has its own seed, so that any
+    /// point can be made without the others. `draw` 0 gives the files of the example; other draws repeat the
+    /// measurement with other noise.
     pub fn new(draw: u64, direction: u64, point: u64, channel: u64) -> PairedNoise {
         let state = (draw << 40) | (direction << 32) | (point << 8) | channel;
         let mut noise = PairedNoise { uniform: Noise::from_state(state), spare: None };
-        // The first output of neighbouring states is similar; it is skipped.
+        // The first numbers from neighbouring seeds are similar: they are skipped.
         noise.uniform();
         noise
     }
 
     /// Uniform in 0 < u ≤ 1.
     pub fn uniform(&mut self) -> f64 {
-        self.uniform.uniform() + DIGIT
+        self.uniform.uniform() + UNIFORM_STEP
     }
 
     /// Normal with mean 0 and variance 1.
@@ -61,6 +63,7 @@ impl ShiftedNoise {
         noise
     }
 
+    /// The next 64 random bits.
     fn next(&mut self) -> u64 {
         self.0 ^= self.0 >> 12;
         self.0 ^= self.0 << 25;
@@ -70,7 +73,7 @@ impl ShiftedNoise {
 
     /// Uniform in 0 ≤ u < 1.
     pub fn uniform(&mut self) -> f64 {
-        (self.next() >> 11) as f64 * DIGIT
+        (self.next() >> 11) as f64 * UNIFORM_STEP
     }
 
     /// Normal distribution of unit variance (Box and Muller 1958).
@@ -87,6 +90,6 @@ impl LinearNoise {
     /// Uniform between −1 and 1.
     pub fn next(&mut self) -> f64 {
         self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        2.0 * ((self.0 >> 11) as f64 * DIGIT) - 1.0
+        2.0 * ((self.0 >> 11) as f64 * UNIFORM_STEP) - 1.0
     }
 }

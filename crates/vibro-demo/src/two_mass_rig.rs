@@ -1,11 +1,12 @@
-//! The measured data of the example two-mass rig: stepped sweeps of the two-mass rig, up and down, as the
-//! dynamic signal analyser would have written them.
+//! Recordings of the example two-mass rig: stepped sweeps, up and down, as a dynamic signal analyser would
+//! have written them.
 //!
 //! - `data/FUP0001.DAT` …: force spectra of the upward sweep, `data/FDN0001.DAT` … of the downward one;
 //! - `data/V1U0001.DAT`, `data/V1D0001.DAT` …: velocity spectra of the excited mass, `V2U`, `V2D` of the
 //!   passive one;
-//! - `UP1.TXT`, `UP2.TXT`, `DOWN1.TXT`, `DOWN2.TXT`: list files of the sweeps, one a mass and direction;
-//! - `TRUTH.csv`: what a perfect instrument would have found.
+//! - `UP1.TXT`, `UP2.TXT`, `DOWN1.TXT`, `DOWN2.TXT`: list files of the sweeps, one for each mass and
+//!   direction;
+//! - `TRUTH.csv`: amplitudes without noise and impacts per cycle of every point.
 
 mod analyser;
 mod campaign;

@@ -5,13 +5,13 @@ use crate::colour::{Rgb, SERIES};
 use crate::{Drawing, Figure, Heatmap};
 use resvg::tiny_skia::PremultipliedColorU8;
 
-/// Where a figure is shown.
+/// Medium in which a figure is shown.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Medium {
     /// A report or a screen: as wide as the figure asks, in colour.
     #[default]
     Report,
-    /// A column of a journal: 86 mm wide, one panel over the other, in grey.
+    /// A column of a journal: 86 mm wide, panels one below the other, in grey.
     Paper,
     /// A projected slide: as in a report, enlarged with its text.
     Slide,
@@ -20,7 +20,7 @@ pub enum Medium {
 /// Width of a column of a journal in mm.
 const COLUMN: f64 = 86.0;
 
-/// Enlargement on a slide: 8 pt become 13 pt.
+/// Scale of a figure on a slide: 8 pt become 13 pt.
 const LARGER: f64 = 1.6;
 
 impl Figure {
@@ -36,8 +36,8 @@ impl Figure {
         }
     }
 
-    /// The figure in one column: panels one below the other, each with its own ratio of height to width, kept
-    /// between 0.75 and 1.1.
+    /// The figure in one column, panels one below the other. All have the same ratio of height to width: that
+    /// of the figure divided evenly into its panels, limited to 0.75 to 1.1.
     fn in_column(&self) -> Figure {
         if self.width <= COLUMN {
             return self.clone();
@@ -81,7 +81,7 @@ impl Drawing {
     }
 }
 
-/// Grey levels for the colours of series: neighbours differ widely, and the last stays black.
+/// Grey level of each colour of a series, 0 (black) to 255. Series with neighbouring numbers differ widely.
 const LEVELS: [u8; 7] = [50, 135, 95, 170, 200, 225, 0];
 
 /// The grey level of a colour, 0 to 255: a colour of a series or class has the level of its number, others

@@ -10,12 +10,12 @@ use std::mem::discriminant;
 use vibro_record::{Error, Result};
 
 /// 2π − [`TAU`]: the rounding error of [`TAU`].
-const TAU_REST: f64 = 2.449_293_598_294_706_4e-16;
+const TAU_ERROR: f64 = 2.449_293_598_294_706_4e-16;
 
-/// Accuracy of the phase in cycles after thousands of flights: some thousand roundings.
-const KNOWN: f64 = 1e-12;
+/// Error of the phase in cycles after thousands of flights: some thousand roundings.
+const PHASE_ERROR: f64 = 1e-12;
 
-/// Sudden event of an excitation.
+/// Sudden change of an excitation.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Tick {
     /// An impulse in N s.
@@ -37,7 +37,7 @@ enum ForceTrain {
     Pulses { force: f64, width: f64 },
 }
 
-/// One sine force, with its present phase.
+/// One sine force: amplitude in N, frequency in Hz, present phase in rad.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Tone {
     pub force: f64,
@@ -54,9 +54,9 @@ impl Tone {
 
 /// State of the excitation from now on.
 ///
-/// At phase 0, and only there, the impulse or pulse of the cycle is still to come; afterwards the phase is
-/// set to the smallest number above 0. So the phase tells whether it is still to come, and a motion that is
-/// started again from its phase has it once.
+/// At phase exactly 0 the impulse or pulse of the cycle has not yet been applied. When it is applied, the
+/// phase becomes the smallest number above 0. So a motion that is started again from its phase gets it
+/// exactly once.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Forcing {
     tones: [Option<Tone>; MOST_SINES],
@@ -66,13 +66,13 @@ pub(super) struct Forcing {
     /// Phase of the cycle in 0..2π.
     pub phase: f64,
     /// Remaining time in s of the present pulse; 0 between pulses.
-    left: f64,
+    pulse_left: f64,
 }
 
 impl Forcing {
-    /// The excitation at `phase` (rad) of its cycle: a sine is F₀ cos(phase), an impulse falls on phase 0, a
-    /// pulse begins there. Of several sines, each advances from its own phase by the time that `phase` is in
-    /// the first one's cycle.
+    /// The excitation at `phase` (rad) of its cycle: a sine is F₀ cos(phase), an impulse or the start of a
+    /// pulse is at phase 0. Several sines advance from their own phases by the time `phase`/ω₁ of the first
+    /// one.
     pub fn new(excitation: &Excitation, phase: f64) -> Result<Forcing> {
         excitation.check()?;
         number("phase", phase, "rad", NumberRange::Any)?;
@@ -81,7 +81,7 @@ impl Forcing {
         // For a tiny negative phase, rem_euclid rounds to 2π.
         let phase = if phase < TAU { phase } else { 0.0 };
         let tones = [None; MOST_SINES];
-        let mut forcing = Forcing { tones, train: ForceTrain::None, frequency, phase, left: 0.0 };
+        let mut forcing = Forcing { tones, train: ForceTrain::None, frequency, phase, pulse_left: 0.0 };
         match excitation {
             Excitation::Sine(sine) => {
                 forcing.tones[0] = Some(Tone { force: sine.force, frequency, phase });
@@ -97,7 +97,7 @@ impl Forcing {
             Excitation::Pulse(Pulses { force, width, .. }) => {
                 forcing.train = ForceTrain::Pulses { force: *force, width: *width };
                 if phase > 0.0 {
-                    forcing.left = (width - phase / (TAU * frequency)).max(0.0);
+                    forcing.pulse_left = (width - phase / (TAU * frequency)).max(0.0);
                 }
             }
         }
@@ -130,7 +130,8 @@ impl Forcing {
     /// Changes to another excitation of the same kind; the phases continue, and the present pulse keeps its
     /// width.
     pub fn set_excitation(&mut self, excitation: &Excitation) -> Result<()> {
-        let mut next = Forcing { phase: self.phase, left: self.left, ..Forcing::new(excitation, 0.0)? };
+        let mut next =
+            Forcing { phase: self.phase, pulse_left: self.pulse_left, ..Forcing::new(excitation, 0.0)? };
         if discriminant(&self.train) != discriminant(&next.train)
             || self.tones().count() != next.tones().count()
         {
@@ -153,7 +154,7 @@ impl Forcing {
     #[inline]
     pub fn constant(&self) -> f64 {
         match self.train {
-            ForceTrain::Pulses { force, .. } if self.left > 0.0 => force,
+            ForceTrain::Pulses { force, .. } if self.pulse_left > 0.0 => force,
             _ => 0.0,
         }
     }
@@ -182,11 +183,11 @@ impl Forcing {
         terms
     }
 
-    /// Time in s to the next tick within a motion of `span` seconds up to the time `end`, and the tick;
-    /// infinite where there is none.
+    /// Time in s to the next tick in a motion of `span` seconds up to the time `end`, and the tick; infinite
+    /// and `None` without one.
     ///
-    /// A tick at the end itself, within the accuracy of time and phase, belongs to the next motion: a cycle
-    /// begins with its impulse.
+    /// A tick at `end`, within the errors of time and phase, belongs to the next motion: a cycle begins with
+    /// its impulse.
     #[inline]
     pub fn next(&self, span: f64, end: f64) -> (f64, Option<Tick>) {
         let begin = match self.train {
@@ -195,13 +196,16 @@ impl Forcing {
             ForceTrain::Pulses { .. } => Tick::On,
         };
         let whole = if self.phase == 0.0 { 0.0 } else { (TAU - self.phase) / (TAU * self.frequency) };
-        let (wait, tick) =
-            if self.left > 0.0 && self.left < whole { (self.left, Tick::Off) } else { (whole, begin) };
-        let known = KNOWN / self.frequency + 4.0 * f64::EPSILON * end.abs();
-        if wait + known < span { (wait, Some(tick)) } else { (f64::INFINITY, None) }
+        let (wait, tick) = if self.pulse_left > 0.0 && self.pulse_left < whole {
+            (self.pulse_left, Tick::Off)
+        } else {
+            (whole, begin)
+        };
+        let time_error = PHASE_ERROR / self.frequency + 4.0 * f64::EPSILON * end.abs();
+        if wait + time_error < span { (wait, Some(tick)) } else { (f64::INFINITY, None) }
     }
 
-    /// Advances by `t` seconds, at most to the next tick, which is then still to be applied.
+    /// Advances by `t` seconds, at most to the next tick. It does not apply this tick.
     #[inline]
     pub fn pass(&mut self, t: f64) {
         for tone in self.tones.iter_mut().flatten() {
@@ -213,20 +217,20 @@ impl Forcing {
         } else if self.phase > 0.0 {
             self.phase = phase.min(TAU.next_down());
         }
-        if self.left > 0.0 {
-            self.left = (self.left - t).max(f64::MIN_POSITIVE);
+        if self.pulse_left > 0.0 {
+            self.pulse_left = (self.pulse_left - t).max(f64::MIN_POSITIVE);
         }
     }
 
-    /// Applies the tick that is due now.
+    /// Applies a tick that has been reached.
     pub fn tick(&mut self, tick: Tick) {
         if tick == Tick::Off {
-            self.left = 0.0;
+            self.pulse_left = 0.0;
             return;
         }
         self.phase = f64::MIN_POSITIVE;
         if let ForceTrain::Pulses { width, .. } = self.train {
-            self.left = width;
+            self.pulse_left = width;
         }
     }
 }
@@ -238,7 +242,7 @@ fn within(phase: f64) -> f64 {
         return phase;
     }
     let turns = (phase / TAU).floor();
-    let rest = (phase - turns * TAU) - turns * TAU_REST;
+    let rest = (phase - turns * TAU) - turns * TAU_ERROR;
     if (0.0..TAU).contains(&rest) { rest } else { phase.rem_euclid(TAU) }
 }
 

@@ -90,12 +90,14 @@ pub struct Cell {
     pub spectral_radius: Option<f64>,
 }
 
-/// Part of the cycles that pass before the regime of an unsettled motion is judged.
-const SETTLING: f64 = 0.6;
-/// A cell ends early if differences below this still fall towards a stable motion.
-const SOON: f64 = 1e-3;
-/// Cycles between two tests whether the motion has settled.
-const LOOK: u32 = 16;
+/// Share of the cycles of a cell before those from which the regime is judged, for a motion that has not
+/// settled.
+const SETTLING_SHARE: f64 = 0.6;
+/// A cell ends early if the motion approaches a stable one, and its last repetitions differ by less than
+/// this.
+const NEARLY_SETTLED: f64 = 1e-3;
+/// Number of cycles between two tests whether the motion has settled.
+const TEST_INTERVAL: u32 = 16;
 
 impl Plan {
     /// Checks the plan.
@@ -165,10 +167,11 @@ pub fn cell(rig: &Rig, excitation: &Excitation, cycles: u32) -> Cell {
     judged(rig, excitation, cycles).unwrap_or(Cell { regime: None, spectral_radius: None })
 }
 
+/// As [`cell`], with the error of a rig that cannot be computed.
 fn judged(rig: &Rig, excitation: &Excitation, cycles: u32) -> Result<Cell> {
     let mut motion = Simulation::new(rig, excitation)?;
     let frequency = excitation.frequency();
-    let settling = (SETTLING * f64::from(cycles)) as u32;
+    let settling = (SETTLING_SHARE * f64::from(cycles)) as u32;
     let mut watch = Watch::new(&motion);
     let mut follow = |motion: &mut Simulation, cycles: u32| {
         watch = Watch::new(motion);
@@ -178,15 +181,15 @@ fn judged(rig: &Rig, excitation: &Excitation, cycles: u32) -> Result<Cell> {
     };
     let mut passed = 0;
     while passed < settling {
-        let look = LOOK.min(settling - passed);
-        let (found, seen) = follow(&mut motion, look)?;
-        passed += look;
+        let tested = TEST_INTERVAL.min(settling - passed);
+        let (found, seen) = follow(&mut motion, tested)?;
+        passed += tested;
         if let Regime::Periodic { impacts, cycles } = found.regime
-            // It has repeated at least three times, and is settled or approaches a stable motion.
+            // The pattern has repeated at least three times, and is settled or approaches a stable motion.
             && seen >= 3 * impacts as usize
-            && 3 * cycles <= look
+            && 3 * cycles <= tested
             && (found.settled
-                || matches!(excitation, Excitation::Sine(_)) && found.distance.is_some_and(|d| d < SOON))
+                || matches!(excitation, Excitation::Sine(_)) && found.distance.is_some_and(|d| d < NEARLY_SETTLED))
             && let Some(cell) = periodic(rig, excitation, &found)
             && cell.spectral_radius.is_some_and(|r| r < 1.0)
         {
@@ -203,15 +206,15 @@ fn judged(rig: &Rig, excitation: &Excitation, cycles: u32) -> Result<Cell> {
     })
 }
 
-/// The cell of a pattern. Under a sine force its periodic orbit, which must exist and not be unstable, gives
-/// the shortest period; without one, only a settled pattern counts.
+/// The cell of a pattern. Under a sine force the pattern's periodic orbit gives the shortest period, if the
+/// orbit is admissible and not unstable. Without this orbit the pattern counts only if settled.
 fn periodic(rig: &Rig, excitation: &Excitation, found: &Pattern) -> Option<Cell> {
     let Regime::Periodic { cycles, .. } = found.regime else { return None };
-    let seen = |settled: bool| {
+    let cell_of_pattern = |settled: bool| {
         let spectral_radius = radius(rig, excitation, cycles, &found.strikes);
         settled.then_some(Cell { regime: Some(found.regime), spectral_radius })
     };
-    let Excitation::Sine(sine) = excitation else { return seen(true) };
+    let Excitation::Sine(sine) = excitation else { return cell_of_pattern(true) };
     let orbit =
         PeriodicOrbit::from_strikes(rig, sine, cycles, &found.strikes).and_then(PeriodicOrbit::shortest);
     match orbit {
@@ -219,7 +222,7 @@ fn periodic(rig: &Rig, excitation: &Excitation, found: &Pattern) -> Option<Cell>
             regime: Some(Regime::Periodic { impacts: orbit.impacts(), cycles: orbit.cycles }),
             spectral_radius: orbit.spectral_radius(),
         }),
-        _ => seen(found.settled),
+        _ => cell_of_pattern(found.settled),
     }
 }
 
@@ -248,8 +251,8 @@ fn radius(rig: &Rig, excitation: &Excitation, cycles: u32, strikes: &[Strike]) -
     floquet::multipliers(&whole).ok().map(|m| m[0].norm())
 }
 
-/// Spectral radius of a cycle T without impacts: e^{−bT} with the smaller decay rate b of both masses; above
-/// critical damping, that of the slower decay.
+/// Spectral radius of a cycle T without impacts: e^{−bT}, with the smaller decay rate b of both masses. Above
+/// critical damping the decay rate of a mass is that of its slower decay.
 fn free_radius(rig: &Rig, excitation: &Excitation) -> f64 {
     let decay = rig.oscillators().map(|o| o.slowest());
     (-decay[0].min(decay[1]) / excitation.frequency()).exp()

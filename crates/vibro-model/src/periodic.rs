@@ -26,7 +26,7 @@ use vibro_record::{Error, Result};
 /// One impact of a periodic motion.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Beat {
-    /// Phase θ in rad of the force F₀ cos θ; it grows over all cycles of the period without a step.
+    /// Phase θ in rad of the force F₀ cos θ. It grows steadily over all cycles of the period, beyond 2π.
     pub phase: f64,
     /// Impulse J in N s.
     pub impulse: f64,
@@ -62,12 +62,12 @@ pub struct PeriodicOrbit {
     course: Course,
 }
 
-/// Most steps of Newton's method; more are a sign that it does not converge.
-const STEPS: usize = 40;
-/// Newton's method has converged when its step (rad, and parts of an impulse) is below this.
-const SETTLED: f64 = 1e-11;
-/// Impacts of one motion are the same if their phases (rad) and impulses (relative) differ by less than this.
-const REPEATED: f64 = 1e-7;
+/// Most steps of Newton's method; beyond these it is taken not to converge.
+const NEWTON_STEPS: usize = 40;
+/// Newton's method has converged when its largest step (in rad, or relative to the impulse) is below this.
+const CONVERGED_STEP: f64 = 1e-11;
+/// Two impacts of a motion are equal if their phases (rad) and impulses (relative) differ by less than this.
+const EQUAL_IMPACTS: f64 = 1e-7;
 
 impl PeriodicOrbit {
     /// The motion near `impacts`, pairs of phase (rad, over all `cycles`) and impulse (N s).
@@ -113,30 +113,32 @@ impl PeriodicOrbit {
     /// # Errors
     /// As [`PeriodicOrbit::near`].
     pub fn shortest(self) -> Result<PeriodicOrbit> {
-        let Some((d, q)) = self.shorter(REPEATED) else { return Ok(self) };
+        let Some((d, q)) = self.shorter(EQUAL_IMPACTS) else { return Ok(self) };
         PeriodicOrbit::near(&self.rig, &self.sine, q as u32, &self.pairs()[..d])
     }
 
     /// Whether its impacts do not repeat within its period.
     pub fn is_shortest(&self) -> bool {
-        self.shorter(REPEATED).is_none()
+        self.shorter(EQUAL_IMPACTS).is_none()
     }
 
-    /// Whether its impacts repeat within its period, to `close` in phases (rad) and impulses (relative).
-    pub(crate) fn repeats_within(&self, close: f64) -> bool {
-        self.shorter(close).is_some()
+    /// Whether its impacts repeat within its period, with phases (rad) and impulses (relative) equal to
+    /// within `tolerance`.
+    pub(crate) fn repeats_within(&self, tolerance: f64) -> bool {
+        self.shorter(tolerance).is_some()
     }
 
-    /// Number of impacts and of cycles after which it repeats within its period, to `close`.
-    fn shorter(&self, close: f64) -> Option<(usize, usize)> {
+    /// Numbers of impacts and of cycles of a period shorter than the stated one, with impacts equal to within
+    /// `tolerance`; `None` without one.
+    fn shorter(&self, tolerance: f64) -> Option<(usize, usize)> {
         let p = self.beats.len();
         let cycles =
             |d: usize| (self.cycles as usize * d).is_multiple_of(p).then(|| self.cycles as usize * d / p);
         let repeats = |d: usize, q: usize| {
             (0..p - d).all(|i| {
                 let (a, b) = (self.beats[i], self.beats[i + d]);
-                (b.phase - a.phase - TAU * q as f64).abs() < close
-                    && (b.impulse - a.impulse).abs() < close * a.impulse
+                (b.phase - a.phase - TAU * q as f64).abs() < tolerance
+                    && (b.impulse - a.impulse).abs() < tolerance * a.impulse
             })
         };
         (1..p)
@@ -225,7 +227,7 @@ impl PeriodicOrbit {
 
 /// Newton's method from `u`; `None` where it does not converge, or the order of the impacts changes.
 fn newton(system: &System, mut u: DVector<f64>) -> Option<DVector<f64>> {
-    for _ in 0..STEPS {
+    for _ in 0..NEWTON_STEPS {
         let (left, jacobian) = system.evaluate(&u);
         let mut step = jacobian.lu().solve(&left)?;
         let size = step.amax();
@@ -238,7 +240,7 @@ fn newton(system: &System, mut u: DVector<f64>) -> Option<DVector<f64>> {
             step *= 0.2 / size;
         }
         u -= step;
-        if size < SETTLED {
+        if size < CONVERGED_STEP {
             return ordered(system, &u).then_some(u);
         }
     }

@@ -22,11 +22,13 @@ pub struct Reaction {
 /// Nodes and weights of the three-point Gauss rule on 0..1.
 const GAUSS: [(f64, f64); 3] =
     [(0.112_701_665_379_258_31, 5.0 / 18.0), (0.5, 8.0 / 18.0), (0.887_298_334_620_741_7, 5.0 / 18.0)];
-/// Parts of a piece in contact, which lasts at most a radian of its fastest motion: the rule errs by
-/// h⁷/2016000 of the sixth derivative a part, and 2⁶ times that for the square: 5e-8 of either.
+/// Number of parts into which a piece in contact is divided for the Gauss rule. The piece lasts at most a
+/// radian of its fastest motion. The error of a part is h⁷/2016000 of the sixth derivative, and 2⁶ times that
+/// for the square of the force: 5e-8 of the force or its square.
 const PARTS: u32 = 4;
-/// Steps of the golden section: they shorten the interval to 1e-6 of itself, where a peak is flat to 1e-13.
-const STEPS: u32 = 30;
+/// Steps of the golden section search for the peak: they shorten the interval to 1e-6 of its length, within
+/// which the force at a peak changes by 1e-13 of it.
+const GOLDEN_STEPS: u32 = 30;
 
 /// Sums the force between the masses piece by piece.
 #[derive(Debug, Clone)]
@@ -45,7 +47,7 @@ pub struct Tally {
 }
 
 impl Tally {
-    /// A tally of `motion` from now on; the force is recorded from the time `shown` (s) on.
+    /// A tally of `motion` from its present time; the force is recorded from the time `shown` (s) on.
     pub fn new(motion: &dyn Motion, shown: f64) -> Tally {
         let rig = motion.rig();
         Tally {
@@ -99,7 +101,7 @@ impl Tally {
             }
         }
         let (mut low, mut high) = ((best.0 - h / 2.0).max(0.0), (best.0 + h / 2.0).min(duration));
-        for _ in 0..STEPS {
+        for _ in 0..GOLDEN_STEPS {
             let third = 0.381_966_011_250_105_1 * (high - low);
             if force(low + third) < force(high - third) { low += third } else { high -= third }
         }

@@ -1,8 +1,8 @@
 //! Regime of a motion: the number of impacts and cycles in its repeating pattern.
 //!
-//! Patterns are found by comparing states: p impacts repeat if the state and the phase at each impact are
-//! those at the p-th impact before. Counting impacts alone would take two different impacts in two cycles for
-//! one impact in one cycle.
+//! States are compared: p impacts repeat if state and phase at each impact equal those at the p-th impact
+//! before it. A count of impacts alone could not distinguish two different impacts in two cycles from one
+//! impact in one cycle.
 
 use super::flow::State;
 use super::motion::{Event, Motion, Piece};
@@ -16,16 +16,16 @@ use vibro_record::Result;
 
 /// Longest pattern that is searched, in impacts and in cycles.
 pub const LONGEST: u32 = 32;
-/// Two impacts are the same if phases (in cycles) and states (velocities and ω × displacements, over the
-/// largest speed) differ by less than this.
+/// Two impacts are equal if their phases (in cycles) and states differ by less than this. States are
+/// velocities and ω × displacements, divided by the largest speed.
 pub const SAME: f64 = 1e-6;
-/// Differences below this that still fall count as a settling pattern.
-const NEAR: f64 = 1e-2;
-/// Largest ratio of the differences in one third of the watched impacts to those of the third before, for a
-/// settling pattern.
-const FALLING: f64 = 0.95;
-/// Most impacts kept: ten times the longest pattern, to see whether differences fall.
-const KEPT: usize = 320;
+/// A pattern counts as settling if its repetitions differ by less than this and the differences fall.
+const SETTLING_DISTANCE: f64 = 1e-2;
+/// Differences fall if the largest in each third of the watched impacts is at most this share of that in the
+/// third before.
+const FALLING_RATIO: f64 = 0.95;
+/// Largest number of impacts in memory: ten times the longest pattern, to see whether differences fall.
+const MOST_STRIKES: usize = 320;
 
 /// Regime of a motion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -88,8 +88,8 @@ pub struct Strike {
 }
 
 impl Strike {
-    /// Distance from another impact: the largest difference of the phase in cycles, and of velocities and ω ×
-    /// displacements over `speed`.
+    /// Distance from another impact: the largest of the differences of the phase in cycles, and of velocities
+    /// and ω × displacements divided by `speed`.
     fn distance(&self, other: &Strike, omega: f64, speed: f64) -> f64 {
         let turn = (self.phase - other.phase + PI).rem_euclid(TAU) - PI;
         let (a, b) = (&self.before, &other.before);
@@ -103,11 +103,11 @@ impl Strike {
 pub struct Pattern {
     /// The regime.
     pub regime: Regime,
-    /// Whether the pattern repeats within [`SAME`]. A pattern with differences below 1e-2 that still fall is
-    /// named before it has settled: near the stability limit settling takes thousands of cycles.
+    /// Whether the pattern repeats within [`SAME`]. Near the stability limit settling takes thousands of
+    /// cycles, so a pattern is also reported unsettled, if its differences are below 1e-2 and fall.
     pub settled: bool,
-    /// Largest difference between the last two repetitions, of phases (in cycles) and of states over the
-    /// largest speed; `None` without a pattern.
+    /// Largest difference between the last two repetitions, of phases (in cycles) and of states divided by
+    /// the largest speed; `None` without a pattern.
     pub distance: Option<f64>,
     /// The impacts of the last repetition.
     pub strikes: Vec<Strike>,
@@ -120,7 +120,7 @@ pub struct Watch {
     start: f64,
     now: f64,
     phase: f64,
-    /// Impacts kept, oldest first.
+    /// The last impacts, oldest first.
     pub(crate) strikes: VecDeque<Strike>,
     sticks: VecDeque<Strike>,
 }
@@ -129,14 +129,14 @@ impl Watch {
     /// Watches `motion` from now on.
     pub fn new(motion: &dyn Motion) -> Watch {
         let (frequency, start, phase) = (motion.frequency(), motion.time(), motion.phase());
-        let (strikes, sticks) = (VecDeque::with_capacity(KEPT), VecDeque::new());
+        let (strikes, sticks) = (VecDeque::with_capacity(MOST_STRIKES), VecDeque::new());
         Watch { frequency, start, now: start, phase, strikes, sticks }
     }
 
     /// Adds the next piece of the motion.
     pub fn take(&mut self, piece: &Piece<'_>) {
         self.now = piece.start + piece.duration;
-        let (kept, time, phase, impulse, approach_velocity) = match piece.event {
+        let (events, time, phase, impulse, approach_velocity) = match piece.event {
             Event::Impact(i) => (&mut self.strikes, i.time, i.phase, i.impulse, i.approach_velocity),
             Event::Stick => {
                 let phase = self.phase + TAU * self.frequency * (self.now - self.start);
@@ -144,14 +144,14 @@ impl Watch {
             }
             _ => return,
         };
-        if kept.len() == KEPT {
-            kept.pop_front();
+        if events.len() == MOST_STRIKES {
+            events.pop_front();
         }
         let before = piece.path.state(piece.duration);
-        kept.push_back(Strike { time, phase, before, impulse, approach_velocity });
+        events.push_back(Strike { time, phase, before, impulse, approach_velocity });
     }
 
-    /// The regime of the motion, from all that was watched.
+    /// The regime of the motion, from all pieces added.
     pub fn pattern(&self) -> Pattern {
         let watched = self.now - self.start;
         let quiet = |strikes: &VecDeque<Strike>| {
@@ -204,17 +204,17 @@ impl ComparedStrikes<'_> {
         range.map(far).fold(0.0, f64::max)
     }
 
-    /// Compares the last `p` impacts with those before; `None` if they differ by more than [`NEAR`], or take
-    /// no whole cycle or more than [`LONGEST`].
+    /// Compares the last `p` impacts with the `p` before them; `None` if they differ by more than
+    /// [`SETTLING_DISTANCE`], or take no whole cycle or more than [`LONGEST`].
     fn last(&self, p: usize) -> Option<Repeated> {
         let n = self.strikes.len();
         // A quick test: the last impact alone rules out most patterns.
-        if self.largest(n - 1..n, p) > NEAR {
+        if self.largest(n - 1..n, p) > SETTLING_DISTANCE {
             return None;
         }
         let cycles = ((self.strikes[n - 1].time - self.strikes[n - 1 - p].time) * self.frequency).round();
         let distance = self.largest(n - p..n, p);
-        let counts = (1.0..=f64::from(LONGEST)).contains(&cycles) && distance <= NEAR;
+        let counts = (1.0..=f64::from(LONGEST)).contains(&cycles) && distance <= SETTLING_DISTANCE;
         counts.then_some(Repeated { impacts: p, cycles: cycles as u32, distance })
     }
 
@@ -224,7 +224,7 @@ impl ComparedStrikes<'_> {
         let n = self.strikes.len();
         let third = (n - p) / 3;
         let [a, b, c] = [3, 2, 1].map(|k| n - k * third).map(|from| self.largest(from..from + third, p));
-        third >= p.max(3) && b <= FALLING * a && c <= FALLING * b
+        third >= p.max(3) && b <= FALLING_RATIO * a && c <= FALLING_RATIO * b
     }
 }
 

@@ -50,10 +50,10 @@ pub enum ChangeKind {
     NeimarkSacker,
     /// The impulse of the impact falls to zero.
     Grazing,
-    /// The masses begin or cease to meet a second time.
+    /// A second contact in the period begins or ends.
     #[serde(rename = "second contact")]
     SecondContact,
-    /// The motion without impacts begins or ceases to touch.
+    /// The motion without impacts begins or ceases to reach the other mass.
     #[serde(rename = "no impact")]
     NoImpact,
 }
@@ -65,7 +65,7 @@ impl ChangeKind {
     }
 }
 
-/// Where a motion changes.
+/// A change of a motion.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Change {
     /// Frequency in Hz.
@@ -105,7 +105,8 @@ pub fn response(
     let solve = |frequency: f64| point(rig, excitation, frequency, cycles);
     let known = |pair: &&[ResponsePoint]| pair.iter().all(|p| p.refused.is_none());
     let pairs = points.windows(2).filter(known);
-    let mut changes: Vec<Change> = pairs.flat_map(|pair| between(&pair[0], &pair[1], &solve)).collect();
+    let mut changes: Vec<Change> =
+        pairs.flat_map(|pair| changes_between(&pair[0], &pair[1], &solve)).collect();
     changes.sort_by(|a, b| a.frequency.total_cmp(&b.frequency));
     Ok(Response { points, changes })
 }
@@ -145,7 +146,7 @@ fn point(rig: &Rig, excitation: &Excitation, frequency: f64, cycles: u32) -> Res
 /// Existence and stability of a motion at one frequency.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Standing {
-    /// No solution.
+    /// The motion has no solution.
     Gone,
     /// A solution without a positive impulse.
     Parted,
@@ -166,18 +167,22 @@ fn standing(orbit: Option<&Orbit>) -> Standing {
     }
 }
 
-/// Changes between two neighbouring points.
-fn between(a: &ResponsePoint, b: &ResponsePoint, solve: &impl Fn(f64) -> ResponsePoint) -> Vec<Change> {
+/// Changes of motions between two neighbouring points.
+fn changes_between(
+    a: &ResponsePoint,
+    b: &ResponsePoint,
+    solve: &impl Fn(f64) -> ResponsePoint,
+) -> Vec<Change> {
     let mut changes = Vec::new();
-    // From the left, then from the right for motions that appear. At a fold two motions vanish: only the
-    // upper one reports it.
+    // Upwards in frequency first, then downwards for motions that appear. Two motions vanish at a fold: only
+    // the upper one reports it.
     for (here, there) in [(a, b), (b, a)] {
         for orbit in &here.orbits {
             let next = orbit.continued(&there.orbits);
             let (was, is) = (standing(Some(orbit)), standing(next));
-            let seen_from_left = here.frequency > there.frequency && next.is_some();
+            let found_upwards = here.frequency > there.frequency && next.is_some();
             let gone = is == Standing::Gone;
-            if was != is && !seen_from_left && !(gone && (was == Standing::Parted || !orbit.upper)) {
+            if was != is && !found_upwards && !(gone && (was == Standing::Parted || !orbit.upper)) {
                 changes.extend(locate(orbit, here.frequency, there, solve));
             }
         }
@@ -191,7 +196,7 @@ fn between(a: &ResponsePoint, b: &ResponsePoint, solve: &impl Fn(f64) -> Respons
             amplitude = there.amplitude;
             Some(there.possible == here.possible)
         };
-        if let Some(frequency) = change(a.frequency, b.frequency, same) {
+        if let Some(frequency) = change_frequency(a.frequency, b.frequency, same) {
             changes.push(Change { frequency, kind: ChangeKind::NoImpact, amplitude: [amplitude, 0.0] });
         }
     }
@@ -220,7 +225,7 @@ fn locate(
         }
         Some(same)
     };
-    let frequency = change(from, to.frequency, same)?;
+    let frequency = change_frequency(from, to.frequency, same)?;
     let kind = match (was, standing(there.as_ref())) {
         (_, Standing::Gone) => ChangeKind::Fold,
         (Standing::Parted, _) | (_, Standing::Parted) => ChangeKind::Grazing,
@@ -235,11 +240,12 @@ fn locate(
     Some(Change { frequency, kind, amplitude: here.peak_to_peak.map(|p| p / 2.0) })
 }
 
-/// Where between `near` and `far` it ceases to be the `same`, to a millionth of the way; `None` where that
-/// cannot be told on the way.
-fn change(near: f64, far: f64, same: impl FnMut(f64) -> Option<bool>) -> Option<f64> {
-    const MILLIONTH: usize = 20;
-    try_bisected(near, far, MILLIONTH, same).map(|(near, far)| f64::midpoint(near, far))
+/// Frequency between `near` and `far` at which `same` becomes false, to a millionth of their distance; `None`
+/// if `same` has no answer at a frequency in between.
+fn change_frequency(near: f64, far: f64, same: impl FnMut(f64) -> Option<bool>) -> Option<f64> {
+    /// 2⁻²⁰ is about a millionth.
+    const BISECTIONS: usize = 20;
+    try_bisected(near, far, BISECTIONS, same).map(|(near, far)| f64::midpoint(near, far))
 }
 
 #[cfg(test)]

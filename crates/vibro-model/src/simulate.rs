@@ -1,10 +1,10 @@
 //! Any motion of the rig, event by event: exact flights between guaranteed contacts.
 //!
-//! Nothing is integrated in steps. Each flight is a closed form; it ends at the first root of the gap; the
-//! impact changes the velocities; the next flight starts from the state found there, so errors do not grow
-//! with a flight's length. Where impacts accumulate (chatter), the time of their end is computed; from there
-//! both masses move together, again in closed form, up to the first root of the force between them. The phase
-//! is kept within 2π and is continuous when the frequency is changed.
+//! Nothing is integrated in steps. Each flight is a closed form and ends at the first root of the gap. The
+//! impact changes the velocities, and the next flight starts from the state after it. So errors do not grow
+//! with a flight's length. Where impacts accumulate (chatter), the time of their end is computed. From then
+//! on both masses move together, again in closed form, up to the first root of the force between them. The
+//! phase stays between 0 and 2π, and is continuous when the frequency changes.
 
 mod meet;
 
@@ -24,17 +24,18 @@ use vibro_record::{Error, Result};
 /// unless [`Simulation::grazing_below`] sets another.
 pub const GRAZING_SPEED: f64 = 1e-3;
 
-/// Most legs in one call: about ten seconds of work.
+/// Most legs in one call of [`Simulation::run`]: about ten seconds of work.
 const MOST_LEGS: f64 = 2e7;
-/// Fewest cycles whose events one call may use: a shorter call may begin with a long chatter.
-const AT_LEAST: f64 = 10.0;
+/// A call of [`Simulation::run`] may have as many events as this many cycles, however short it is: it may
+/// begin with a long chatter.
+const LEAST_BUDGET_CYCLES: f64 = 10.0;
 
 /// Motion of both masses in a leg.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum LegMotion {
-    /// Each on its own spring and damper.
+    /// Not in contact: each mass on its own spring and damper.
     Apart(Flight),
-    /// In contact.
+    /// In lasting contact.
     Together(Pair),
 }
 
@@ -56,7 +57,7 @@ pub struct Leg {
     pub duration: f64,
     /// The motion.
     pub course: LegMotion,
-    /// The event that ended it.
+    /// The event at the end of the leg.
     pub event: Event,
 }
 
@@ -79,9 +80,9 @@ impl Leg {
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Hold {
     Apart,
-    /// They have just parted after resting against each other.
+    /// Just parted after resting against each other.
     Parting,
-    /// In chatter, which ends after this time in s; they already move together.
+    /// In the last part of a chatter, which ends after this time in s. The masses already move together.
     Settling(f64),
     Together,
 }
@@ -102,10 +103,10 @@ pub struct Simulation {
     rig: Rig,
     drive: Drive,
     oscillators: [Oscillator; 2],
-    /// M(1 + R) in kg: the impulse of an impact over its approach speed.
+    /// M(1 + R) in kg: the impulse of an impact divided by its approach speed.
     exchange: f64,
     time: f64,
-    /// Part of the time in s that is lost to the rounding of `time`.
+    /// Rounding error of `time` in s (compensated summation).
     carry: f64,
     state: State,
     hold: Hold,
@@ -257,7 +258,7 @@ impl Simulation {
         Ok(Leg { start, duration, course, event })
     }
 
-    /// Advances time and phase. Time is summed with the part that rounding leaves out (W. Kahan, 1965).
+    /// Advances time and phase. Time is a compensated sum (W. Kahan, 1965).
     #[inline]
     fn go(&mut self, duration: f64) {
         let step = duration + self.carry;
@@ -267,14 +268,14 @@ impl Simulation {
         self.drive.forcing.pass(duration);
     }
 
-    /// Flight of the separate masses from now on.
+    /// Flight of the separate masses from the present state.
     #[inline]
     fn flight(&self) -> Flight {
         let rest = self.drive.forcing.constant() / self.rig.bodies()[0].stiffness;
         Flight::with(self.oscillators, self.drive.alone(), rest, self.rig.gap, &self.state)
     }
 
-    /// Motion of both masses together from now on, with their common momentum.
+    /// Motion of both masses together from the present state, with their common momentum.
     fn pair(&self) -> Result<Pair> {
         let (rig, state) = (&self.rig, &self.state);
         let v = rig.common_speed(state);
@@ -299,7 +300,7 @@ impl Simulation {
         let cycles = (until - self.time) * self.frequency();
         check_work(cycles)?;
         let swings = self.rig.natural_frequencies().into_iter().fold(1.0, f64::max) / self.frequency();
-        let most = (MOST_EVENTS * cycles.max(AT_LEAST) * swings.max(1.0)).min(MOST_LEGS);
+        let most = (MOST_EVENTS * cycles.max(LEAST_BUDGET_CYCLES) * swings.max(1.0)).min(MOST_LEGS);
         for _ in 0..most as u64 {
             let leg = self.fly(until)?;
             visit(&leg);

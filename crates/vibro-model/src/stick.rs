@@ -35,7 +35,7 @@ enum PairMotion {
         /// Mass 2.
         passive: Body,
     },
-    /// Held against a wall.
+    /// Mass 1 at rest against a wall.
     Still {
         /// Constant force P in N and stiffness k₁ in N/m.
         force: f64,
@@ -95,7 +95,7 @@ impl Pair {
         }
     }
 
-    /// Rounding error of the contact force in N: a few ε of the largest term.
+    /// Rounding error of the contact force in N, taken as 8ε times the sum of its largest terms.
     pub(super) fn noise(&self) -> f64 {
         let size = match &self.course {
             PairMotion::Still { force, stiffness } => {
@@ -110,7 +110,8 @@ impl Pair {
         8.0 * f64::EPSILON * size
     }
 
-    /// Time in s in `0..=duration` at which the contact force vanishes; 0 where it pulls at the start.
+    /// Time in s in `0..=duration` at which the contact force vanishes and the masses part; 0 where the force
+    /// would have to pull from the start.
     pub fn release(&self, duration: f64) -> Option<f64> {
         if self.force(0.0).value < -self.noise() {
             return Some(0.0);
@@ -142,38 +143,40 @@ impl Pair {
     }
 }
 
-/// The relative motion at the start of a flight from contact, which presses the masses together again.
+/// Relative motion at the start of a flight from contact. With the separation speed w the gap after the time
+/// t is wt − at²/2 + jt³/6: a closes the gap, and j > 0 opens it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Press {
-    /// Relative acceleration a in m/s² that drives the masses back together after a separation.
+    /// Relative acceleration a of mass 1 towards mass 2 in m/s².
     pub acceleration: f64,
-    /// Rate j of the gap's acceleration in m/s³.
+    /// Third derivative j of the gap in m/s³.
     jerk: f64,
     /// Rounding error of the gap in m.
     noise: f64,
 }
 
 impl Press {
-    /// That at the start of `flight`.
+    /// The relative motion at the start of `flight`.
     pub fn of(flight: &Flight) -> Press {
         let [[_, _, a1, j1, ..], [_, _, a2, j2, ..]] = flight.series(0.0);
         Press { acceleration: a1 - a2, jerk: j2 - j1, noise: flight.noise() }
     }
 
-    /// Whether a bounce that starts at `w` (m/s) rises at most to four times the rounding of the gap.
+    /// Whether the masses count as resting: a rebound at `w` (m/s) would open the gap, at most w²/2a, by no
+    /// more than four rounding errors.
     pub(crate) fn is_rest(&self, w: f64) -> bool {
         w * w <= 8.0 * self.acceleration * self.noise
     }
 
-    /// Time T in s in which the impacts after a separation with speed `w` (m/s) accumulate; `None` where
-    /// the series below is not accurate enough.
+    /// Time T in s from a separation at speed `w` (m/s) to the end of the chatter that follows, a convergent
+    /// series of ever shorter flights; `None` where the formula below is not accurate enough.
     ///
-    /// Symbols: restitution R; acceleration a (m/s²) and rate j (m/s³) of this type; reduced mass M (kg);
+    /// Symbols: restitution R; a (m/s²) and j (m/s³) as in this type; reduced mass M (kg);
     /// decay rates b₁, b₂ (1/s) of masses m₁, m₂ (kg); κ = 2M(b₁/m₁ + b₂/m₂) (1/s). To the order of w², in
     /// each bounce:
     /// - the flight lasts 2w/a + 4jw²/3a³;
     /// - the masses meet again at the speed w − 2jw²/3a²;
-    /// - a changes by −2jw/a over the flight, and by κ(1 + R) times the approach speed at the impact.
+    /// - a changes by −2jw/a during the flight, and by κ(1 + R) times the approach speed at the impact.
     ///
     /// The sum over all flights is T = 2w/(a(1 − R)) + [4j/3a³ − 2Rκ/a²] w²/(1 − R)² + O(w³). The second
     /// term must be below a ten thousandth of the first, and the first below a ten thousandth of the rig's
@@ -186,7 +189,7 @@ impl Press {
         let leading = 2.0 * w / (a * loss);
         let correction = (4.0 / 3.0 * self.jerk / a - 2.0 * r * kappa) / (a * a) * (w / loss) * (w / loss);
         let scale = first.omega2().sqrt() + second.omega2().sqrt() + first.decay() + second.decay();
-        let close = correction.abs() <= 1e-4 * leading && leading * scale <= 1e-4;
-        if w == 0.0 { Some(0.0) } else { close.then_some(leading + correction) }
+        let is_accurate = correction.abs() <= 1e-4 * leading && leading * scale <= 1e-4;
+        if w == 0.0 { Some(0.0) } else { is_accurate.then_some(leading + correction) }
     }
 }

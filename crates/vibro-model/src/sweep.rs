@@ -15,10 +15,10 @@ use serde::Serialize;
 use std::f64::consts::TAU;
 use vibro_record::{Direction, Error, Result};
 
-/// Steps a cycle of a continuous sweep. A step has the frequency of its middle, so the phase is exact at its
-/// ends and errs by at most 2πrh²/8 inside, with the rate r in Hz/s and the step h in s: 7e-6 rad at 3 Hz and
-/// 0.02 Hz/s.
-const STEPS: u32 = 16;
+/// Steps of constant frequency per cycle of a continuous sweep. A step has the frequency at its middle, so
+/// the phase is exact at both ends of a step. Inside it errs by at most 2πrh²/8, with the rate r in Hz/s and
+/// the step h in s: 7e-6 rad at 3 Hz and 0.02 Hz/s.
+const STEPS_PER_CYCLE: u32 = 16;
 
 /// How a sweep passes from one value to the next.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -129,7 +129,8 @@ impl Plan {
             Direction::Up => (self.from, self.to, rate),
             Direction::Down => (self.to, self.from, -rate),
         };
-        // Phase in cycles after t: f₀t + rt²/2, so the frequency f is reached after (f² − f₀²)/2r cycles.
+        // The phase after the time t is f₀t + rt²/2 cycles, so the frequency f is reached after (f² − f₀²)/2r
+        // cycles.
         let all = ((end * end - start * start) / (2.0 * rate)).floor().max(1.0) as u64;
         let group = all.div_ceil(points as u64);
         let at = |cycle: f64| (start * start + 2.0 * rate * cycle).max(0.0).sqrt();
@@ -141,12 +142,13 @@ impl Plan {
             gauge.clear();
             let mut tally = Tally::new(motion, f64::INFINITY);
             for c in cycle..until {
-                for step in 0..STEPS {
-                    let begun = c as f64 + f64::from(step) / f64::from(STEPS);
-                    // The mean frequency of the step: the phases at its ends are 1/STEPS cycles apart.
-                    let ends = [at(begun), at(begun + 1.0 / f64::from(STEPS))];
+                for step in 0..STEPS_PER_CYCLE {
+                    let begun = c as f64 + f64::from(step) / f64::from(STEPS_PER_CYCLE);
+                    // The mean frequency of the step: the phases at its ends are 1/STEPS_PER_CYCLE cycles
+                    // apart.
+                    let ends = [at(begun), at(begun + 1.0 / f64::from(STEPS_PER_CYCLE))];
                     motion.set_frequency(f64::midpoint(ends[0], ends[1]))?;
-                    pass(motion, 1.0 / f64::from(STEPS), &mut gauge, Some(&mut tally))?;
+                    pass(motion, 1.0 / f64::from(STEPS_PER_CYCLE), &mut gauge, Some(&mut tally))?;
                 }
                 gauge.close_cycle();
             }

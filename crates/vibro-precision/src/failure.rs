@@ -15,13 +15,13 @@ pub enum Outcome {
     Right,
     /// No answer, or one that the method itself withholds or doubts; with the reason.
     Refused,
-    /// An answer further off than it allows for, without a warning.
+    /// An answer with an error beyond what it states or the check allows, without a warning.
     Wrong,
     /// No answer within the budget of steps.
     Stalled,
     /// It panicked.
     Crashed,
-    /// Not tested: another kind of question, or no known truth; with the reason.
+    /// Not tested: the method answers another kind of question, or the truth is unknown; with the reason.
     #[serde(rename = "not asked")]
     NotAsked,
 }
@@ -50,8 +50,8 @@ pub struct BorderCell {
     pub outcome: Outcome,
     /// Reason for the outcome, in a sentence.
     pub why: String,
-    /// For estimators: answers judged by their own uncertainty, and those of them that lie beyond three of
-    /// it.
+    /// For estimators: number of answers with a stated uncertainty, and number of those with an error beyond
+    /// three times this uncertainty.
     #[serde(skip)]
     pub stated: [usize; 2],
 }
@@ -64,35 +64,35 @@ pub struct FailureMap {
     pub cells: Vec<BorderCell>,
 }
 
-/// Outcome of a question, with its reason.
+/// Outcome of a method at a scene of a border, with its reason.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Found {
+pub(crate) struct OutcomeWithReason {
     pub outcome: Outcome,
     pub why: String,
     /// As [`BorderCell::stated`].
     pub stated: [usize; 2],
 }
 
-impl Found {
+impl OutcomeWithReason {
     /// An outcome with its reason.
-    pub fn new(outcome: Outcome, why: impl Into<String>) -> Found {
-        Found { outcome, why: why.into(), stated: [0; 2] }
+    pub fn new(outcome: Outcome, why: impl Into<String>) -> OutcomeWithReason {
+        OutcomeWithReason { outcome, why: why.into(), stated: [0; 2] }
     }
 
     /// Right if the check `passed`, else wrong.
-    pub fn right_if(passed: bool, why: String) -> Found {
-        Found::new(if passed { Outcome::Right } else { Outcome::Wrong }, why)
+    pub fn right_if(passed: bool, why: String) -> OutcomeWithReason {
+        OutcomeWithReason::new(if passed { Outcome::Right } else { Outcome::Wrong }, why)
     }
 }
 
-impl From<Error> for Found {
-    fn from(error: Error) -> Found {
-        Found::new(Outcome::Refused, error.to_string().lines().next().unwrap_or_default())
+impl From<Error> for OutcomeWithReason {
+    fn from(error: Error) -> OutcomeWithReason {
+        OutcomeWithReason::new(Outcome::Refused, error.to_string().lines().next().unwrap_or_default())
     }
 }
 
-impl From<Found> for Error {
-    fn from(found: Found) -> Error {
+impl From<OutcomeWithReason> for Error {
+    fn from(found: OutcomeWithReason) -> Error {
         Error::refused(found.why)
     }
 }
@@ -104,15 +104,16 @@ pub(crate) struct BorderQuestion {
     pub border: &'static str,
     pub scene: String,
     /// Runs the method and judges its answer.
-    pub answer: Box<dyn FnOnce() -> Found + Send>,
+    pub answer: Box<dyn FnOnce() -> OutcomeWithReason + Send>,
 }
 
 impl FailureMap {
     /// Answers every question, in parallel on all cores.
     pub(crate) fn answered(family: Family, questions: Vec<BorderQuestion>) -> FailureMap {
         let cell = |BorderQuestion { method, ours, border, scene, answer }: BorderQuestion| {
-            let panicked = |_| Found::new(Outcome::Crashed, "it panicked, with its message printed");
-            let Found { outcome, why, stated } =
+            let panicked =
+                |_| OutcomeWithReason::new(Outcome::Crashed, "it panicked, with its message printed");
+            let OutcomeWithReason { outcome, why, stated } =
                 catch_unwind(AssertUnwindSafe(answer)).unwrap_or_else(panicked);
             let (method, border) = (method.to_owned(), border.to_owned());
             BorderCell { family, method, ours, border, scene, outcome, why, stated }
@@ -163,14 +164,14 @@ mod tests {
 
     #[test]
     fn a_panic_is_a_cell() {
-        let question = |scene: &str, answer: Box<dyn FnOnce() -> Found + Send>| BorderQuestion {
+        let question = |scene: &str, answer: Box<dyn FnOnce() -> OutcomeWithReason + Send>| BorderQuestion {
             method: "one",
             ours: true,
             border: "panics",
             scene: scene.to_owned(),
             answer,
         };
-        let right = question("answers", Box::new(|| Found::new(Outcome::Right, "")));
+        let right = question("answers", Box::new(|| OutcomeWithReason::new(Outcome::Right, "")));
         let wrong = question("panics", Box::new(|| panic!("on purpose")));
         let map = FailureMap::answered(Family::Models, vec![right, wrong]);
         let outcomes: Vec<_> = map.cells.iter().map(|c| c.outcome).collect();

@@ -27,5 +27,5 @@ pub use results::Results;
 pub use scene::{BenchmarkScene, Family, MeasuredMethod};
 
 // Used by several modules.
-use failure::{BorderQuestion, Found};
+use failure::{BorderQuestion, OutcomeWithReason};
 use scene::timed;

@@ -30,7 +30,8 @@ pub struct FittedParameter {
     pub reason: Option<Unidentified>,
     /// Prior value and its standard uncertainty, if stated.
     pub prior: Option<[f64; 2]>,
-    /// Whether the prior determines it more than the points: its variance is above half of the prior's.
+    /// Whether the prior determines the parameter more than the points do: the variance of the estimate is
+    /// above half of the prior's.
     pub rests_on_prior: bool,
 }
 
@@ -63,11 +64,11 @@ pub struct LeftOut {
     pub faint: usize,
     /// The simulated sweep shows another pattern than one impact a cycle or none.
     pub other_motion: usize,
-    /// Outliers: more than five standard deviations, and five times the median scatter, from their motion.
+    /// Outliers: farther from their motion than five standard deviations and five times the median scatter.
     pub far: usize,
     /// The motion assigned to them changed from round to round.
     pub wavering: usize,
-    /// Impacts last too long there for the correction of the contact's compliance.
+    /// Impacts last too long at these points for the correction of the contact's compliance.
     pub soft: usize,
 }
 
@@ -102,7 +103,7 @@ pub struct Fit {
     pub whiteness: Option<f64>,
     /// Starting points.
     pub starts: usize,
-    /// Number of these whose search ended at this answer.
+    /// Number of starting points whose search ended at this answer.
     pub agreeing: usize,
     /// Profile of the parameter with the largest relative uncertainty.
     pub profile: Option<Profile>,
@@ -210,8 +211,8 @@ impl AssessedFit<'_> {
             identifiable,
             reason,
             prior,
-            // A prior adds 1/s² to the reciprocal variance by the points, exactly in a linear model. It
-            // adds more than half where the variance is above s²/2.
+            // A prior with the uncertainty s adds 1/s² to the reciprocal variance (exactly in a linear
+            // model). This is more than half of it if the variance is above s²/2.
             rests_on_prior: prior.is_some_and(|[_, s]| std.powi(2) > 0.5 * s * s),
         }
     }
@@ -224,25 +225,27 @@ impl AssessedFit<'_> {
     }
 }
 
-/// Difference between prior and points, over their combined standard uncertainty, beyond which they
-/// contradict each other: chance exceeds it in one of 1.7 million cases.
-const APART: f64 = 5.0;
-/// Lower limit of the variance of that difference, over the variance of the prior: keeps rounding out.
-const TAKEN: f64 = 0.01;
-/// Pull of the points beyond a bound, in standard deviations, that contradicts the bound: chance exceeds it
-/// in one of 700 cases.
-const PULLED: f64 = 3.0;
-/// Fall of the sum of squares along a profile that reveals another, lower minimum: one standard uncertainty
-/// raises the sum by 1.
-const FALL: f64 = 1.0;
-/// Fraction of amplitudes that are outliers, or lost to a long contact, beyond which the answer is in
-/// doubt.
-const LOST: f64 = 0.1;
-/// χ²/ν beyond which a lack of fit is a doubt: the fitted parameters absorb most of a model's error, so
-/// they are off by more than the residuals show.
-const POOR: f64 = 1.25;
-/// Relative difference of the fitted from the stated force that is a caution: load cells err by 1 or 2 %.
-const OTHER: f64 = 0.05;
+/// A prior and the points contradict each other if they differ by more than this many combined standard
+/// uncertainties: chance does so in one of 1.7 million cases.
+const CONTRADICTION: f64 = 5.0;
+/// The variance of this difference is taken as at least this share of the prior's variance: below, it is
+/// rounding.
+const LEAST_VARIANCE_SHARE: f64 = 0.01;
+/// The points contradict a bound if they would move the parameter beyond it by more than this many standard
+/// deviations: chance does so in one of 700 cases.
+const BOUND_PULL: f64 = 3.0;
+/// A profile shows another, lower minimum if the sum of squares falls by more than this along it: one
+/// standard uncertainty raises the sum by 1.
+const PROFILE_FALL: f64 = 1.0;
+/// The answer is in doubt if more than this share of the amplitudes are outliers, or are left out because of
+/// a long contact.
+const MOST_LEFT_OUT: f64 = 0.1;
+/// χ²/ν beyond which a lack of fit is a doubt. The fitted parameters absorb most of a model's error, so they
+/// err by more than the residuals show.
+const LACK_OF_FIT: f64 = 1.25;
+/// Relative difference of the fitted from the stated force beyond which it is a caution: load cells err by 1
+/// or 2 %.
+const FORCE_DIFFERENCE: f64 = 0.05;
 
 impl AssessedFit<'_> {
     /// Doubts about the whole answer: its uncertainties are then invalid.
@@ -250,10 +253,10 @@ impl AssessedFit<'_> {
         let (least, found, problem) = (&self.found.least, &self.found, &self.found.least.problem);
         let (n, freedom, guessed) = (problem.rows().0, problem.freedom(), problem.data.guessed);
         let many = |doubt: Finding, key, part: usize| {
-            let many = part as f64 > LOST * (n + part) as f64;
+            let many = part as f64 > MOST_LEFT_OUT * (n + part) as f64;
             many.then(|| doubt.count(key, part).count("n", n + part))
         };
-        let poor = least.reduced > POOR && (least.beyond_chance() || least.whiteness.rejected());
+        let poor = least.reduced > LACK_OF_FIT && (least.beyond_chance() || least.whiteness.rejected());
         let scaled = guessed || least.reduced > 1.0;
         let of_all = [
             many(Finding::doubt("contact-too-long"), "lost", self.lost.unwrap_or(0)),
@@ -275,22 +278,23 @@ impl AssessedFit<'_> {
             let (name, unit) = (unknown.parameter.name(), unknown.parameter.unit());
             let pulled = |doubt: Finding, deviations| doubt.about(name).number("deviations", deviations);
             if let Some([known, std]) = unknown.prior {
-                // With s the uncertainty of the prior and p that of the answer, the answer lies (s² −
-                // p²)/s² of the way from the prior to the value by the points alone. Its shift over √(s² −
-                // p²) is therefore the difference of both over their combined uncertainty.
-                let taken = (std * std - self.std(i).powi(2)).max(TAKEN * std * std).sqrt();
-                let deviations = (setting.get(unknown.parameter) - known).abs() / taken;
-                if deviations > APART {
+                // With the uncertainties s of the prior and p of the answer, the answer is (s² − p²)/s² of
+                // the way from the prior to the value by the points alone. So |answer − prior|/√(s² − p²) is
+                // the difference of prior and points divided by their combined uncertainty.
+                let shift_std =
+                    (std * std - self.std(i).powi(2)).max(LEAST_VARIANCE_SHARE * std * std).sqrt();
+                let deviations = (setting.get(unknown.parameter) - known).abs() / shift_std;
+                if deviations > CONTRADICTION {
                     let prior = pulled(Finding::doubt("prior-contradicted"), deviations);
                     found.push(prior.number("prior", known).number("std", std).name("unit", unit));
                 }
             }
-            if let Some(limit) = self.uncertainty.limits[i].filter(|limit| limit.pull > PULLED) {
+            if let Some(limit) = self.uncertainty.limits[i].filter(|limit| limit.pull > BOUND_PULL) {
                 let bound = pulled(Finding::doubt("bound-contradicted"), limit.pull);
                 found.push(bound.number("bound", limit.value).name("unit", unit));
             }
         }
-        if let Some(profile) = self.profile.as_ref().filter(|p| p.fall() > FALL) {
+        if let Some(profile) = self.profile.as_ref().filter(|p| p.fall() > PROFILE_FALL) {
             let name = profile.parameter.name();
             found.push(Finding::doubt("least-squares-elsewhere").about(name).number("fall", profile.fall()));
         }
@@ -314,7 +318,7 @@ impl AssessedFit<'_> {
             }
             let ratio = parameter.estimate.value / parameter.start;
             let free = parameter.parameter == Parameter::Force && parameter.prior.is_none();
-            if free && sound && (ratio - 1.0).abs() > OTHER {
+            if free && sound && (ratio - 1.0).abs() > FORCE_DIFFERENCE {
                 found.push(Finding::caution("force-differs-from-stated").number("ratio", ratio));
             }
         }

@@ -5,11 +5,11 @@ use crate::error::Result;
 use crate::model::{Compliance, Excitation, Sine, orbits, shown, softened};
 use std::f64::consts::PI;
 
-/// Most rounds of correction and fit. With 2.5 % of the period in contact, the most that can be corrected,
-/// three rounds reduce the error to 2e-5 of the change.
+/// Most rounds of correction and fit. With 2.5 % of the period in contact, the limit of the correction, three
+/// rounds reduce the error to 2e-5 of the change.
 const ROUNDS: usize = 8;
-/// Largest change of an amplitude, in standard deviations, that ends the rounds.
-const STILL: f64 = 0.1;
+/// The rounds end when no amplitude changes by more than this many standard deviations.
+const SETTLED: f64 = 0.1;
 
 /// Points as they would be with a rigid contact.
 #[derive(Debug, Clone)]
@@ -48,7 +48,7 @@ fn corrected_from(answer: &Converged<'_>, from: &Setting, stiffness: f64) -> Res
         let setting = problem.with(&now.data).converge(&now.u)?.setting();
         let before = now.data;
         now = without(problem, &before, &setting, stiffness)?;
-        if change(&before, &now.data) <= STILL {
+        if change(&before, &now.data) <= SETTLED {
             break;
         }
     }

@@ -2,8 +2,8 @@
 //! same.
 
 use super::{
-    Data, FINE, Motion, MotionKind, Pace, Problem, Setting, Simulated, StepAmplitude, SweepStep, distances,
-    motions, reached, shown, simulated_briefly,
+    Data, FINE_KAPPA, Motion, MotionKind, Pace, Problem, Setting, Simulated, StepAmplitude, SweepStep,
+    distances, motions, reached, shown, simulated_briefly,
 };
 use crate::error::Result;
 use crate::math::Minimum;
@@ -13,16 +13,17 @@ use crate::record::median;
 use rayon::prelude::*;
 use std::collections::BTreeSet;
 
-/// Rounds after which steps with a still changing motion are left out: near a fold each new set of
-/// parameters has another motion there.
-const ROUNDS: usize = 3;
+/// From this round on, steps whose motion still changes are left out: near a fold each new set of parameters
+/// may have another motion.
+const ROUNDS_TO_EXCLUSION: usize = 3;
 /// Largest number of rounds.
-const MOST: usize = 6;
-/// Cycles of simulated sweeps during the search: shorter than at the end, since the parameters are still
-/// further off than a residual transient.
-const BRIEF: Pace = Pace { settle: 60, measure: 36 };
-/// Probability of a χ² below its limit where model and stated uncertainties are right.
-const CHANCE: f64 = 0.999;
+const MOST_ROUNDS: usize = 6;
+/// Cycles at each point of the simulated sweeps of the search, fewer than at the end: errors of the
+/// parameters are still larger than a residual transient.
+const SEARCH_PACE: Pace = Pace { settle: 60, measure: 36 };
+/// χ² is too large for chance above this quantile of its distribution for a correct model and correct stated
+/// uncertainties.
+const CHI_SQUARED_QUANTILE: f64 = 0.999;
 
 /// Minimum of the sum of squares with given motions.
 #[derive(Debug, Clone)]
@@ -45,8 +46,8 @@ pub struct Converged<'a> {
     pub far: usize,
     /// Whether the motions stayed the same in the last round.
     pub agreed: bool,
-    /// Distance of all points from the simulated sweep, or from their assigned motion where that is nearer,
-    /// and of the parameters from their priors: smaller is better.
+    /// Distance of all points from the simulated sweep, or from their assigned motion where nearer, plus that
+    /// of the parameters from their priors. The smallest is the best fit.
     pub unexplained: f64,
 }
 
@@ -67,12 +68,15 @@ impl<'a> Problem<'a> {
     pub fn converge(&self, start: &[f64]) -> Result<Converged<'a>> {
         let (data, pace) = (self.data, self.data.pace);
         let motions = |u: &[f64], pace: Pace| assigned(data, &self.setting(u), pace);
-        let brief = Pace { settle: pace.settle.min(BRIEF.settle), measure: pace.measure.min(BRIEF.measure) };
+        let search_pace = Pace {
+            settle: pace.settle.min(SEARCH_PACE.settle),
+            measure: pace.measure.min(SEARCH_PACE.measure),
+        };
         let mut u = start.to_vec();
-        for part in FINE {
-            let now = self.of(motions(&u, brief)?.kinds);
+        for kappa in FINE_KAPPA {
+            let now = self.of(motions(&u, search_pace)?.kinds);
             now.enough(now.rows().0)?;
-            u = now.approached(part, u);
+            u = now.approached(kappa, u);
         }
         let n = data.steps.len();
         let mut wavering = BTreeSet::new();
@@ -86,7 +90,7 @@ impl<'a> Problem<'a> {
             let mut next = without_outliers(data, &self.setting(&u), now.kinds.clone());
             leave_out(&mut next, &wavering);
             let agreed = next == kinds;
-            if agreed || round == MOST {
+            if agreed || round == MOST_ROUNDS {
                 let outlier = |i: &usize| kinds[*i].is_none() && !wavering.contains(i);
                 return Ok(Converged {
                     wavering: wavering.iter().map(|i| data.steps[*i].clear().count()).sum(),
@@ -96,7 +100,7 @@ impl<'a> Problem<'a> {
                     least,
                 });
             }
-            if round >= ROUNDS {
+            if round >= ROUNDS_TO_EXCLUSION {
                 wavering.extend((0..n).filter(|i| kinds[*i] != next[*i]));
                 leave_out(&mut next, &wavering);
             }
@@ -128,20 +132,20 @@ impl<'a> Problem<'a> {
         }
     }
 
-    /// Distance of all points from the simulated sweep, or from their assigned motion where nearer: Σ min
-    /// (z², 1) over all κ of [`FINE`].
+    /// Distance of all points from the simulated sweep, or from their assigned motion where nearer: Σ min(z²,
+    /// 1), summed over all κ of [`FINE_KAPPA`].
     fn left_over(&self, u: &[f64], motions: &Motions) -> f64 {
         let (data, setting) = (self.data, self.setting(u));
         let one = |((step, kind), simulated): ((&SweepStep, &Option<MotionKind>), &Option<[f64; 2]>)| {
             let far = |shows: [f64; 2]| -> f64 {
-                let z = FINE.iter().flat_map(|part| distances(data, step, shows, *part));
+                let z = FINE_KAPPA.iter().flat_map(|kappa| distances(data, step, shows, *kappa));
                 z.map(|z| z.powi(2).min(1.0)).sum()
             };
             let taken = kind.map_or(f64::INFINITY, |kind| far(data.shows(&setting, kind, step)));
             taken.min(far(simulated.unwrap_or([0.0; 2])))
         };
         let points: f64 = data.steps.iter().zip(&self.kinds).zip(&motions.simulated).map(one).sum();
-        points + FINE.len() as f64 * self.prior_cost(&setting)
+        points + FINE_KAPPA.len() as f64 * self.prior_cost(&setting)
     }
 
     /// χ²/ν by the stated uncertainties with priors, and the whiteness of the residuals of the data.
@@ -156,6 +160,7 @@ impl<'a> Problem<'a> {
     }
 }
 
+/// Removes the motion of these `steps`, so that they do not count in the fit.
 fn leave_out(kinds: &mut [Option<MotionKind>], steps: &BTreeSet<usize>) {
     for i in steps {
         kinds[*i] = None;
@@ -166,24 +171,24 @@ impl LeastSquares<'_> {
     /// Whether χ² is larger than chance explains.
     pub(crate) fn beyond_chance(&self) -> bool {
         let free = self.problem.freedom();
-        self.reduced * free as f64 > chi_squared_at(CHANCE, free)
+        self.reduced * free as f64 > chi_squared_at(CHI_SQUARED_QUANTILE, free)
     }
 }
 
 /// Motions of all steps.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Motions {
-    /// Assigned motion; `None` where it is none of the closed form.
+    /// Assigned motion; `None` where the motion has no closed form.
     pub kinds: Vec<Option<MotionKind>>,
-    /// Motion of the simulated sweep, whatever was measured.
+    /// Motion of the simulated sweep, independent of the measured amplitudes.
     pub history: Vec<Option<MotionKind>>,
-    /// Amplitudes of both masses in m of the simulated sweep; `None` where it has no answer.
+    /// Amplitudes of both masses in m of the simulated sweep; `None` where the simulation fails.
     pub simulated: Vec<Option<[f64; 2]>>,
 }
 
-/// Assigns each step the motion that a sweep simulated through all steps of its sequence reaches; `None`
-/// where the closed form does not have it. Where the measured amplitudes are nearer to another stable
-/// motion, that one is assigned: which one a sweep reaches may depend on unknown details.
+/// Assigns a motion to each step. A sweep simulated through all steps of its sequence shows which motion a
+/// step reaches; a step whose motion has no closed form gets `None`. Else the step gets the stable motion
+/// nearest to its measured amplitudes, since which of several a sweep reaches may depend on unknown details.
 ///
 /// # Errors
 /// If the rig is impossible.
@@ -197,9 +202,9 @@ pub fn assigned(data: &Data, setting: &Setting, pace: Pace) -> Result<Motions> {
             let motions = motions(&setting.rig, *force, *frequency)?;
             let history = simulated.as_ref().and_then(|simulated| reached(simulated, &motions));
             let seen = motions.iter().filter(|m| m.is_seen());
-            let nearest = seen.min_by(|a, b| away(step, a).total_cmp(&away(step, b)));
-            // Free motion is excluded where mass 2 is seen to move. Of two impacting motions a fit uses the
-            // upper one.
+            let nearest = seen.min_by(|a, b| log_distance(step, a).total_cmp(&log_distance(step, b)));
+            // A step where mass 2 measurably moves is not a free motion. The closed form of a fit gives the
+            // upper of two impacting motions, so an impacting step counts only if that one can be observed.
             let upper = motions.first().filter(|m| m.kind == MotionKind::Impacting);
             let kind = history.and(nearest).map(|m| m.kind).filter(|kind| match kind {
                 MotionKind::Free => step.readings[1].as_ref().is_none_or(|r| r.upper_limit.is_some()),
@@ -218,39 +223,41 @@ pub fn assigned(data: &Data, setting: &Setting, pace: Pace) -> Result<Motions> {
     Ok(motions)
 }
 
-/// Distance of the amplitudes from a motion: Σ |ln (measured/predicted)|. A mass predicted at rest that was
-/// seen to move is as far as possible.
-fn away(step: &SweepStep, motion: &Motion) -> f64 {
+/// Distance of the amplitudes from a motion: Σ |ln (measured/predicted)|, at most 20 for each mass. An
+/// amplitude below the noise floor counts only if predicted above its upper limit.
+fn log_distance(step: &SweepStep, motion: &Motion) -> f64 {
     let above = |(mass, limit): (usize, f64)| (motion.amplitude[mass] / limit).ln().max(0.0);
     let moves = |(mass, reading): (usize, &StepAmplitude)| reading.log_ratio(motion.amplitude[mass]).abs();
     step.clear().map(moves).sum::<f64>() + step.faint().map(above).sum::<f64>()
 }
 
-/// Distance in standard deviations beyond which a step is an outlier from its motion: noise alone exceeds
-/// it in one step of a million.
-const FAR: f64 = 5.0;
-/// Median of the larger of two absolute normal deviates: erf² (x/√2) = 1/2.
-const MEDIAN: f64 = 1.052;
-/// Largest fraction of steps left out as outliers; from a tenth on, the answer is in doubt.
-const OUTLIERS: f64 = 0.25;
+/// A step farther from its motion than this many standard deviations is an outlier: noise alone exceeds this
+/// in one step of a million.
+const OUTLIER_DEVIATIONS: f64 = 5.0;
+/// Median x of the larger of two absolute normal deviates: erf²(x/√2) = 1/2. The median distance of the steps
+/// divided by this is their scatter.
+const MEDIAN_OF_LARGER: f64 = 1.052;
+/// Largest share of steps that are left out as outliers. The answer is in doubt from a tenth on.
+const MOST_OUTLIERS: f64 = 0.25;
 
-/// Motions without outliers: points of another motion, or of a sweep that had not settled.
+/// Removes the motions of outliers: steps with another motion, or in a sweep that had not settled.
 ///
-/// Outliers are left out one by one, the farthest first, since each also shifts the shared errors of the
-/// other points. Where the median scatter exceeds the standard deviation, it takes its place.
+/// Outliers are removed one by one, the farthest first, since each also shifts the shared errors of the other
+/// points. If the median scatter exceeds the stated standard deviation, distances are measured by the
+/// scatter.
 pub fn without_outliers(
     data: &Data,
     setting: &Setting,
     mut kinds: Vec<Option<MotionKind>>,
 ) -> Vec<Option<MotionKind>> {
-    for _ in 0..(OUTLIERS * kinds.len() as f64) as usize {
+    for _ in 0..(MOST_OUTLIERS * kinds.len() as f64) as usize {
         let mut problem = Problem::new(data, setting, Vec::new()).of(kinds.clone());
         problem.weigh(&[]);
         let mut away = vec![None::<f64>; kinds.len()];
         for ((step, ..), r) in problem.used().zip(problem.at(&[])) {
             away[step] = Some(away[step].unwrap_or(0.0).max(r.abs()));
         }
-        let limit = FAR * (median(away.iter().flatten()) / MEDIAN).max(1.0);
+        let limit = OUTLIER_DEVIATIONS * (median(away.iter().flatten()) / MEDIAN_OF_LARGER).max(1.0);
         let far = away.iter().enumerate().filter_map(|(i, away)| Some((i, away.filter(|a| *a > limit)?)));
         let Some((farthest, _)) = far.max_by(|a, b| a.1.total_cmp(&b.1)) else { break };
         kinds[farthest] = None;

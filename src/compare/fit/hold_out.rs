@@ -9,12 +9,12 @@ use rayon::prelude::*;
 use serde::Serialize;
 use std::ops::RangeInclusive;
 
-/// Steps on each side of a feature that are held out with it, since they would reveal its height.
-const BESIDE: usize = 2;
+/// Number of steps on each side of a feature that are held out with it, since they would reveal its height.
+const STEPS_BESIDE: usize = 2;
 /// Relative difference in frequency up to which steps of two sweeps are the same.
-const SAME: f64 = 1e-3;
-/// Mean error from which no model is chosen: even the best is off by half of the amplitudes.
-const NONSENSE: f64 = 0.5;
+const SAME_STEP: f64 = 1e-3;
+/// No model is chosen if the mean error of the best reaches this: half of the amplitudes.
+const LARGEST_ERROR: f64 = 0.5;
 
 /// Steps that were held out together, and the error of their prediction.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -78,7 +78,7 @@ pub fn rungs(rigid: &Converged<'_>, soft: Option<&Converged<'_>>, responses: &[R
     ];
     let mut rungs: Vec<Rung> = climbed.into_iter().flatten().collect();
     let means = rungs.iter().filter_map(|r| Some((r.held_out?, r.held_out_std?)));
-    let best = means.min_by(|a, b| a.0.total_cmp(&b.0)).filter(|best| best.0 < NONSENSE);
+    let best = means.min_by(|a, b| a.0.total_cmp(&b.0)).filter(|best| best.0 < LARGEST_ERROR);
     let is_near = |r: &&mut Rung| best.zip(r.held_out).is_some_and(|((mean, std), own)| own <= mean + std);
     if let Some(chosen) = rungs.iter_mut().find(is_near) {
         chosen.chosen = true;
@@ -189,8 +189,8 @@ fn blocks(data: &Data, responses: &[Response]) -> Vec<HeldOut> {
             if ranges.iter().any(|(name, range)| *name == feature && range.contains(&frequency)) {
                 continue;
             }
-            let (low, high) = (k.saturating_sub(BESIDE), (k + BESIDE).min(own.len() - 1));
-            let range = at(&own[low]) * (1.0 - SAME)..=at(&own[high]) * (1.0 + SAME);
+            let (low, high) = (k.saturating_sub(STEPS_BESIDE), (k + STEPS_BESIDE).min(own.len() - 1));
+            let range = at(&own[low]) * (1.0 - SAME_STEP)..=at(&own[high]) * (1.0 + SAME_STEP);
             let steps: Vec<usize> = used.iter().copied().filter(|i| range.contains(&at(i))).collect();
             // Two features in the same steps are one block.
             let shared = |b: &HeldOut| steps.iter().filter(|i| b.steps.contains(i)).count();
@@ -201,7 +201,7 @@ fn blocks(data: &Data, responses: &[Response]) -> Vec<HeldOut> {
         }
     }
     let is_open = |i: &usize| !ranges.iter().any(|r| r.1.contains(&at(i)));
-    let piece = (2 * BESIDE + 1) * data.sequences.len();
+    let piece = (2 * STEPS_BESIDE + 1) * data.sequences.len();
     for open in used.chunk_by(|a, b| is_open(a) == is_open(b)).filter(|open| is_open(&open[0])) {
         blocks.extend(open.chunks_exact(piece).map(|steps| HeldOut {
             feature: "amplitude".to_owned(),

@@ -9,12 +9,13 @@ use vibro_model::portrait::Samples;
 use vibro_model::{Motion, Rig, Simulation, Sine, State};
 use vibro_record::Result;
 
-/// Force amplitude in N. With it and the masses, springs and dampers of the thesis, sweeps in both directions
-/// show the in-phase (grazing) resonance, but only the sweep up shows the out-of-phase (clapping) one.
+/// Force amplitude in N. At this force the rig of the thesis shows the in-phase (grazing) resonance in sweeps
+/// in both directions, but the out-of-phase (clapping) resonance only in the sweep up.
 const FORCE: f64 = 0.1;
 
-/// The clapping branch ends where the force no longer supplies the losses in dampers and impacts: at 10.79 Hz
-/// for restitution 0.998, as of the thesis' contact (1e5 N/m, 0.1 N s/m), and at 10.67 Hz for this one.
+/// Coefficient of restitution. The clapping branch ends where the force no longer supplies the losses in
+/// dampers and impacts: at 10.67 Hz for this value, and at 10.79 Hz for 0.998, that of the thesis' contact
+/// (1e5 N/m, 0.1 N s/m).
 const RESTITUTION: f64 = 0.98;
 
 /// Frequencies of the generator in Hz, ascending; none lies on a line of the analyser (multiples of 0.05 Hz).
@@ -24,7 +25,8 @@ const FREQUENCIES: [f64; 40] = [
     10.183, 10.364, 10.478, 10.567, 10.622, 10.689, 10.861, 11.262, 11.918, 12.842,
 ];
 
-/// Waiting time in s after each step: the slowest transient without impacts decays to e^{−16}.
+/// Time in s from a frequency step to its measurement: the slowest transient without impacts decays to
+/// e^{−16}.
 const SETTLE: f64 = 40.0;
 
 /// Direction of a sweep.
@@ -40,7 +42,7 @@ impl Direction {
         if self == Direction::Up { "up" } else { "down" }
     }
 
-    /// Names of the files of the force and the two velocity spectra of point `number`, eleven characters
+    /// File names of the force spectrum and the two velocity spectra of point `number`, eleven characters
     /// each.
     fn names(self, number: usize) -> [String; 3] {
         let (long, short) = if self == Direction::Up { ("UP", 'U') } else { ("DN", 'D') };
@@ -55,18 +57,19 @@ impl Direction {
 /// One point of a sweep: a block of the settled motion.
 pub struct Point {
     direction: Direction,
-    /// Counted from 1 in the order of measurement.
+    /// Number of the point from 1, in the order of measurement.
     number: usize,
+    /// Excitation frequency in Hz.
     frequency: f64,
     /// Phase of the force in rad at the start of the block.
     phase: f64,
-    /// States at the converter's times, and one at the end of the block.
+    /// States at the converter's sampling times, and the state at the end of the block.
     states: Vec<State>,
     /// Impacts per cycle, such as `1` or `2/2`, or `irregular`.
     impacts_per_cycle: String,
 }
 
-/// Simulates a sweep in `direction`, stops after `last` points, and hands each point to `show`.
+/// Simulates a sweep in `direction`, calls `show` with each point, and stops after `last` points.
 pub fn simulate(direction: Direction, last: usize, mut show: impl FnMut(&Point) -> Result<()>) -> Result<()> {
     let rig = Rig { restitution: RESTITUTION, ..Rig::thesis() };
     let mut frequencies = FREQUENCIES;
@@ -90,11 +93,11 @@ pub fn simulate(direction: Direction, last: usize, mut show: impl FnMut(&Point) 
 
 /// Impacts per cycle of the periodic motion, or `irregular`; `2/2` has two impacts in a period of two cycles.
 ///
-/// The states at one phase of the force are compared, cycle by cycle, over the last part of a block. A motion
-/// counts as periodic if after some cycles every state is the same to within a thousandth of the largest.
+/// States at one phase of the force are compared in the last cycles of a block. The motion is periodic with q
+/// cycles if every state differs from the one q cycles later by less than a thousandth of the largest state.
 fn impacts_per_cycle(mut motion: Simulation) -> Result<String> {
-    /// Longest period that is recognised, in cycles.
-    const LONGEST: usize = 12;
+    /// Longest period in cycles that is recognised.
+    const LONGEST_PERIOD: usize = 12;
     let period = 1.0 / motion.frequency();
     let cycles = (BLOCK / period) as usize;
     let mut strobe = Vec::with_capacity(cycles);
@@ -104,7 +107,7 @@ fn impacts_per_cycle(mut motion: Simulation) -> Result<String> {
         motion.run(start + n as f64 * period, |leg| impacts += usize::from(leg.impact().is_some()))?;
         strobe.push((motion.state(), impacts));
     }
-    let tail = &strobe[cycles.saturating_sub(3 * LONGEST)..];
+    let tail = &strobe[cycles.saturating_sub(3 * LONGEST_PERIOD)..];
     let size = |s: &State| s.x1.abs() + s.x2.abs() + (s.v1.abs() + s.v2.abs()) * period / TAU;
     let largest = tail.iter().map(|(s, _)| size(s)).fold(0.0, f64::max);
     let close = |a: &State, b: &State| {
@@ -112,11 +115,10 @@ fn impacts_per_cycle(mut motion: Simulation) -> Result<String> {
         size(&difference) < 1e-3 * largest
     };
     let repeats = |q: &usize| tail.iter().zip(&tail[*q..]).all(|((a, _), (b, _))| close(a, b));
-    Ok(match (1..=LONGEST).find(repeats) {
-        // The states repeat after `q` cycles.
+    Ok(match (1..=LONGEST_PERIOD).find(repeats) {
         Some(q) => {
-            // An impact at the comparison phase may be counted in either cycle: the mean over many periods is
-            // whole.
+            // An impact at the compared phase may be counted in the cycle before or after it. The mean over
+            // many periods, rounded, is not affected.
             let whole = tail.len() / q * q;
             let total: usize = tail[tail.len() - whole..].iter().map(|(_, n)| n).sum();
             let p = (total as f64 / (whole / q) as f64).round() as usize;
@@ -133,8 +135,8 @@ impl Point {
         let omega = TAU * self.frequency;
         let force: Vec<f64> =
             (0..SAMPLES).map(|i| FORCE * (omega * i as f64 * INTERVAL + self.phase).cos()).collect();
-        // The converter averages: over an interval the mean velocity is exactly the change of displacement
-        // over its duration. At 13 Hz averaging lowers the amplitude by 0.01 %.
+        // Mean velocity over an interval of the converter: exactly the change of displacement divided by the
+        // interval. At 13 Hz averaging lowers the amplitude by 0.01 %.
         let mean = |x: fn(&State) -> f64| -> Vec<f64> {
             self.states.windows(2).map(|pair| (x(&pair[1]) - x(&pair[0])) / INTERVAL).collect()
         };
@@ -148,8 +150,8 @@ impl Point {
         spectra.map(|spectrum| (names.next().unwrap_or_default(), analyser::print(&spectrum)))
     }
 
-    /// Row of `TRUTH.csv`: amplitudes of displacement in m at the excitation frequency over this block, with
-    /// the Hann window, without noise.
+    /// Row of `TRUTH.csv`: displacement amplitudes in m at the excitation frequency, from this block with the
+    /// Hann window and without noise.
     pub fn truth(&self) -> String {
         let omega = TAU * self.frequency;
         let (mut sums, mut weight) = ([Complex64::ZERO; 2], 0.0);
@@ -175,8 +177,8 @@ pub fn truth_header() -> String {
     "direction,point,frequency,x1,x2,impacts_per_cycle\n".to_owned()
 }
 
-/// Name and content of the list file of one mass: number of points, lines, base band, force names, response
-/// names.
+/// Name and content of the list file of one mass. The content is, one a line: number of points, number of
+/// spectral lines, base band in Hz, file names of the force spectra, file names of the response spectra.
 pub fn list(direction: Direction, mass: usize) -> (String, String) {
     let names: Vec<[String; 3]> = (1..=FREQUENCIES.len()).map(|number| direction.names(number)).collect();
     let mut text = format!("{}\n{LINES}\n{BASE_BAND}\n", names.len());

@@ -11,15 +11,17 @@ use nalgebra::{DMatrix, DVector, Matrix4, Matrix6};
 use num_complex::Complex64;
 use vibro_record::{Error, Result};
 
-/// Most points in each direction.
-const POINTS: usize = 20_000;
+/// Most points of a branch in each direction.
+const MOST_POINTS: usize = 20_000;
 /// Most Newton steps of a corrector.
-const CORRECTOR: usize = 12;
-/// At a flip the two halves of a doubled motion are equal; they count as equal to this difference (rad, and
-/// parts of an impulse). Branches cross there, so the equations are nearly singular, which limits how closely
-/// the place can be found.
-const HALVES: f64 = 1e-2;
-/// Start of a continuation, its parameter with its range, and its largest step.
+const CORRECTOR_STEPS: usize = 12;
+/// Largest difference in phase (rad) and relative impulse at which the two halves of a doubled period count
+/// as equal, as they are at a flip. Branches cross at a flip, so the equations are nearly singular and the
+/// flip is located only roughly.
+const EQUAL_HALVES: f64 = 1e-2;
+
+/// Start of a continuation, the varied parameter `over` with its range, and the largest step along the
+/// branch.
 pub struct Walk<'a> {
     pub start: &'a PeriodicOrbit,
     pub over: Parameter,
@@ -28,23 +30,24 @@ pub struct Walk<'a> {
     pub step: f64,
 }
 
-/// The branch in one direction.
-pub struct Way {
+/// The branch in one direction, with the marks of its changes and the reason of its end.
+pub struct BranchPart {
     pub points: Vec<PeriodicOrbit>,
     pub marks: Vec<Mark>,
     pub end: End,
 }
 
-/// A point of the extended space: unknowns and the coordinate of the varied parameter; with its tangent.
+/// A point of a branch in the extended space (unknowns, then the coordinate of the varied parameter), with
+/// the tangent of the branch.
 #[derive(Clone)]
-pub struct Spot {
+pub struct BranchPoint {
     z: DVector<f64>,
     tangent: DVector<f64>,
 }
 
 impl Walk<'_> {
-    /// Coordinate of a value of the varied parameter: its logarithm; for the gap, its ratio to the branch's
-    /// length; the restitution itself.
+    /// Coordinate of a value of the varied parameter: its logarithm; the gap divided by the length scale of
+    /// the branch; or the restitution itself.
     fn coordinate(&self, value: f64) -> f64 {
         match self.over {
             Parameter::Gap => value / self.length(),
@@ -66,7 +69,7 @@ impl Walk<'_> {
     fn scene(&self, z: &DVector<f64>) -> (Rig, Sine) {
         let (mut rig, mut sine) = (self.start.rig, self.start.sine);
         let (least, most) = self.over.limits();
-        // A step may go beyond a bound: `system` continues the equations there.
+        // A step may leave the allowed range, which the rig must not.
         let value = self.value(z[z.len() - 1]).clamp(least, most);
         match self.over {
             Parameter::Frequency => sine.frequency = value,
@@ -87,7 +90,7 @@ impl Walk<'_> {
             // The equations also hold for restitutions outside 0 to 1.
             system.contact = 1.0 / Rig { restitution: z[z.len() - 1], ..rig }.exchange();
         }
-        // One length scale along the whole branch: that of its start.
+        // The length scale of the start, constant along the branch.
         system.length = self.length();
         Ok(system)
     }
@@ -121,7 +124,7 @@ impl Walk<'_> {
         Ok((left, all))
     }
 
-    /// Direction of the branch at `z`, with the sense of `along`.
+    /// Unit tangent of the branch at `z`, in the direction of `along`.
     fn tangent(&self, z: &DVector<f64>, along: &DVector<f64>) -> Result<Option<DVector<f64>>> {
         let n = z.len() - 1;
         let (_, mut all) = self.evaluate(z)?;
@@ -136,7 +139,7 @@ impl Walk<'_> {
     ///
     /// # Errors
     /// If the branch folds there.
-    pub fn point(&self, orbit: &PeriodicOrbit) -> Result<Spot> {
+    pub fn point(&self, orbit: &PeriodicOrbit) -> Result<BranchPoint> {
         let mut z = DVector::zeros(2 * orbit.beats.len() + 1);
         let n = z.len() - 1;
         z[n] = self.coordinate(self.over.of(&orbit.rig, &orbit.sine));
@@ -148,15 +151,15 @@ impl Walk<'_> {
             Error::refused("the branch has no direction at its start: it folds there")
                 .hint("start from another value")
         })?;
-        Ok(Spot { z, tangent })
+        Ok(BranchPoint { z, tangent })
     }
 
     /// The point of the branch at the distance `s` along the tangent, and the number of Newton steps; `None`
     /// where Newton's method does not converge.
-    fn ahead(&self, from: &Spot, s: f64) -> Option<(Spot, usize)> {
+    fn ahead(&self, from: &BranchPoint, s: f64) -> Option<(BranchPoint, usize)> {
         let mut z = &from.z + &from.tangent * s;
         let n = z.len() - 1;
-        for k in 0..CORRECTOR {
+        for k in 0..CORRECTOR_STEPS {
             let (left, mut all) = self.evaluate(&z).ok()?;
             all.row_mut(n).copy_from(&from.tangent.transpose());
             let mut right = DVector::zeros(n + 1);
@@ -170,7 +173,7 @@ impl Walk<'_> {
             if step.amax() < 1e-10 {
                 // Newton's method doubles the digits with each step: this one is exact to rounding.
                 let tangent = self.tangent(&z, &from.tangent).ok()??;
-                return Some((Spot { z, tangent }, k + 1));
+                return Some((BranchPoint { z, tangent }, k + 1));
             }
         }
         None
@@ -185,50 +188,58 @@ impl Walk<'_> {
     ///
     /// # Errors
     /// If a motion on the branch cannot be computed.
-    pub fn run(&self, origin: &Spot, sign: f64) -> Result<Way> {
-        let mut here = Spot { z: origin.z.clone(), tangent: &origin.tangent * sign };
-        let mut way = Way { points: vec![self.orbit(&here.z)?], marks: Vec::new(), end: End::Points };
+    pub fn run(&self, origin: &BranchPoint, sign: f64) -> Result<BranchPart> {
+        let mut here = BranchPoint { z: origin.z.clone(), tangent: &origin.tangent * sign };
+        let mut branch =
+            BranchPart { points: vec![self.orbit(&here.z)?], marks: Vec::new(), end: End::Points };
         let mut s = self.step / 4.0;
         let n = here.z.len() - 1;
-        while way.points.len() < POINTS {
+        while branch.points.len() < MOST_POINTS {
             let Some((next, effort)) = self.ahead(&here, s).filter(|(next, _)| {
                 // Rejects a sharp bend: the step may have jumped to another branch.
                 next.tangent.dot(&here.tangent) > 0.8
             }) else {
                 s /= 2.0;
                 if s < 1e-7 {
-                    return Ok(Way { end: End::Lost, ..way });
+                    return Ok(BranchPart { end: End::Lost, ..branch });
                 }
                 continue;
             };
             let value = self.value(next.z[n]);
-            let faded = (n / 2..n).any(|k| next.z[k] <= 0.0);
-            if faded || value < self.low || value > self.high {
+            let impulse_vanished = (n / 2..n).any(|k| next.z[k] <= 0.0);
+            if impulse_vanished || value < self.low || value > self.high {
                 // The branch ends where an impulse is zero or the parameter is at its bound.
                 let bound = if value < self.low { self.low } else { self.high };
-                let distance = |spot: &Spot| {
-                    if faded { spot.z.rows(n / 2, n / 2).min() } else { spot.z[n] - self.coordinate(bound) }
+                let distance = |point: &BranchPoint| {
+                    if impulse_vanished {
+                        point.z.rows(n / 2, n / 2).min()
+                    } else {
+                        point.z[n] - self.coordinate(bound)
+                    }
                 };
-                way.end = if faded { End::Grazing } else { End::Range };
+                branch.end = if impulse_vanished { End::Grazing } else { End::Range };
                 if let Some(last) = self.locate(&here, s, &distance) {
                     let orbit = self.orbit(&last.z)?;
-                    if faded {
-                        let after = way.points.len() - 1;
-                        way.marks.push(Mark { kind: Loss::Grazing, orbit: orbit.clone(), after });
+                    if impulse_vanished {
+                        let after = branch.points.len() - 1;
+                        branch.marks.push(Mark { kind: Loss::Grazing, orbit: orbit.clone(), after });
                     }
-                    way.points.push(orbit);
+                    branch.points.push(orbit);
                 }
-                return Ok(way);
+                return Ok(branch);
             }
             if !ordered(&self.system(&next.z)?, &Self::inner(&next.z)) {
-                return Ok(Way { end: End::Lost, ..way });
+                return Ok(BranchPart { end: End::Lost, ..branch });
             }
             let orbit = self.orbit(&next.z)?;
-            self.mark(&here, &next, s, &mut way, &orbit)?;
-            way.points.push(orbit);
-            let round = (&next.z - &origin.z).norm();
-            if way.points.len() > 8 && round < s && next.tangent.dot(&origin.tangent) * sign > 0.9 {
-                return Ok(Way { end: End::Closed, ..way });
+            self.mark(&here, &next, s, &mut branch, &orbit)?;
+            branch.points.push(orbit);
+            let distance_from_origin = (&next.z - &origin.z).norm();
+            if branch.points.len() > 8
+                && distance_from_origin < s
+                && next.tangent.dot(&origin.tangent) * sign > 0.9
+            {
+                return Ok(BranchPart { end: End::Closed, ..branch });
             }
             here = next;
             s = match effort {
@@ -237,22 +248,29 @@ impl Walk<'_> {
                 _ => s / 2.0,
             };
         }
-        Ok(way)
+        Ok(branch)
     }
 
     /// Adds marks for the changes between two points, in their order along the branch.
-    fn mark(&self, here: &Spot, next: &Spot, s: f64, way: &mut Way, orbit: &PeriodicOrbit) -> Result<()> {
+    fn mark(
+        &self,
+        here: &BranchPoint,
+        next: &BranchPoint,
+        s: f64,
+        branch: &mut BranchPart,
+        orbit: &PeriodicOrbit,
+    ) -> Result<()> {
         let n = here.z.len() - 1;
-        let last = &way.points[way.points.len() - 1];
-        let after = way.points.len() - 1;
-        let mut found: Vec<(Loss, Spot)> = Vec::new();
+        let last = &branch.points[branch.points.len() - 1];
+        let after = branch.points.len() - 1;
+        let mut found: Vec<(Loss, BranchPoint)> = Vec::new();
         if here.tangent[n] * next.tangent[n] < 0.0
-            && let Some(spot) = self.locate(here, s, &|spot: &Spot| spot.tangent[n])
+            && let Some(point) = self.locate(here, s, &|point: &BranchPoint| point.tangent[n])
         {
-            found.push((Loss::Fold, spot));
+            found.push((Loss::Fold, point));
         }
         let of = |test: fn(&PeriodicOrbit) -> Option<f64>| {
-            move |spot: &Spot| self.orbit(&spot.z).ok().and_then(|o| test(&o)).unwrap_or(f64::NAN)
+            move |point: &BranchPoint| self.orbit(&point.z).ok().and_then(|o| test(&o)).unwrap_or(f64::NAN)
         };
         let clearance: fn(&PeriodicOrbit) -> Option<f64> = |orbit| orbit.validity.clearance;
         let tests = [
@@ -263,30 +281,30 @@ impl Walk<'_> {
         for (kind, test) in tests {
             let (Some(a), Some(b)) = (test(last), test(orbit)) else { continue };
             if a * b < 0.0
-                && let Some(spot) = self.locate(here, s, &of(test))
+                && let Some(point) = self.locate(here, s, &of(test))
             {
-                found.push((kind, spot));
+                found.push((kind, point));
             }
         }
         found.sort_by(|a, b| {
-            let along = |spot: &Spot| here.tangent.dot(&(&spot.z - &here.z));
+            let along = |point: &BranchPoint| here.tangent.dot(&(&point.z - &here.z));
             along(&a.1).total_cmp(&along(&b.1))
         });
-        for (kind, spot) in found {
-            let orbit = self.orbit(&spot.z)?;
+        for (kind, point) in found {
+            let orbit = self.orbit(&point.z)?;
             if confirmed(kind, &orbit) {
-                // At a flip the branch of doubled period also turns back, and continues with its halves
-                // exchanged.
-                let halves = kind == Loss::Fold && orbit.repeats_within(HALVES);
-                let kind = if halves { Loss::Flip } else { kind };
-                way.marks.push(Mark { kind, orbit, after });
+                // A branch of doubled period turns back at a flip, too: it continues with the halves of its
+                // period exchanged.
+                let is_flip = kind == Loss::Fold && orbit.repeats_within(EQUAL_HALVES);
+                let kind = if is_flip { Loss::Flip } else { kind };
+                branch.marks.push(Mark { kind, orbit, after });
             }
         }
         Ok(())
     }
 
     /// The point within `s` ahead of `here` where `test` changes its sign, by false position and bisection.
-    fn locate(&self, here: &Spot, s: f64, test: &dyn Fn(&Spot) -> f64) -> Option<Spot> {
+    fn locate(&self, here: &BranchPoint, s: f64, test: &dyn Fn(&BranchPoint) -> f64) -> Option<BranchPoint> {
         let (mut low, mut high) = (0.0, s);
         let (mut at_low, mut at_high) = (test(here), test(&self.ahead(here, s)?.0));
         let mut best = None;
@@ -294,15 +312,15 @@ impl Walk<'_> {
             // False position; every third step bisection.
             let share = at_low / (at_low - at_high);
             let share = if k % 3 == 2 || !share.is_finite() { 0.5 } else { share.clamp(0.01, 0.99) };
-            // The equations are singular where branches cross: then try points beside it.
+            // The equations are singular where branches cross: then other points of the interval are tried.
             let places = [share, 0.45, 0.6].map(|part| low + part * (high - low));
             let near = places.into_iter().find_map(|place| Some((place, self.ahead(here, place)?.0)));
-            let Some((middle, spot)) = near else { return best };
-            let value = test(&spot);
+            let Some((middle, point)) = near else { return best };
+            let value = test(&point);
             if !value.is_finite() {
                 return best;
             }
-            best = Some(spot);
+            best = Some(point);
             if (value < 0.0) == (at_low < 0.0) {
                 (low, at_low) = (middle, value);
             } else {
@@ -334,7 +352,8 @@ fn pair(orbit: &PeriodicOrbit) -> Option<f64> {
     Some((wedge - Matrix6::identity()).determinant())
 }
 
-/// Whether the orbit found has the property of the mark; else the test has only jumped in sign.
+/// Whether the orbit has the property of a mark of this `kind`. If not, the test function changed its sign by
+/// a jump.
 fn confirmed(kind: Loss, orbit: &PeriodicOrbit) -> bool {
     let near = |distance: &dyn Fn(&Complex64) -> f64| {
         orbit.multipliers.is_some_and(|m| m.iter().any(|z| distance(z) < 1e-5))

@@ -9,11 +9,11 @@ use num_complex::Complex64;
 use serde::Serialize;
 use vibro_record::{Error, Result};
 
-/// Longest contact, as part of the period, for which the correction was checked.
+/// Largest contact duration as a share of the period. The correction was checked up to here.
 pub(crate) const LONGEST_CONTACT: f64 = 0.025;
 
-/// A contact of spring k₃ and damper c₃ (Kelvin–Voigt) that cannot pull, and its rebound of a reduced mass M
-/// without other forces.
+/// A contact of spring k₃ and damper c₃ (Kelvin–Voigt) that cannot pull, and how the reduced mass M of the
+/// rig rebounds from it without other forces.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Compliance {
     /// Stiffness k₃ in N/m.
@@ -29,18 +29,20 @@ pub struct Compliance {
     /// Time t* in s from the first touch to the equivalent rigid impact, which gives the same motion after
     /// the contact.
     pub delay: f64,
-    /// Change of the restitution per a/v in s, `(1 − R)t_c − 2d_r/v`, with the acceleration a that presses
-    /// the masses together and the approach speed v.
+    /// dR/d(a/v) in s, `(1 − R)t_c − 2d_r/v`: sensitivity of the restitution to the quotient of the
+    /// acceleration a that presses the masses together and the approach speed v.
     #[serde(skip)]
-    pressed: f64,
+    restitution_slope: f64,
 }
 
 impl Compliance {
-    /// Contact of stiffness k₃ (N/m) on a rig; without `damping` (N s/m) the damper is such that the contact
-    /// has the rig's restitution.
+    /// Contact of stiffness k₃ (N/m) on a rig. `damping` is c₃ in N s/m; `None` computes the one that gives
+    /// the rig's restitution.
     ///
-    /// With ψ = asin ζ: `t_c = (π − 2ψ)/ω_d`, `R = e^{−ζω₀t_c}`; the masses part at the indentation `d_r = vR
-    /// sin(2ψ)/ω_d`, where the force vanishes, and `t* = (d_r/v + Rt_c)/(1 + R)`.
+    /// Approach speed v, natural frequency `ω₀ = √(k₃/M)`, damped one `ω_d = ω₀√(1 − ζ²)`, ψ = asin ζ:
+    /// - duration `t_c = (π − 2ψ)/ω_d` and restitution `R = e^{−ζω₀t_c}`;
+    /// - indentation at which the force vanishes and the masses part: `d_r = vR sin(2ψ)/ω_d`;
+    /// - delay of the equivalent rigid impact: `t* = (d_r/v + Rt_c)/(1 + R)`.
     ///
     /// # Errors
     /// If stiffness or damping are impossible, the damper is critical or more, or no damper gives the rig's
@@ -62,15 +64,16 @@ impl Compliance {
         }
         let (restitution, duration) =
             (conversion::restitution(ratio), conversion::duration(ratio, stiffness, mass));
-        let left = restitution * (2.0 * ratio.asin()).sin() / (omega * (1.0 - ratio * ratio).sqrt());
+        // Indentation at parting per approach speed, d_r/v in s.
+        let parting = restitution * (2.0 * ratio.asin()).sin() / (omega * (1.0 - ratio * ratio).sqrt());
         Ok(Compliance {
             stiffness,
             damping: 2.0 * ratio * mass * omega,
             damping_ratio: ratio,
             restitution,
             duration,
-            delay: (left + restitution * duration) / (1.0 + restitution),
-            pressed: (1.0 - restitution) * duration - 2.0 * left,
+            delay: (parting + restitution * duration) / (1.0 + restitution),
+            restitution_slope: (1.0 - restitution) * duration - 2.0 * parting,
         })
     }
 }
@@ -100,14 +103,15 @@ pub struct Softened {
 /// Corrects each of the orbits `found` of this rig and excitation for `compliance`; `None` where the
 /// corrected orbit does not exist, or needs a restitution above 1 or below 0.
 ///
-/// The contact force f over the reduced mass gives I = ∫f dt, centred at t* = ∫tf dt/I after the touch: a
-/// rigid impact of this size at that time gives the same motion after the contact. At that time the rigid
-/// motions already overlap by vt*, so C + t*/(M(1+R)) replaces C = χ₁(0) + χ₂(0). An acceleration a that
-/// presses the masses together (to first order) raises their speed by then to v + at*, and changes the
-/// restitution to `R + (a/v)((1 − R)t_c − 2d_r/v)`. The rig's own dampers slow a relative speed u by κu, κ =
-/// M(c₁/m₁² + c₂/m₂²): between touch and parting the two rigid flights lose `κt_c` of it, but in the contact,
-/// where the speed reverses, its envelope falls by only `κt_c/2`; so `R(1 + κt_c/2)` replaces R, and a is the
-/// acceleration without the dampers.
+/// A rigid impact is equivalent to a contact force f(t) if its impulse is ∫f dt and its time the centroid
+/// t* = ∫tf dt/∫f dt after the first touch: the motion after the contact is the same. Three corrections:
+/// 1. Timing. At t* the rigid motions overlap by vt*. So C + t*/(M(1+R)) replaces C = χ₁(0) + χ₂(0), with the
+///    periodic impulse responses χᵢ of both masses (`Green`).
+/// 2. Pressing. An acceleration a that presses the masses together raises the approach speed to v + at* at
+///    the impact. It changes the restitution to `R + (a/v)((1 − R)t_c − 2d_r/v)`, to first order.
+/// 3. The rig's dampers. They slow a relative speed u by κu per second, κ = M(c₁/m₁² + c₂/m₂²). The rigid
+///    flights lose the share `κt_c` of u between touch and parting. In the contact u reverses, and its
+///    envelope loses only half of that. So `R(1 + κt_c/2)` replaces R, and a is taken without the dampers.
 ///
 /// # Errors
 /// If the contact lasts longer than `LONGEST_CONTACT` of the period.
@@ -132,20 +136,19 @@ pub fn softened(
             return Ok(None);
         }
         let (mut at, mut restitution) = (orbit.clone(), rig.restitution);
-        // κ = M(c₁/m₁² + c₂/m₂²): the rig's own dampers slow the masses' approach by κ times its speed.
+        // κ in 1/s, correction 3.
         let [first, second] = rig.bodies().map(|body| body.damping / (body.mass * body.mass));
-        let drag = rig.reduced_mass() * (first + second);
-        // Each iteration reduces the remaining change by about the share of contact: 0.025⁸ is negligible.
+        let kappa = rig.reduced_mass() * (first + second);
+        // Each iteration multiplies the remaining error by about the contact's share of the period: 0.025⁸ is
+        // negligible.
         for _ in 0..8 {
-            // The rigid flights lose κt_c of the relative speed; in the contact, where it reverses, only half
-            // of that is lost.
-            let turned = rig.restitution * (1.0 + 0.5 * drag * compliance.duration);
-            let [_, steady] = pressing(&at, drag);
-            let changed = turned + compliance.pressed * steady / at.approach_velocity;
-            if !(0.0..=1.0).contains(&changed) {
+            let damped = rig.restitution * (1.0 + 0.5 * kappa * compliance.duration);
+            let [_, undamped_mean] = pressing(&at, kappa);
+            let corrected = damped + compliance.restitution_slope * undamped_mean / at.approach_velocity;
+            if !(0.0..=1.0).contains(&corrected) {
                 return Ok(None);
             }
-            restitution = changed;
+            restitution = corrected;
             let soft =
                 super::solve(&Rig { restitution, ..*rig }, excitation, orbit.cycles, compliance.delay)?;
             match orbit.continued(&soft.orbits) {
@@ -156,7 +159,7 @@ pub fn softened(
         Ok(Some(Softened {
             impulse: at.impulse,
             timing: at.timing,
-            approach_velocity: at.approach_velocity - pressing(&at, drag)[0] * compliance.delay,
+            approach_velocity: at.approach_velocity - pressing(&at, kappa)[0] * compliance.delay,
             restitution,
             peak_to_peak: at.peak_to_peak,
             fundamental: at.fundamental.map(Complex64::norm),
@@ -167,11 +170,11 @@ pub fn softened(
     found.orbits.iter().map(soften).collect()
 }
 
-/// Accelerations in m/s² that would press the masses together without contact: just before the impact; and
-/// the mean of just before and after, without the deceleration of their relative speed by `drag` (1/s).
-fn pressing(orbit: &Orbit, drag: f64) -> [f64; 2] {
+/// Accelerations in m/s² that would press the masses together without contact: that just before the impact;
+/// and the mean of those just before and just after it, without the dampers' part −κ × relative speed.
+fn pressing(orbit: &Orbit, kappa: f64) -> [f64; 2] {
     let (before, after) = orbit.course.rates();
     let [first, last] = [before, after].map(|rate| rate[1] - rate[3]);
     let speeds = before[0] - before[2] + (after[0] - after[2]);
-    [first, f64::midpoint(first, last) + 0.5 * drag * speeds]
+    [first, f64::midpoint(first, last) + 0.5 * kappa * speeds]
 }

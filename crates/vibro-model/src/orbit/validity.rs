@@ -114,19 +114,21 @@ pub struct Judged {
 }
 
 impl Judged {
-    /// Verdicts on a motion along `courses`, each from one impact to the next. Inputs: whether its impacts
-    /// push, the energy rule where it is known, the change of the gap in m at which an impact itself grazes
-    /// (`own`), and the factor by which rounding is `amplified`; `None` for a free motion.
+    /// Verdicts on a motion along `courses`, each from one impact to the next.
+    ///
+    /// `exists`: whether all impulses are positive. `energy_rule`: the energy rule, if known.
+    /// `impact_grazing`: change of the gap in m at which an impact itself grazes. `amplified`: factor on the
+    /// rounding error; `None` for a free motion.
     pub fn new(
         rig: &Rig,
         courses: &[Course],
         exists: bool,
         energy_rule: Option<bool>,
-        own: f64,
+        impact_grazing: f64,
         amplified: Option<f64>,
     ) -> Judged {
         let (mut multipliers, mut monodromy) = (None, None);
-        // A free motion is one of a family: neighbours neither decay nor grow.
+        // A free motion without losses belongs to a family of motions: disturbances neither decay nor grow.
         let mut stable = amplified.map(|_| false);
         if let Some(amplified) = amplified.filter(|_| exists) {
             let (whole, rounding) = product(rig, courses);
@@ -135,13 +137,13 @@ impl Judged {
                 multipliers.as_ref().map_or(stable, |m| floquet::inside(&whole, m, amplified * rounding));
             monodromy = Some(whole);
         }
-        // For one impact the energy rule means that an even number of multipliers lies beyond +1. This
-        // replaces it for several impacts.
+        // For one impact the energy rule is equivalent to an even number of multipliers beyond +1. For
+        // several impacts this number replaces the rule.
         let even = || monodromy.is_some_and(|m| (Matrix4::identity() - m).determinant() > 0.0);
         let surveys: Vec<_> = courses.iter().map(Course::survey).collect();
         let clearance = surveys.iter().filter_map(|s| s.closest).reduce(f64::min);
         let noise = courses.iter().map(Course::noise).fold(0.0, f64::max);
-        // The gap is zero at the impacts, so where it becomes negative it has a minimum between them.
+        // The gap is zero at the impacts, so a negative gap has a minimum between them.
         let min_gap = clearance.filter(|gap| *gap < -8.0 * noise).unwrap_or(0.0);
         let validity = Validity {
             exists,
@@ -151,7 +153,7 @@ impl Judged {
             energy_rule: exists && energy_rule.unwrap_or_else(even),
             min_gap,
             clearance,
-            grazing_distance: clearance.map_or(own, |c| own.min(c.max(0.0))),
+            grazing_distance: clearance.map_or(impact_grazing, |c| impact_grazing.min(c.max(0.0))),
         };
         let spread = |mass: usize| {
             let ranges = surveys.iter().map(|s| s.ranges[mass]);

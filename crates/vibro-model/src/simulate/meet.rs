@@ -10,12 +10,12 @@ use crate::stick::Press;
 use std::f64::consts::TAU;
 use vibro_record::Result;
 
-/// Approach speed in m/s below which the end of a chatter is looked for; above it, impacts do not yet
-/// accumulate closely enough.
-const SLOW: f64 = 1e-3;
-/// The same limit over the speeds of the masses. A bounce at 6e-8 of them, √(16ε), rises no higher than the
-/// rounding of the gap and counts as rest.
-const SLOW_PART: f64 = 1e-7;
+/// Approach speed in m/s below which the end of a chatter is searched: at higher speeds the impacts do not
+/// yet follow one another closely enough.
+const CHATTER_SPEED: f64 = 1e-3;
+/// The same limit relative to the scale of the speeds. A bounce at 6e-8 of this scale, √(16ε), rises no
+/// higher than the rounding error of the gap and counts as rest.
+const CHATTER_SPEED_RATIO: f64 = 1e-7;
 
 impl Simulation {
     /// Applies the impact law to the present state, which is at contact.
@@ -25,7 +25,7 @@ impl Simulation {
         let impulse = self.exchange * approach;
         self.state = self.rig.struck(self.state, impulse);
         self.hold = Hold::Apart;
-        if approach < SLOW.max(self.grazing_speed).max(SLOW_PART * self.speed())
+        if approach < CHATTER_SPEED.max(self.grazing_speed).max(CHATTER_SPEED_RATIO * self.speed_scale())
             || self.rig.restitution == 0.0
         {
             self.end_chatter(approach)?;
@@ -35,7 +35,7 @@ impl Simulation {
 
     /// Scale of the speeds in m/s: the velocities, and ω times the displacements and the forced amplitude.
     #[inline]
-    fn speed(&self) -> f64 {
+    fn speed_scale(&self) -> f64 {
         let State { x1, v1, x2, v2 } = self.state;
         let displacement = x1.abs() + x2.abs() + self.drive.alone().amplitude;
         v1.abs() + v2.abs() + TAU * self.drive.forcing.frequency * displacement

@@ -1,6 +1,6 @@
 //! Trials of methods on random records with known truth.
 
-use crate::{BorderQuestion, Found, MeasuredMethod, Outcome, timed};
+use crate::{BorderQuestion, MeasuredMethod, Outcome, OutcomeWithReason, timed};
 use rayon::prelude::*;
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -47,7 +47,9 @@ impl<D> EstimationMethod<D> {
     /// The answer to a record, or the reason why there is none.
     fn answer(&self, record: &D) -> std::result::Result<EstimatorAnswer, String> {
         let answer = match self {
-            EstimationMethod::Own(_, way) => way(record).map_err(|error| Found::from(error).why)?,
+            EstimationMethod::Own(_, way) => {
+                way(record).map_err(|error| OutcomeWithReason::from(error).why)?
+            }
             EstimationMethod::Rival(_, way) => EstimatorAnswer { value: way(record), std: None, doubt: None },
         };
         if answer.value.is_finite() { Ok(answer) } else { Err("it gives no number".to_owned()) }
@@ -204,7 +206,7 @@ fn relative_error(answer: &EstimatorAnswer, truth: f64, tolerance: f64) -> std::
 }
 
 /// Outcome of a method on a cell's records.
-fn judged<D: 'static>(method: &EstimationMethod<D>, kind: &Ensemble<D>, quick: bool) -> Found {
+fn judged<D: 'static>(method: &EstimationMethod<D>, kind: &Ensemble<D>, quick: bool) -> OutcomeWithReason {
     let trials = TRIALS[usize::from(quick)];
     // Error of each answer over the largest allowed one, and whether it states an uncertainty.
     let answer = |number: usize| {
@@ -220,14 +222,17 @@ fn judged<D: 'static>(method: &EstimationMethod<D>, kind: &Ensemble<D>, quick: b
     let allowed = "what they state or is allowed";
     let found = if RIGHT_WITHIN * worst > WRONG_BEYOND || wrong > OUTLIERS[usize::from(quick)] {
         let why = format!("{wrong} of {trials} answers beyond {allowed}, the worst {worst:.3} times");
-        Found::new(Outcome::Wrong, why)
+        OutcomeWithReason::new(Outcome::Wrong, why)
     } else if 2 * right >= trials {
-        Found::new(Outcome::Right, format!("{right} of {trials} answers within {allowed}"))
+        OutcomeWithReason::new(Outcome::Right, format!("{right} of {trials} answers within {allowed}"))
     } else {
         let refusal = answers.into_iter().find_map(std::result::Result::err);
-        Found::new(Outcome::Refused, refusal.unwrap_or_else(|| "too few answers are right".to_owned()))
+        OutcomeWithReason::new(
+            Outcome::Refused,
+            refusal.unwrap_or_else(|| "too few answers are right".to_owned()),
+        )
     };
-    Found { stated, ..found }
+    OutcomeWithReason { stated, ..found }
 }
 
 #[cfg(test)]

@@ -5,7 +5,7 @@ use super::rivals::{self as by, Method};
 use super::scenes::{at, grazing_task, task_c};
 use super::task::{Log, Task};
 use super::truth::{motion, settled};
-use crate::{BorderQuestion, FailureMap, Family, Found, Outcome};
+use crate::{BorderQuestion, FailureMap, Family, Outcome, OutcomeWithReason};
 use std::f64::consts::TAU;
 use std::sync::Arc;
 use vibro_math::bisected;
@@ -207,9 +207,9 @@ fn judged(
     can: Ability,
     border: &Border,
     truth: Option<&Log>,
-) -> std::result::Result<Found, Found> {
+) -> std::result::Result<OutcomeWithReason, OutcomeWithReason> {
     let task = &border.task;
-    let not_asked = |why: &str| Ok(Found::new(Outcome::NotAsked, why));
+    let not_asked = |why: &str| Ok(OutcomeWithReason::new(Outcome::NotAsked, why));
     match (can, border.goal) {
         (Ability::Orbits | Ability::Follow, Goal::Contact)
         | (Ability::Orbits | Ability::SoftOrbits, Goal::First(_))

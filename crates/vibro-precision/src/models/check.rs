@@ -2,36 +2,35 @@
 
 use super::ours::soft_forms;
 use super::task::{Log, Task};
-use super::truth::{Repeats, repeats, settled};
-use crate::{Found, Outcome};
+use super::truth::{PeriodicImpact, periodic_motion, settled};
+use crate::{Outcome, OutcomeWithReason};
 use std::f64::consts::TAU;
 use std::fmt::Debug;
 use vibro_model::{Orbit, State, orbits};
 
-/// Largest error allowed to every method: this part of a cycle for times, this part of the fastest approach
-/// speed for speeds. A method with a thousand fixed steps a cycle reaches it within some impacts; it is
-/// twenty times what would show on a millimetre scale.
+/// Largest error allowed to every method: for times as a share of a cycle, for speeds as a share of the
+/// fastest approach speed. A method with a thousand fixed steps a cycle reaches this error within some
+/// impacts.
 const TOLERANCE: f64 = 0.01;
-/// Approach speed in m/s above which an impact must be found.
+/// Approach speed in m/s above which an impact is compared; slower ones may be missing or additional.
 const LEAST_SPEED: f64 = 1e-3;
-/// Cycles within which a motion must settle, to be compared.
+/// Cycles within which a motion must become periodic, to be compared.
 pub const SETTLED: f64 = 400.0;
-/// Largest difference in approach speed (relative) and phase (rad) between an orbit in closed form and the
-/// motion that repeats beside it.
+/// Largest error of an orbit in closed form against the periodic motion that Newton's method finds from it
+/// ([`PeriodicImpact::error_of`]).
 const SAME_ORBIT: f64 = 1e-8;
-/// The same between an orbit and the motion on which a task settles.
+/// Largest error of an orbit in closed form against the periodic motion on which a task settles.
 const SAME_AS_SETTLED: f64 = 1e-4;
 
 /// Judges a motion by its impacts and rests, one by one in their order. Each impact faster than
-/// [`LEAST_SPEED`] must agree within [`TOLERANCE`] of a cycle and of the fastest approach speed; each rest
-/// longer than twice that part of a cycle must begin and end within it. This holds for both lists: none may
-/// be missing, and none invented.
-pub fn motion(log: &Log, truth: &Log, task: &Task) -> Found {
+/// [`LEAST_SPEED`] must agree within [`TOLERANCE`]. Each rest longer than twice the time tolerance must begin
+/// and end within this tolerance. This holds for both lists: none may be missing, and none additional.
+pub fn motion(log: &Log, truth: &Log, task: &Task) -> OutcomeWithReason {
     let time_error = TOLERANCE * task.cycle();
-    // What begins later may lie beyond the end of either list.
+    // An impact or rest that begins later may lie beyond the end of one of the lists.
     let last = task.until - 2.0 * time_error;
     let speed_error = TOLERANCE * truth.impacts.iter().map(|i| i.1).fold(LEAST_SPEED, f64::max);
-    // With NaN the comparisons are false: such an impact must be paired, and is close to none.
+    // Comparisons with NaN are false. So an impact with NaN counts but has no close partner: it is an error.
     let counts = |i: &(f64, f64)| !(i.0 >= last || i.1 <= LEAST_SPEED);
     let close =
         |a: &(f64, f64), b: &(f64, f64)| (a.0 - b.0).abs() <= time_error && (a.1 - b.1).abs() <= speed_error;
@@ -44,15 +43,15 @@ pub fn motion(log: &Log, truth: &Log, task: &Task) -> Found {
     match (impacts, rests) {
         (Ok(n), Ok(m)) => {
             let why = format!("{n} impacts within {time_error:.0e} s and {speed_error:.0e} m/s, {m} rests");
-            Found::new(Outcome::Right, why)
+            OutcomeWithReason::new(Outcome::Right, why)
         }
-        (Err(why), _) => Found::new(Outcome::Wrong, format!("impacts (s, m/s): {why}")),
-        (_, Err(why)) => Found::new(Outcome::Wrong, format!("rests (s): {why}")),
+        (Err(why), _) => OutcomeWithReason::new(Outcome::Wrong, format!("impacts (s, m/s): {why}")),
+        (_, Err(why)) => OutcomeWithReason::new(Outcome::Wrong, format!("rests (s): {why}")),
     }
 }
 
 /// Pairs the entries of `truth` and `log` that are `close`, in their order; returns the number of pairs.
-/// Each entry that `counts`, in either list, must be in a pair; else the error says which is not.
+/// Every entry for which `counts` is true must be in a pair; the error states the first that is not.
 fn in_order<T: Debug>(
     truth: &[T],
     log: &[T],
@@ -74,70 +73,79 @@ fn in_order<T: Debug>(
     }
 }
 
-/// Judges the first impact by its true time, or by its absence.
-pub fn first(log: &Log, truth: &Log, task: &Task) -> Found {
+/// Judges the time of the first impact, or that there is none.
+pub fn first(log: &Log, truth: &Log, task: &Task) -> OutcomeWithReason {
     let [log, truth] = [log, truth].map(|motion| motion.impacts.first().map(|i| i.0));
     let right = match (log, truth) {
         (Some(log), Some(truth)) => (log - truth).abs() <= TOLERANCE * task.cycle(),
         (log, truth) => log.is_none() && truth.is_none(),
     };
-    Found::right_if(right, format!("time of the first impact in s: told {log:?}, true {truth:?}"))
+    OutcomeWithReason::right_if(right, format!("time of the first impact in s: told {log:?}, true {truth:?}"))
 }
 
 /// Judges the last approach speed by that of the periodic motion.
-pub fn speed(log: &Log, truth: &Log) -> Found {
+pub fn speed(log: &Log, truth: &Log) -> OutcomeWithReason {
     let [log, truth] = [log, truth].map(|motion| motion.impacts.last().map_or(f64::NAN, |i| i.1));
     let error = (log / truth - 1.0).abs();
-    Found::right_if(error <= TOLERANCE, format!("approach speed {error:.0e} off, allowed {TOLERANCE:.0e}"))
+    OutcomeWithReason::right_if(
+        error <= TOLERANCE,
+        format!("approach speed {error:.0e} off, allowed {TOLERANCE:.0e}"),
+    )
 }
 
-/// Judges orbits in closed form by following the motion. An orbit called admissible must repeat. One that
-/// is not, where the masses would pass through each other, must not repeat. Orbits with slow impacts are
-/// left out. The motion on which the task settles, if with one impact a cycle, must be among the stable
-/// orbits.
-pub fn closed_form(task: &Task) -> Result<Found, Found> {
+/// Judges orbits in closed form by integration of the motion.
+///
+/// An admissible orbit must be a periodic motion of the integration. An inadmissible one, on which the masses
+/// would pass through each other, must not be one. Orbits slower than [`LEAST_SPEED`] are not tested. If the
+/// task settles on a motion with one impact a cycle, this must be one of the stable orbits.
+pub fn closed_form(task: &Task) -> Result<OutcomeWithReason, OutcomeWithReason> {
     let found = orbits(&task.rig, task.force, task.frequency)?;
     judged(task, &found.orbits.iter().filter(|o| o.validity.exists).collect::<Vec<_>>())
 }
 
 /// As [`closed_form`], for these orbits.
-fn judged(task: &Task, log: &[&Orbit]) -> Result<Found, Found> {
+fn judged(task: &Task, log: &[&Orbit]) -> Result<OutcomeWithReason, OutcomeWithReason> {
     for orbit in log.iter().filter(|o| o.approach_velocity > LEAST_SPEED) {
         let (speed, admissible) = (orbit.approach_velocity, orbit.validity.admissible);
-        let motion = repeats(task, None, orbit.period(), &impact_of(orbit));
-        let repeated = motion.is_some_and(|one| one.off(speed, orbit.force_phase) < SAME_ORBIT);
-        if repeated != admissible {
-            let why = format!("an orbit of {speed:.6e} m/s: admissible {admissible}, repeated {repeated}");
-            return Ok(Found::new(Outcome::Wrong, why));
+        let motion = periodic_motion(task, None, orbit.period(), &impact_of(orbit));
+        let is_periodic = motion.is_some_and(|one| one.error_of(speed, orbit.force_phase) < SAME_ORBIT);
+        if is_periodic != admissible {
+            let why = format!("an orbit of {speed:.6e} m/s: admissible {admissible}, repeated {is_periodic}");
+            return Ok(OutcomeWithReason::new(Outcome::Wrong, why));
         }
     }
     let settled = settled(task, None, SETTLED)?;
-    let among = |one: &Repeats| {
+    let is_stable_orbit = |one: &PeriodicImpact| {
         let stable = log.iter().filter(|o| o.validity.admissible && o.validity.stable != Some(false));
-        stable.map(|o| one.off(o.approach_velocity, o.force_phase)).any(|off| off < SAME_AS_SETTLED)
+        stable.map(|o| one.error_of(o.approach_velocity, o.force_phase)).any(|error| error < SAME_AS_SETTLED)
     };
     Ok(match settled {
-        Some(one) => Found::right_if(among(&one), format!("the motion settles at {:.6e} m/s", one.speed())),
-        None => Found::new(Outcome::Right, format!("{} orbits are as they say", log.len())),
+        Some(one) => OutcomeWithReason::right_if(
+            is_stable_orbit(&one),
+            format!("the motion settles at {:.6e} m/s", one.speed()),
+        ),
+        None => OutcomeWithReason::new(Outcome::Right, format!("{} orbits are as they say", log.len())),
     })
 }
 
-/// The impact of an orbit with rigid impacts.
-fn impact_of(orbit: &Orbit) -> Repeats {
+/// State and phase at the impact of an orbit with rigid impacts.
+fn impact_of(orbit: &Orbit) -> PeriodicImpact {
     let State { x1, v1, x2, v2 } = orbit.before_impact();
-    Repeats { before: [x1, v1, x2, v2], phase: orbit.force_phase }
+    PeriodicImpact { before: [x1, v1, x2, v2], phase: orbit.force_phase }
 }
 
-/// Compares every admissible orbit, corrected for a soft contact, with the periodic motion with that contact.
-/// The correction is of first order in the phase `ωt_c` of the contact time, so restitution, delay and speed
-/// at the touch each keep an error of second order. The error must be below half the change as well:
-/// otherwise no correction would pass, too.
-pub fn corrected(task: &Task) -> Result<Found, Found> {
+/// Compares every admissible orbit, corrected for a soft contact, with the periodic motion with this contact.
+///
+/// The correction is of first order in the phase `ωt_c` of the contact time. So restitution, delay and speed
+/// at the touch keep errors of second order, `3(ωt_c)²` in all. The error must also be below half the error
+/// without the correction; otherwise an orbit without any correction could pass.
+pub fn corrected(task: &Task) -> Result<OutcomeWithReason, OutcomeWithReason> {
     let (found, soft, compliance) = soft_forms(task)?;
     let omega = TAU * task.frequency;
     let (mut judged, mut withheld) = (Vec::new(), 0);
     for (orbit, soft) in found.orbits.iter().zip(soft).filter(|(o, _)| o.validity.admissible) {
-        let Some(truth) = repeats(task, Some(task.spring()), orbit.period(), &impact_of(orbit)) else {
+        let Some(truth) = periodic_motion(task, Some(task.spring()), orbit.period(), &impact_of(orbit))
+        else {
             continue;
         };
         let Some(soft) = soft else {
@@ -145,21 +153,26 @@ pub fn corrected(task: &Task) -> Result<Found, Found> {
             continue;
         };
         let touch = orbit.force_phase + soft.timing - orbit.timing - omega * compliance.delay;
-        let off = truth.off(soft.approach_velocity, touch);
-        let plain = truth.off(orbit.approach_velocity, orbit.force_phase);
-        let allowed = (3.0 * (omega * compliance.duration).powi(2)).min(0.5 * plain);
+        let error = truth.error_of(soft.approach_velocity, touch);
+        let uncorrected = truth.error_of(orbit.approach_velocity, orbit.force_phase);
+        let allowed = (3.0 * (omega * compliance.duration).powi(2)).min(0.5 * uncorrected);
         let why = format!(
-            "approach speed and phase {off:.1e} off, allowed {allowed:.1e}, {plain:.1e} without the correction"
+            "approach speed and phase {error:.1e} off, allowed {allowed:.1e}, {uncorrected:.1e} without the correction"
         );
-        if off.is_nan() || off > allowed {
-            return Ok(Found::new(Outcome::Wrong, why));
+        if error.is_nan() || error > allowed {
+            return Ok(OutcomeWithReason::new(Outcome::Wrong, why));
         }
         judged.push(why);
     }
     Ok(match (judged.is_empty(), withheld) {
-        (false, _) => Found::new(Outcome::Right, judged.join("; ")),
-        (true, 0) => Found::new(Outcome::NotAsked, "no motion with one impact a cycle is to be corrected"),
-        (true, n) => Found::new(Outcome::Refused, format!("{n} orbits have no correction with this contact")),
+        (false, _) => OutcomeWithReason::new(Outcome::Right, judged.join("; ")),
+        (true, 0) => {
+            OutcomeWithReason::new(Outcome::NotAsked, "no motion with one impact a cycle is to be corrected")
+        }
+        (true, n) => OutcomeWithReason::new(
+            Outcome::Refused,
+            format!("{n} orbits have no correction with this contact"),
+        ),
     })
 }
 

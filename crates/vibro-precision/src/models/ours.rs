@@ -1,7 +1,7 @@
 //! The library's own methods, run on a task.
 
 use super::task::{Log, Spring, Task};
-use crate::Found;
+use crate::OutcomeWithReason;
 use vibro_model::contact::conversion::damping_ratio;
 use vibro_model::{
     Chirp, Compliance, Compliant, Event, Excitation, Law, Motion, Orbits, Piece, Simulation, Sine, State,
@@ -20,7 +20,7 @@ fn start(task: &Task) -> State {
 }
 
 /// From event to event on exact flights.
-pub fn flights(task: &Task) -> Result<Log, Found> {
+pub fn flights(task: &Task) -> Result<Log, OutcomeWithReason> {
     let mut log = Log::default();
     Simulation::from_state(&task.rig, &sine(task), start(task), task.phase)?
         .advance(task.until, &mut |piece| log.take(&piece))?;
@@ -29,7 +29,7 @@ pub fn flights(task: &Task) -> Result<Log, Found> {
 
 /// As [`flights`], with the frequency changing at the task's rate in steps whose phase deviates by up to
 /// `deviation` in rad.
-pub fn swept(task: &Task, deviation: f64) -> Result<Log, Found> {
+pub fn swept(task: &Task, deviation: f64) -> Result<Log, OutcomeWithReason> {
     let mut motion = Simulation::from_state(&task.rig, &sine(task), start(task), task.phase)?;
     let mut log = Log::default();
     Chirp { rate: task.rate, deviation }.advance(&mut motion, task.until, &mut |piece| log.take(&piece))?;
@@ -37,7 +37,7 @@ pub fn swept(task: &Task, deviation: f64) -> Result<Log, Found> {
 }
 
 /// From event to event with a contact of spring and damper.
-pub fn kelvin_voigt(task: &Task) -> Result<Log, Found> {
+pub fn kelvin_voigt(task: &Task) -> Result<Log, OutcomeWithReason> {
     damping_ratio(task.rig.restitution)?;
     let Spring { stiffness, damping, .. } = task.spring();
     let law = Law::KelvinVoigt { stiffness, damping };
@@ -57,19 +57,19 @@ pub fn kelvin_voigt(task: &Task) -> Result<Log, Found> {
 }
 
 /// The motion with one impact a cycle in closed form, as its impact.
-pub fn closed_form(task: &Task) -> Result<Log, Found> {
+pub fn closed_form(task: &Task) -> Result<Log, OutcomeWithReason> {
     let found = orbits(&task.rig, task.force, task.frequency)?;
     Ok(Log::of(found.orbits.iter().take(1).map(|o| (0.0, o.approach_velocity))))
 }
 
 /// As [`closed_form`], corrected for the contact of the task.
-pub fn soft_form(task: &Task) -> Result<Log, Found> {
+pub fn soft_form(task: &Task) -> Result<Log, OutcomeWithReason> {
     let (_, soft, _) = soft_forms(task)?;
     Ok(Log::of(soft.iter().take(1).flatten().map(|o| (0.0, o.approach_velocity))))
 }
 
 /// All orbits, their corrections for a soft contact, and this contact.
-pub fn soft_forms(task: &Task) -> Result<(Orbits, Vec<Option<Softened>>, Compliance), Found> {
+pub fn soft_forms(task: &Task) -> Result<(Orbits, Vec<Option<Softened>>, Compliance), OutcomeWithReason> {
     let found = orbits(&task.rig, task.force, task.frequency)?;
     let compliance = Compliance::new(&task.rig, task.stiffness, None)?;
     let soft = softened(&task.rig, &Excitation::Sine(sine(task)), &found, &compliance)?;
@@ -77,7 +77,7 @@ pub fn soft_forms(task: &Task) -> Result<(Orbits, Vec<Option<Softened>>, Complia
 }
 
 /// Closed forms at `n` frequencies of a sweep, each at the time at which the sweep passes it.
-pub fn standing(task: &Task, n: f64) -> Result<Log, Found> {
+pub fn standing(task: &Task, n: f64) -> Result<Log, OutcomeWithReason> {
     let mut log = Log::default();
     for i in 0..n as u32 {
         let time = task.until * f64::from(i) / (n - 1.0);

@@ -8,7 +8,7 @@ mod stepper;
 
 use super::ours;
 use super::task::{Log, Task};
-use crate::Found;
+use crate::OutcomeWithReason;
 #[cfg(feature = "diffsol")]
 use diffsol::{
     Diffsol::{Bdf, Tsit45},
@@ -20,7 +20,7 @@ pub use stepper::IntegratorKind;
 use stepper::IntegratorKind::{Dop853, Rk4, Rk45};
 #[cfg(test)]
 pub use stepper::Stepper;
-use stepper::{classical, euler, marched, moreau};
+use stepper::{classical, euler, fixed_step_loop, moreau};
 
 /// A method that follows a motion.
 #[derive(Clone, Copy)]
@@ -38,7 +38,7 @@ pub struct Method {
 }
 
 /// Follows a task with a setting.
-type Follow = fn(&Task, f64) -> Result<Log, Found>;
+type Follow = fn(&Task, f64) -> Result<Log, OutcomeWithReason>;
 /// Words before and after a value of a setting; `None` without one.
 type Setting = Option<[&'static str; 2]>;
 
@@ -83,9 +83,9 @@ pub const STANDING: Method = Method::own("closed form, no rate", Some(["", " fre
 pub const CLOSED: Method = Method::own("closed form", None, |t, _| ours::closed_form(t));
 pub const SOFT: Method = Method::own("soft-corrected closed form", None, |t, _| ours::soft_form(t));
 pub const KELVIN_VOIGT: Method = Method::own("exact Kelvin–Voigt", None, |t, _| ours::kelvin_voigt(t));
-pub const EULER: Method = Method::rival("Euler loop", STEPS, |t, n| marched(t, euler, n));
-pub const RK4_LOOP: Method = Method::rival("RK4 loop", STEPS, |t, n| marched(t, classical, n));
-pub const MOREAU: Method = Method::rival("Moreau time stepping", STEPS, |t, n| marched(t, moreau, n));
+pub const EULER: Method = Method::rival("Euler loop", STEPS, |t, n| fixed_step_loop(t, euler, n));
+pub const RK4_LOOP: Method = Method::rival("RK4 loop", STEPS, |t, n| fixed_step_loop(t, classical, n));
+pub const MOREAU: Method = Method::rival("Moreau time stepping", STEPS, |t, n| fixed_step_loop(t, moreau, n));
 pub const RK4_ENDS: Method = Method::rival("RK4, sign test", STEPS, |t, n| ends(t, Rk4(n)));
 pub const RK45_ENDS: Method = Method::rival("RK45, sign test", TOLERANCE, |t, r| ends(t, Rk45(r)));
 pub const RK45_RESTLESS: Method =
@@ -116,22 +116,22 @@ pub const BDF_TOUCH: Method =
     Method::other("diffsol BDF, sign test", |t, r| followed(t, Some(t.spring()), Bdf(r)));
 
 /// Events located by signs at the ends of steps.
-fn ends(task: &Task, kind: IntegratorKind) -> Result<Log, Found> {
+fn ends(task: &Task, kind: IntegratorKind) -> Result<Log, OutcomeWithReason> {
     events(task, None, kind, Locate::Ends)
 }
 
 /// Events located in the dense output.
-fn dense(task: &Task, kind: IntegratorKind) -> Result<Log, Found> {
+fn dense(task: &Task, kind: IntegratorKind) -> Result<Log, OutcomeWithReason> {
     events(task, None, kind, Locate::Dense)
 }
 
 /// A contact of the task's stiffness, with touch and parting located in the dense output.
-fn touch(task: &Task, kind: IntegratorKind) -> Result<Log, Found> {
+fn touch(task: &Task, kind: IntegratorKind) -> Result<Log, OutcomeWithReason> {
     events(task, Some(task.spring()), kind, Locate::Dense)
 }
 
 /// A spring of stiffness `k` in N/m in place of rigid impacts.
-fn stiff(task: &Task, k: f64, tolerance: f64) -> Result<Log, Found> {
+fn stiff(task: &Task, k: f64, tolerance: f64) -> Result<Log, OutcomeWithReason> {
     through(&Task { stiffness: k, ..*task }, Rk45(tolerance))
 }
 

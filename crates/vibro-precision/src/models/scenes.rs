@@ -5,7 +5,7 @@ mod chaos;
 use super::rivals::{self as by, IntegratorKind, Locate, Method, events};
 use super::task::{Log, Task};
 use super::{ours, truth};
-use crate::{BenchmarkScene, Family, Found, MeasuredMethod, timed};
+use crate::{BenchmarkScene, Family, MeasuredMethod, OutcomeWithReason, timed};
 use std::f64::consts::TAU;
 use vibro_model::{Compliance, Rig, Sine, Steady};
 use vibro_record::{Error, Result, median};
@@ -36,8 +36,8 @@ impl Setup {
         let measure = |method: &Method, setting: f64| {
             let follow = || self.tasks.iter().map(|task| (method.follow)(task, setting)).collect();
             let (log, time) = timed(REPETITIONS[usize::from(quick)], quick, follow);
-            let fault = |f: Found| format!("{}: {}", f.outcome.name(), f.why);
-            let log: std::result::Result<Vec<_>, Found> = log;
+            let fault = |f: OutcomeWithReason| format!("{}: {}", f.outcome.name(), f.why);
+            let log: std::result::Result<Vec<_>, OutcomeWithReason> = log;
             let answer = log.map_err(fault).and_then(|log| (self.judge)(&log));
             let (name, setting) = ((method.name, method.ours), method.words(setting));
             let measured = MeasuredMethod::new(name, setting, time / self.tasks.len() as f64, answer);

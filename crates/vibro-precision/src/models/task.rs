@@ -1,6 +1,6 @@
 //! The task of a method (a rig, its excitation, a start and an end), and the log that it returns.
 
-use crate::{Found, Outcome};
+use crate::{Outcome, OutcomeWithReason};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use vibro_model::Rig;
 use vibro_model::contact::conversion::damping_ratio;
@@ -22,12 +22,12 @@ pub struct Task {
     pub start: [f64; 4],
     /// Stiffness of the contact in N/m, for methods with a soft contact.
     pub stiffness: f64,
-    /// Time of the end in s.
+    /// Time in s at which the motion ends.
     pub until: f64,
     /// Most steps that a method may take before it counts as stalled.
     pub most: u64,
-    /// Whether methods with events let masses that press each other rest, where they meet more slowly than
-    /// the tolerance resolves.
+    /// Whether methods with events let the masses rest against each other after an impact slower than their
+    /// tolerance resolves, if the masses press each other.
     pub rests: bool,
 }
 
@@ -36,8 +36,7 @@ pub struct Task {
 pub struct Log {
     /// Time in s and approach speed in m/s of each impact.
     pub impacts: Vec<(f64, f64)>,
-    /// Times in s at which the masses come to rest against each other and part again; the last part may be at
-    /// ∞.
+    /// Start and end in s of each rest of the masses against each other; the end is ∞ where they do not part.
     pub sticks: Vec<[f64; 2]>,
 }
 
@@ -47,7 +46,7 @@ impl Log {
         Log { impacts: impacts.into_iter().collect(), sticks: Vec::new() }
     }
 
-    /// Ends the last rest at `time` in s.
+    /// Sets the end of the last rest to `time` (s).
     pub fn release(&mut self, time: f64) {
         if let Some(rest) = self.sticks.last_mut() {
             rest[1] = time;
@@ -62,12 +61,12 @@ pub struct Spring {
     pub stiffness: f64,
     /// c₃ in N s/m.
     pub damping: f64,
-    /// Duration in s of a contact of the spring alone, π√(M/k₃).
-    pub alone: f64,
+    /// Duration in s of a contact of the spring without damper and other forces, π√(M/k₃).
+    pub undamped_duration: f64,
 }
 
-/// Least duration of a contact that counts as rest, over that of the undamped spring alone.
-const LEAST_REST: f64 = 10.0;
+/// A contact longer than this multiple of a contact of the undamped spring alone counts as rest.
+const LEAST_REST_RATIO: f64 = 10.0;
 
 impl Spring {
     /// A spring whose damper gives the restitution of the rig. R = 0 needs an infinite damper: critical
@@ -76,17 +75,18 @@ impl Spring {
         let mass = rig.reduced_mass();
         let ratio = damping_ratio(rig.restitution).unwrap_or(1.0);
         let damping = 2.0 * ratio * (stiffness * mass).sqrt();
-        Spring { stiffness, damping, alone: PI * (mass / stiffness).sqrt() }
+        Spring { stiffness, damping, undamped_duration: PI * (mass / stiffness).sqrt() }
     }
 
-    /// Force in N of spring and damper in the state `y`, as if bound to both masses: it may pull.
-    pub fn bound(&self, task: &Task, y: &[f64; 4]) -> f64 {
+    /// Force in N of spring and damper in the state `y`, as if fastened to both masses: negative where it
+    /// pulls.
+    pub fn bilateral_force(&self, task: &Task, y: &[f64; 4]) -> f64 {
         -self.stiffness * task.gap(y) + self.damping * (y[1] - y[3])
     }
 
-    /// The contact between these times in s as a rest, if it lasts long enough to be one.
+    /// The contact between these times in s as a rest, if longer than [`LEAST_REST_RATIO`] states.
     pub fn rest(&self, from: f64, to: f64) -> Option<[f64; 2]> {
-        (to - from > LEAST_REST * self.alone).then_some([from, to])
+        (to - from > LEAST_REST_RATIO * self.undamped_duration).then_some([from, to])
     }
 }
 
@@ -117,10 +117,10 @@ impl Task {
         1.0 / self.frequency
     }
 
-    /// Time derivative of the state (x₁, v₁, x₂, v₂) where the masses push each other with the force
-    /// `contact` in N.
+    /// Time derivative of the state (x₁, v₁, x₂, v₂) at the time `t` (s), with the contact force `contact` in
+    /// N between the masses, positive in compression.
     #[inline]
-    pub fn pushed(&self, t: f64, y: &[f64; 4], contact: f64) -> [f64; 4] {
+    pub fn derivative(&self, t: f64, y: &[f64; 4], contact: f64) -> [f64; 4] {
         let rig = &self.rig;
         let drive = self.force * (TAU * t * (self.frequency + self.rate / 2.0 * t) + self.phase).cos();
         [
@@ -131,9 +131,10 @@ impl Task {
         ]
     }
 
-    /// Contact force in N that keeps the masses in contact.
-    pub fn hold(&self, t: f64, y: &[f64; 4]) -> f64 {
-        let [_, first, _, second] = self.pushed(t, y, 0.0);
+    /// Contact force in N at which the relative acceleration of the masses vanishes, so that they stay in
+    /// contact; negative where the contact would have to pull.
+    pub fn holding_force(&self, t: f64, y: &[f64; 4]) -> f64 {
+        let [_, first, _, second] = self.derivative(t, y, 0.0);
         self.rig.reduced_mass() * (first - second)
     }
 
@@ -153,9 +154,9 @@ impl Task {
         approach
     }
 
-    /// The outcome of a method that has used up its steps at the time `t` (s).
-    pub fn stalled(&self, t: f64) -> Found {
+    /// The outcome of a method whose step limit is reached at the time `t` (s).
+    pub fn stalled(&self, t: f64) -> OutcomeWithReason {
         let why = format!("{} steps are spent at {t:.6} s of {:.6} s", self.most, self.until);
-        Found::new(Outcome::Stalled, why)
+        OutcomeWithReason::new(Outcome::Stalled, why)
     }
 }

@@ -1,87 +1,96 @@
-//! The true motions, independent of this library's models: integration of order 8 to 1e-13 from event to
-//! event, and Newton's method.
+//! The true motions, independent of this library's models: integration of order 8 with a relative tolerance
+//! of 1e-13 from event to event, and Newton's method for periodic motions.
 
 use super::rivals::{IntegratorKind, Locate, Trajectory, events};
 use super::task::{Log, Spring, Task};
-use crate::Found;
+use crate::OutcomeWithReason;
 use nalgebra::{Matrix4, Vector4};
 use std::f64::consts::{PI, TAU};
 
 /// Integrator and its relative tolerance.
-const KIND: IntegratorKind = IntegratorKind::Dop853(1e-13);
+const INTEGRATOR: IntegratorKind = IntegratorKind::Dop853(1e-13);
 /// Length in m by which displacements are scaled, so that all unknowns are of order 1.
 const LENGTH_SCALE: f64 = 1e-3;
-/// Most rounds of Newton's method.
-const ROUNDS: usize = 30;
-/// Change of the unknowns for a central difference, in units of 1 mm, 1 mm·ω and 1 rad: half the digits.
+/// Most iterations of Newton's method.
+const ITERATIONS: usize = 30;
+/// Change of an unknown for a central difference, in units of [`LENGTH_SCALE`], [`LENGTH_SCALE`]·ω and rad:
+/// about half the digits of a number.
 const DIFFERENCE: f64 = 1e-7;
-/// Largest closing error of a periodic motion in these units: errors of some ten steps, enlarged near
-/// grazing.
+/// Largest change of an unknown from one impact to the next for a motion to count as periodic, in units of
+/// [`LENGTH_SCALE`], [`LENGTH_SCALE`]·ω and rad. It allows errors of some ten steps, enlarged near grazing.
 const CLOSING_ERROR: f64 = 1e-9;
-/// Time after an impact, over the period, within which another one counts as the same.
+/// Share of the period after an impact within which a second one counts as the same.
 const SAME_IMPACT: f64 = 1e-6;
-/// Relative deviation of the last impacts from each other below which Newton's method takes over.
+/// Largest deviation of the last intervals from a cycle, and of the last approach speeds from their
+/// predecessors, both relative, for Newton's method to start from the last impact.
 const NEARLY_SETTLED: f64 = 1e-3;
 
-/// The motion of a task with rigid impacts, or with a contact.
-pub fn motion(task: &Task, contact: Option<Spring>) -> Result<Log, Found> {
-    events(&Task { rests: true, most: u64::MAX, ..*task }, contact, KIND, Locate::Summed)
+/// The motion of a task with rigid impacts, or with a contact: with rest after chatter, no step limit, and
+/// events located from the dense output ([`Locate::Summed`]).
+pub fn motion(task: &Task, contact: Option<Spring>) -> Result<Log, OutcomeWithReason> {
+    events(&Task { rests: true, most: u64::MAX, ..*task }, contact, INTEGRATOR, Locate::Summed)
 }
 
-/// A periodic motion with one impact a period, described at the impact.
+/// A periodic motion with one impact a period, given by its state just before the impact.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Repeats {
-    /// State at the first touch.
+pub struct PeriodicImpact {
+    /// State [x₁, v₁, x₂, v₂] at the first touch, in m and m/s.
     pub before: [f64; 4],
-    /// Phase of the exciting force there, in rad.
+    /// Phase of the exciting force at the first touch, in rad.
     pub phase: f64,
 }
 
-impl Repeats {
+impl PeriodicImpact {
     /// Approach speed in m/s.
     pub fn speed(&self) -> f64 {
         self.before[1] - self.before[3]
     }
 
-    /// Distance of an impact with this approach speed in m/s and this phase in rad: the relative error of the
-    /// speed and the phase error in rad, combined, so that neither is small by chance.
-    pub fn off(&self, speed: f64, phase: f64) -> f64 {
-        let turn = (phase - self.phase + PI).rem_euclid(TAU) - PI;
-        (speed / self.speed() - 1.0).hypot(turn)
+    /// √(relative speed error² + phase error²) of a computed impact, `speed` in m/s and `phase` in rad,
+    /// against this one.
+    pub fn error_of(&self, speed: f64, phase: f64) -> f64 {
+        let phase_error = (phase - self.phase + PI).rem_euclid(TAU) - PI;
+        (speed / self.speed() - 1.0).hypot(phase_error)
     }
 }
 
-/// The next impact of a motion: its time in s and the state before; `None` if there is none.
-fn next_impact(course: &mut Trajectory<'_>) -> Result<Option<(f64, [f64; 4])>, Found> {
-    while let Some((which, t, y)) = course.next()? {
-        let met = course.apart().then_some((t, y));
-        course.meet(which, t, y);
-        if met.is_some() {
-            return Ok(met);
+/// Time in s of the next impact of a motion, and the state before it; `None` if there is none. Skips the
+/// other events, within a contact.
+fn next_impact(trajectory: &mut Trajectory<'_>) -> Result<Option<(f64, [f64; 4])>, OutcomeWithReason> {
+    while let Some((which, t, y)) = trajectory.next()? {
+        let impact = trajectory.is_apart().then_some((t, y));
+        trajectory.apply_event(which, t, y);
+        if impact.is_some() {
+            return Ok(impact);
         }
     }
     Ok(None)
 }
 
-/// The motion of a task with one impact in `period` in s, rigid or with a contact, that Newton's method
-/// reaches from `guess`.
-pub fn repeats(task: &Task, contact: Option<Spring>, period: f64, guess: &Repeats) -> Option<Repeats> {
+/// The motion of a task with one impact in `period` (s), rigid or with a contact, to which Newton's method
+/// converges from `guess`; `None` if it does not.
+pub fn periodic_motion(
+    task: &Task,
+    contact: Option<Spring>,
+    period: f64,
+    guess: &PeriodicImpact,
+) -> Option<PeriodicImpact> {
     let omega = TAU * task.frequency;
     let speed = LENGTH_SCALE * omega;
-    let orbit = |u: &Vector4<f64>| Repeats {
+    let orbit = |u: &Vector4<f64>| PeriodicImpact {
         before: [u[0] * LENGTH_SCALE, u[1] * speed, u[0] * LENGTH_SCALE - task.rig.gap, u[2] * speed],
         phase: u[3],
     };
     // Change of the unknowns from one impact to the next, which vanishes for a periodic motion.
     let closing_error = |u: &Vector4<f64>| -> Option<Vector4<f64>> {
-        let Repeats { before: y, phase } = orbit(u);
+        let PeriodicImpact { before: y, phase } = orbit(u);
         let task = Task { phase, start: y, until: 1.5 * period, rests: true, ..*task };
-        let mut course = Trajectory::new(&task, contact, KIND, Locate::Summed);
-        course.meet(0, 0.0, y);
-        let mut impact = next_impact(&mut course).ok()??;
+        let mut trajectory = Trajectory::new(&task, contact, INTEGRATOR, Locate::Summed);
+        trajectory.apply_event(0, 0.0, y);
+        let mut impact = next_impact(&mut trajectory).ok()??;
         // At R = 0 rounding makes the masses meet again at once.
         while impact.0 < SAME_IMPACT * period {
-            impact = next_impact(&mut course).ok()??;
+            impact = next_impact(&mut trajectory).ok()??;
         }
         let (time, then) = impact;
         let [x1, v1, _, v2] = std::array::from_fn(|i| then[i] - y[i]);
@@ -90,7 +99,7 @@ pub fn repeats(task: &Task, contact: Option<Spring>, period: f64, guess: &Repeat
     let y = guess.before;
     let mut u = Vector4::new(y[0] / LENGTH_SCALE, y[1] / speed, y[3] / speed, guess.phase);
     let mut error = closing_error(&u)?;
-    for _ in 0..ROUNDS {
+    for _ in 0..ITERATIONS {
         let mut slope = Matrix4::zeros();
         for i in 0..4 {
             let (mut up, mut down) = (u, u);
@@ -99,27 +108,32 @@ pub fn repeats(task: &Task, contact: Option<Spring>, period: f64, guess: &Repeat
             slope.set_column(i, &((closing_error(&up)? - closing_error(&down)?) / (2.0 * DIFFERENCE)));
         }
         let step = slope.lu().solve(&error)?;
-        // Halves the step while it increases the error, up to seven times; ends when only rounding is left.
+        // Halves the step up to seven times until the error falls. If it does not fall, only rounding is
+        // left.
         let improved = (0..8).find_map(|halvings| {
-            let tried = u - step * 0.5_f64.powi(halvings);
-            let closing_error = closing_error(&tried)?;
-            (closing_error.norm() < error.norm()).then_some((tried, closing_error))
+            let candidate = u - step * 0.5_f64.powi(halvings);
+            let closing_error = closing_error(&candidate)?;
+            (closing_error.norm() < error.norm()).then_some((candidate, closing_error))
         });
         let Some(improved) = improved else { break };
         (u, error) = improved;
     }
-    let Repeats { before, phase } = orbit(&u);
-    (error.amax() < CLOSING_ERROR).then_some(Repeats { before, phase: phase.rem_euclid(TAU) })
+    let PeriodicImpact { before, phase } = orbit(&u);
+    (error.amax() < CLOSING_ERROR).then_some(PeriodicImpact { before, phase: phase.rem_euclid(TAU) })
 }
 
-/// The motion with one impact a cycle on which a task settles within this many `cycles`; `None` if it does
-/// not.
-pub fn settled(task: &Task, contact: Option<Spring>, cycles: f64) -> Result<Option<Repeats>, Found> {
+/// The periodic motion with one impact a cycle that a task reaches within this many `cycles`; `None` if its
+/// last nine impacts are not nearly periodic.
+pub fn settled(
+    task: &Task,
+    contact: Option<Spring>,
+    cycles: f64,
+) -> Result<Option<PeriodicImpact>, OutcomeWithReason> {
     let long = Task { until: cycles * task.cycle(), most: u64::MAX, rests: true, ..*task };
-    let mut course = Trajectory::new(&long, contact, KIND, Locate::Summed);
+    let mut trajectory = Trajectory::new(&long, contact, INTEGRATOR, Locate::Summed);
     let mut impacts = Vec::new();
-    while let Some((time, before)) = next_impact(&mut course)? {
-        impacts.push((time, Repeats { before, phase: TAU * task.frequency * time + task.phase }));
+    while let Some((time, before)) = next_impact(&mut trajectory)? {
+        impacts.push((time, PeriodicImpact { before, phase: TAU * task.frequency * time + task.phase }));
     }
     let last = &impacts[impacts.len().saturating_sub(9)..];
     let regular = last.len() == 9
@@ -127,7 +141,7 @@ pub fn settled(task: &Task, contact: Option<Spring>, cycles: f64) -> Result<Opti
             ((w[1].0 - w[0].0) * task.frequency - 1.0).abs() < NEARLY_SETTLED
                 && (w[1].1.speed() / w[0].1.speed() - 1.0).abs() < NEARLY_SETTLED
         });
-    Ok(if regular { repeats(task, contact, task.cycle(), &last[8].1) } else { None })
+    Ok(if regular { periodic_motion(task, contact, task.cycle(), &last[8].1) } else { None })
 }
 
 #[cfg(test)]
@@ -178,8 +192,8 @@ mod tests {
         let y =
             [x1, common + rig.m2 / (rig.m1 + rig.m2) * back, x2, common - rig.m1 / (rig.m1 + rig.m2) * back];
         let task = Task { phase: found.phase, ..task };
-        let f = |t: f64, y: &[f64; 4]| task.pushed(t, y, 0.0);
-        let mut stepper = Stepper::new(KIND, &task, f, 0.0, y);
+        let f = |t: f64, y: &[f64; 4]| task.derivative(t, y, 0.0);
+        let mut stepper = Stepper::new(INTEGRATOR, &task, f, 0.0, y);
         let (h, n) = (task.cycle() / 512.0, 512);
         let (mut y, [mut work, mut damped]) = (y, [0.0; 2]);
         for i in 0..=n {

@@ -6,7 +6,7 @@
 use super::super::task::{Log, Spring, Task};
 use super::stages::{Guard, Locate, Stage, System, Trajectory};
 use super::stepper::{FLOOR, IntegratorKind, first_step};
-use crate::{Found, Outcome};
+use crate::{Outcome, OutcomeWithReason};
 use ::diffsol::{
     NalgebraLU, NalgebraMat, NalgebraVec, OdeBuilder, OdeEquations, OdeSolverMethod, OdeSolverStopReason,
     Vector, VectorCommon, error::DiffsolError,
@@ -25,17 +25,17 @@ pub enum Diffsol {
 /// Share of the whole time that is left out at the end: the crate treats a stop time this close as reached.
 const NEGLIGIBLE: f64 = 1e-12;
 
-impl From<DiffsolError> for Found {
-    fn from(error: DiffsolError) -> Found {
-        Found::new(Outcome::Refused, format!("diffsol: {error}"))
+impl From<DiffsolError> for OutcomeWithReason {
+    fn from(error: DiffsolError) -> OutcomeWithReason {
+        OutcomeWithReason::new(Outcome::Refused, format!("diffsol: {error}"))
     }
 }
 
 /// Follows the motion with rigid impacts, or with a contact.
-pub fn followed(task: &Task, spring: Option<Spring>, how: Diffsol) -> Result<Log, Found> {
+pub fn followed(task: &Task, spring: Option<Spring>, how: Diffsol) -> Result<Log, OutcomeWithReason> {
     let (Diffsol::Tsit45(relative) | Diffsol::Bdf(relative)) = how;
-    let course = Trajectory::new(task, spring, IntegratorKind::Rk45(relative), Locate::Ends);
-    let (system, stage, first) = (course.system, Cell::new(course.stage), course.y);
+    let trajectory = Trajectory::new(task, spring, IntegratorKind::Rk45(relative), Locate::Ends);
+    let (system, stage, first) = (trajectory.system, Cell::new(trajectory.stage), trajectory.y);
     let now = |t: f64, y: &[f64]| system.rate(stage.get(), t, &state_of(y));
     let mut problem = OdeBuilder::<NalgebraMat<f64>>::new()
         .h0(first_step(task, 0.0, &first))
@@ -56,8 +56,8 @@ pub fn followed(task: &Task, spring: Option<Spring>, how: Diffsol) -> Result<Log
     // is shortened in any case, and a step that is too short is still an error.
     problem.ode_options.max_nonlinear_solver_failures = usize::MAX;
     match how {
-        Diffsol::Tsit45(_) => run(course, problem.tsit45()?, &stage),
-        Diffsol::Bdf(_) => run(course, problem.bdf::<NalgebraLU<f64>>()?, &stage),
+        Diffsol::Tsit45(_) => run(trajectory, problem.tsit45()?, &stage),
+        Diffsol::Bdf(_) => run(trajectory, problem.bdf::<NalgebraLU<f64>>()?, &stage),
     }
 }
 
@@ -71,7 +71,7 @@ fn run<'a, E: OdeEquations<T = f64, V = NalgebraVec<f64>> + 'a>(
     mut now: Trajectory<'_>,
     mut solver: impl OdeSolverMethod<'a, E>,
     stage: &Cell<Stage>,
-) -> Result<Log, Found> {
+) -> Result<Log, OutcomeWithReason> {
     let (system, task) = (now.system, now.system.task);
     let mut left = task.most;
     solver.set_stop_time(task.until)?;
@@ -83,7 +83,7 @@ fn run<'a, E: OdeEquations<T = f64, V = NalgebraVec<f64>> + 'a>(
         let before = falls(&system, now.stage, now.t, &now.y);
         match solver.step()? {
             OdeSolverStopReason::RootFound(time, which) if before[which] > 0.0 => {
-                now.meet(which, time, state_of(solver.interpolate(time)?.inner().as_slice()));
+                now.apply_event(which, time, state_of(solver.interpolate(time)?.inner().as_slice()));
                 if now.stage == Stage::Apart {
                     // A tiny gap, as in the crate's bouncing ball: a fall is not detected where the root
                     // function starts at or below zero.

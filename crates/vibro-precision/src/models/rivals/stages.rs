@@ -1,9 +1,9 @@
-//! Integration from event to event: each impact, end of a contact and release is located, and the integration
-//! starts again after it.
+//! Integration from event to event. Each impact, end of a contact and end of a rest is located, and the
+//! integration starts again after each.
 
 use super::super::task::{Log, Spring, Task};
 use super::stepper::{IntegratorKind, Stepper, rk4};
-use crate::Found;
+use crate::OutcomeWithReason;
 
 /// Stage of a motion between two events.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -14,17 +14,18 @@ pub(super) enum Stage {
     Together,
     /// Pushed apart by spring and damper of the contact.
     Touching,
-    /// After the contact force has become zero, while the surfaces have not yet recovered their shape.
+    /// After the contact force has fallen to zero. Spring and damper would pull, so the masses move without
+    /// contact force while they still overlap.
     Released,
 }
 
-/// A function that ends a stage when it falls to zero.
+/// A function of time and state that ends a stage when it falls to zero.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Guard {
-    /// Weights·y + offset.
+    /// weights·y + offset, with the weights and the offset.
     Linear([f64; 4], f64),
-    /// The contact force that keeps the masses together.
-    Hold,
+    /// The contact force that keeps the masses together, [`Task::holding_force`].
+    HoldingForce,
 }
 
 impl Guard {
@@ -32,7 +33,7 @@ impl Guard {
     pub fn value(&self, task: &Task, t: f64, y: &[f64; 4]) -> f64 {
         match self {
             Guard::Linear(w, offset) => w.iter().zip(y).map(|(w, y)| w * y).sum::<f64>() + offset,
-            Guard::Hold => task.hold(t, y),
+            Guard::HoldingForce => task.holding_force(t, y),
         }
     }
 }
@@ -49,20 +50,20 @@ impl System<'_> {
     #[inline]
     pub fn rate(&self, stage: Stage, t: f64, y: &[f64; 4]) -> [f64; 4] {
         let push = match (stage, &self.spring) {
-            (Stage::Touching, Some(spring)) => spring.bound(self.task, y),
-            (Stage::Together, _) => self.task.hold(t, y),
+            (Stage::Touching, Some(spring)) => spring.bilateral_force(self.task, y),
+            (Stage::Together, _) => self.task.holding_force(t, y),
             _ => 0.0,
         };
-        self.task.pushed(t, y, push)
+        self.task.derivative(t, y, push)
     }
 
-    /// The functions that end a stage; the first to fall ends it.
+    /// The functions that can end a stage; the first to fall to zero ends it.
     pub fn guards(&self, stage: Stage) -> [Option<Guard>; 2] {
         let gap = self.task.rig.gap;
         let (k, c) = self.spring.map_or((0.0, 0.0), |s| (s.stiffness, s.damping));
         match stage {
             Stage::Apart => [Some(Guard::Linear([-1.0, 0.0, 1.0, 0.0], gap)), None],
-            Stage::Together => [Some(Guard::Hold), None],
+            Stage::Together => [Some(Guard::HoldingForce), None],
             Stage::Touching => [Some(Guard::Linear([k, c, -k, -c], -k * gap)), None],
             Stage::Released => [
                 Some(Guard::Linear([1.0, 0.0, -1.0, 0.0], -gap)),
@@ -75,24 +76,24 @@ impl System<'_> {
 /// Method of locating events.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Locate {
-    /// Signs at the ends of steps, then bisection, as in the usual packages.
+    /// A change of sign between the ends of a step, then bisection, as in the usual packages.
     Ends,
-    /// The first root of the dense output, none missed.
+    /// The first root of the dense output. No root is missed.
     Dense,
-    /// As `Dense`. The rest of a chatter that ends in rest is summed as a geometric series of flights, which
-    /// takes 2w/(a(1 − R)).
+    /// As `Dense`, and a chatter that ends in rest is cut short: its last flights, from the separation speed
+    /// w against the pressing acceleration a, are summed as a geometric series of duration 2w/(a(1 − R)).
     Summed,
 }
 
-/// A motion as far as it has been followed.
+/// A motion that is followed from event to event, with its log and its present state.
 pub struct Trajectory<'a> {
     pub(super) system: System<'a>,
     kind: IntegratorKind,
     locate: Locate,
     /// Approach speed in m/s below which masses that press each other stay together.
     rest_speed: f64,
-    /// Steps that may still be taken.
-    left: u64,
+    /// Number of steps that may still be taken.
+    steps_left: u64,
     pub log: Log,
     pub t: f64,
     pub(super) y: [f64; 4],
@@ -100,8 +101,9 @@ pub struct Trajectory<'a> {
 }
 
 impl<'a> Trajectory<'a> {
-    /// The start of a task, with rigid impacts or with a contact. Impacts count as rest below the speed at
-    /// which a bounce is as high as the integrator's error, 1 mm times its relative tolerance.
+    /// The start of a task, with rigid impacts or with a contact. Impacts count as rest below the speed
+    /// √(2gh) at which a bounce is as high as the integrator's error h, 1 mm times its relative tolerance, at
+    /// g = 10 m/s².
     pub fn new(
         task: &'a Task,
         spring: Option<Spring>,
@@ -113,7 +115,7 @@ impl<'a> Trajectory<'a> {
             kind,
             locate,
             rest_speed: if task.rests { (0.02 * kind.relative()).sqrt() } else { f64::NEG_INFINITY },
-            left: task.most,
+            steps_left: task.most,
             log: Log::default(),
             t: 0.0,
             y: task.start,
@@ -121,29 +123,29 @@ impl<'a> Trajectory<'a> {
         }
     }
 
-    /// Follows the motion to the end of its stage. Returns which guard fell, when, and the state there;
-    /// `None` where the task ends before.
-    pub fn next(&mut self) -> Result<Option<(usize, f64, [f64; 4])>, Found> {
+    /// Follows the motion to the next event, the end of its stage. Returns the number of the guard that fell
+    /// to zero, the time in s and the state; `None` if the task ends before.
+    pub fn next(&mut self) -> Result<Option<(usize, f64, [f64; 4])>, OutcomeWithReason> {
         let (system, stage) = (self.system, self.stage);
         let (task, guards) = (system.task, system.guards(stage));
         let f = |t: f64, y: &[f64; 4]| system.rate(stage, t, y);
         let mut stepper = Stepper::new(self.kind, task, f, self.t, self.y);
         while self.t < task.until {
-            if self.left == 0 {
+            if self.steps_left == 0 {
                 return Err(task.stalled(self.t));
             }
-            self.left -= 1;
+            self.steps_left -= 1;
             // The holding force varies with the excitation: its sign is tested at least eight times a cycle.
             let longest = if stage == Stage::Together { task.cycle() / 8.0 } else { f64::INFINITY };
             let step = stepper.step(f, task.until.min(self.t + longest))?;
-            let fallen = guards.iter().flatten().enumerate().filter_map(|(which, guard)| {
+            let events = guards.iter().flatten().enumerate().filter_map(|(which, guard)| {
                 let at = match (self.locate, guard) {
                     (Locate::Dense | Locate::Summed, Guard::Linear(w, offset)) => step.first_fall(w, *offset),
                     _ => step.crossing(f, guard.value(task, self.t, &self.y), |t, y| guard.value(task, t, y)),
                 };
                 Some((which, at?))
             });
-            if let Some((which, at)) = fallen.min_by(|a, b| a.1.total_cmp(&b.1)) {
+            if let Some((which, at)) = events.min_by(|a, b| a.1.total_cmp(&b.1)) {
                 return Ok(Some((which, step.start + at, step.at(f, at))));
             }
             (self.t, self.y) = (step.start + step.duration, step.end);
@@ -151,20 +153,20 @@ impl<'a> Trajectory<'a> {
         Ok(None)
     }
 
-    /// Logs the contact since the last impact, which ends at `until` in s, as a rest if it was long enough.
+    /// Logs the contact from the last impact to `until` (s) as a rest if long enough ([`Spring::rest`]).
     fn log_rest(&mut self, until: f64) {
         let last = self.log.impacts.last();
         self.log.sticks.extend(self.system.spring.zip(last).and_then(|(c, from)| c.rest(from.0, until)));
     }
 
     /// Whether the masses are apart: the next event is then an impact.
-    pub fn apart(&self) -> bool {
+    pub fn is_apart(&self) -> bool {
         self.stage == Stage::Apart
     }
 
-    /// Goes on to the next stage, after guard `which` has fallen at the time `t` in the state `y`; logs the
-    /// impact or rest.
-    pub fn meet(&mut self, which: usize, t: f64, mut y: [f64; 4]) {
+    /// Begins the next stage after guard number `which` has fallen to zero at the time `t` (s) in the state
+    /// `y`: applies the impact law, if any, and logs the impact or rest.
+    pub fn apply_event(&mut self, which: usize, t: f64, mut y: [f64; 4]) {
         let System { task, spring } = self.system;
         self.t = t;
         self.stage = match (self.stage, which) {
@@ -175,15 +177,21 @@ impl<'a> Trajectory<'a> {
             (Stage::Apart, _) => {
                 let approach = task.collide(&mut y);
                 self.log.impacts.push((t, approach));
-                let (rig, hold) = (&task.rig, task.hold(t, &y));
-                if approach < self.rest_speed && hold > 0.0 {
+                let (rig, holding_force) = (&task.rig, task.holding_force(t, &y));
+                if approach < self.rest_speed && holding_force > 0.0 {
                     let v = (rig.m1 * y[1] + rig.m2 * y[3]) / (rig.m1 + rig.m2);
-                    let apart = y[3] - y[1];
+                    let separation = y[3] - y[1];
                     y = [y[0], v, y[0] - rig.gap, v];
                     if self.locate == Locate::Summed {
-                        let left = 2.0 * apart * rig.reduced_mass() / (hold * (1.0 - rig.restitution));
-                        y = rk4(&|t: f64, y: &[f64; 4]| self.system.rate(Stage::Together, t, y), t, &y, left);
-                        self.t += left;
+                        let chatter =
+                            2.0 * separation * rig.reduced_mass() / (holding_force * (1.0 - rig.restitution));
+                        y = rk4(
+                            &|t: f64, y: &[f64; 4]| self.system.rate(Stage::Together, t, y),
+                            t,
+                            &y,
+                            chatter,
+                        );
+                        self.t += chatter;
                     }
                     self.log.sticks.push([self.t, f64::INFINITY]);
                     Stage::Together
@@ -193,12 +201,12 @@ impl<'a> Trajectory<'a> {
             }
             (Stage::Together, _) => {
                 self.log.release(t);
-                // The gap opens with the cube of time: events are not looked for during 1e-4 of a cycle,
-                // until the gap exceeds rounding.
-                let short = 1e-4 * task.cycle();
+                // The gap opens with the cube of time and is first below rounding. So no event is searched
+                // during the first 1e-4 of a cycle.
+                let skipped = 1e-4 * task.cycle();
                 y[0] = y[2] + task.rig.gap;
-                y = rk4(&|t: f64, y: &[f64; 4]| task.pushed(t, y, 0.0), t, &y, short);
-                self.t = t + short;
+                y = rk4(&|t: f64, y: &[f64; 4]| task.derivative(t, y, 0.0), t, &y, skipped);
+                self.t = t + skipped;
                 Stage::Apart
             }
             (Stage::Touching, _) => Stage::Released,
@@ -218,31 +226,31 @@ pub fn events(
     spring: Option<Spring>,
     kind: IntegratorKind,
     locate: Locate,
-) -> Result<Log, Found> {
-    let mut course = Trajectory::new(task, spring, kind, locate);
-    while let Some((which, t, y)) = course.next()? {
-        course.meet(which, t, y);
+) -> Result<Log, OutcomeWithReason> {
+    let mut trajectory = Trajectory::new(task, spring, kind, locate);
+    while let Some((which, t, y)) = trajectory.next()? {
+        trajectory.apply_event(which, t, y);
     }
-    if !course.apart() {
-        course.log_rest(f64::INFINITY);
+    if !trajectory.is_apart() {
+        trajectory.log_rest(f64::INFINITY);
     }
-    Ok(course.log)
+    Ok(trajectory.log)
 }
 
-/// Integrates through the contacts of a spring that never pulls, with steps from the error control alone;
-/// touches are read off afterwards.
-pub fn through(task: &Task, kind: IntegratorKind) -> Result<Log, Found> {
+/// Integrates through the contacts of a spring that never pulls, with steps from the error control alone: no
+/// step ends at an event. Times of touch and parting are located within the steps afterwards.
+pub fn through(task: &Task, kind: IntegratorKind) -> Result<Log, OutcomeWithReason> {
     let spring = task.spring();
-    let force = |y: &[f64; 4]| if task.gap(y) < 0.0 { spring.bound(task, y).max(0.0) } else { 0.0 };
-    let f = |t: f64, y: &[f64; 4]| task.pushed(t, y, force(y));
-    let (mut log, mut touch, mut left) = (Log::default(), None, task.most);
+    let force = |y: &[f64; 4]| if task.gap(y) < 0.0 { spring.bilateral_force(task, y).max(0.0) } else { 0.0 };
+    let f = |t: f64, y: &[f64; 4]| task.derivative(t, y, force(y));
+    let (mut log, mut touch, mut steps_left) = (Log::default(), None, task.most);
     let mut stepper = Stepper::new(kind, task, f, 0.0, task.start);
     let (mut t, mut gap) = (0.0, task.gap(&task.start));
     while t < task.until {
-        if left == 0 {
+        if steps_left == 0 {
             return Err(task.stalled(t));
         }
-        left -= 1;
+        steps_left -= 1;
         let step = stepper.step(f, task.until)?;
         if gap > 0.0
             && let Some(at) = step.crossing(f, gap, |_, y| task.gap(y))

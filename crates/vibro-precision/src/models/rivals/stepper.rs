@@ -1,21 +1,21 @@
-//! Time integrators to compare with: plain loops of fixed steps without event location, as a first script has
-//! them, Moreau's time stepping, and one interface to integrators of fixed or controlled step size.
+//! Time integrators for comparison: plain loops of fixed steps without event location, as in a first script,
+//! Moreau's time stepping, and one interface to integrators of fixed or controlled step size.
 
 use super::super::task::{Log, Task};
-use crate::Found;
+use crate::OutcomeWithReason;
 use vibro_math::bisected;
 use vibro_math::runge_kutta::{Dop853, DormandPrince, Integrator, Step, Tolerance};
 
-/// Floor of x₁, v₁, x₂, v₂ in m and m/s for the relative tolerance: smaller values have the absolute error
-/// of this one.
+/// Values of x₁, v₁, x₂, v₂ in m and m/s below which the error is controlled absolutely: the relative
+/// tolerance then refers to these values.
 pub(super) const FLOOR: [f64; 4] = [1e-3, 0.05, 1e-3, 0.05];
 
-/// First step in s from `y` at `t`: a hundredth of a cycle. Where the masses part at w against a pressing
-/// acceleration a, at most a tenth of the flight 2w/a: a sign test misses a flight that ends within its first
-/// step.
+/// First step in s from the state `y` at `t` (s): a hundredth of a cycle. After a rebound at speed w against
+/// a pressing acceleration a it is also at most a tenth of the flight time 2w/a, since a sign test misses a
+/// flight that ends within its first step.
 pub(super) fn first_step(task: &Task, t: f64, y: &[f64; 4]) -> f64 {
-    let (apart, pressed) = (y[3] - y[1], task.hold(t, y) / task.rig.reduced_mass());
-    let flight = if apart > 0.0 && pressed > 0.0 { 2.0 * apart / pressed } else { f64::INFINITY };
+    let (rebound, pressing) = (y[3] - y[1], task.holding_force(t, y) / task.rig.reduced_mass());
+    let flight = if rebound > 0.0 && pressing > 0.0 { 2.0 * rebound / pressing } else { f64::INFINITY };
     (task.cycle() / 100.0).min(flight / 10.0)
 }
 
@@ -31,7 +31,8 @@ pub enum IntegratorKind {
 }
 
 impl IntegratorKind {
-    /// Relative tolerance; for fixed steps h the error (ωh)⁴ of order 4.
+    /// Relative tolerance; for fixed steps h, (ωh)⁴ with the angular frequency ω of the excitation, as the
+    /// order is 4.
     pub fn relative(self) -> f64 {
         match self {
             IntegratorKind::Rk4(n) => (std::f64::consts::TAU / n).powi(4),
@@ -50,21 +51,22 @@ pub enum Stepper {
     Eight(Integrator<Dop853, 4>),
 }
 
-/// One step.
+/// One step of an integration.
 pub struct SolverStep {
-    /// Time of its start in s.
+    /// Time in s at the start of the step.
     pub start: f64,
-    /// Its size in s.
+    /// Step size in s.
     pub duration: f64,
-    /// State at its end.
+    /// State at the end of the step.
     pub end: [f64; 4],
-    /// State at its start, for steps without dense output.
+    /// State at the start of the step, for steps without dense output.
     from: [f64; 4],
+    /// Step with dense output; `None` for order 4.
     dense: Option<Step<4>>,
 }
 
 impl Stepper {
-    /// Starts at `t` with `y`; errors of the state count against [`FLOOR`] where it is smaller than that.
+    /// Starts at the time `t` (s) in the state `y`; below [`FLOOR`] errors are controlled absolutely.
     pub fn new(
         kind: IntegratorKind,
         task: &Task,
@@ -81,8 +83,12 @@ impl Stepper {
         }
     }
 
-    /// One step, at most to `until`.
-    pub fn step(&mut self, f: impl Fn(f64, &[f64; 4]) -> [f64; 4], until: f64) -> Result<SolverStep, Found> {
+    /// Takes one step, at most to the time `until` (s).
+    pub fn step(
+        &mut self,
+        f: impl Fn(f64, &[f64; 4]) -> [f64; 4],
+        until: f64,
+    ) -> Result<SolverStep, OutcomeWithReason> {
         let step = match self {
             Stepper::Fixed(t, y, h) => {
                 let (start, from, duration) = (*t, *y, h.min(until - *t));
@@ -99,51 +105,51 @@ impl Stepper {
 }
 
 impl SolverStep {
-    /// State at `t` after its start.
+    /// State at `t` (s) after the start of the step.
     pub fn at(&self, f: impl Fn(f64, &[f64; 4]) -> [f64; 4], t: f64) -> [f64; 4] {
         self.dense.as_ref().map_or_else(|| rk4(&f, self.start, &self.from, t), |step| step.at(t))
     }
 
-    /// First time in s after the start at which weights·y + offset, not negative there, falls to zero; `None`
-    /// without dense output.
+    /// First time in s after the start at which weights·y + offset falls to zero. The value at the start must
+    /// not be negative. `None` if it does not fall to zero, or without dense output.
     pub fn first_fall(&self, weights: &[f64; 4], offset: f64) -> Option<f64> {
         self.dense.as_ref()?.first_fall(weights, offset)
     }
 
-    /// Time in s after the start at which `height` falls to zero, by bisection. `start` is its value at the
-    /// start; `None` if that is negative or the value at the end is positive.
+    /// Time in s after the start of the step at which `height` falls to zero, by bisection. `initial` is the
+    /// height at the start; `None` if it is negative or the height at the end is positive.
     pub fn crossing(
         &self,
         f: impl Fn(f64, &[f64; 4]) -> [f64; 4],
-        start: f64,
+        initial: f64,
         height: impl Fn(f64, &[f64; 4]) -> f64,
     ) -> Option<f64> {
-        if !(start >= 0.0 && height(self.start + self.duration, &self.end) <= 0.0) {
+        if !(initial >= 0.0 && height(self.start + self.duration, &self.end) <= 0.0) {
             return None;
         }
-        let above = |t| height(self.start + t, &self.at(&f, t)) > 0.0;
-        Some(bisected(0.0, self.duration, 60, above).1)
+        let is_positive = |t| height(self.start + t, &self.at(&f, t)) > 0.0;
+        Some(bisected(0.0, self.duration, 60, is_positive).1)
     }
 }
 
-/// One step of the classical fourth order.
+/// One step of size `h` (s) of the classical Runge–Kutta method of order 4 for y′ = f(t, y).
 #[inline]
 pub(super) fn rk4(f: &impl Fn(f64, &[f64; 4]) -> [f64; 4], t: f64, y: &[f64; 4], h: f64) -> [f64; 4] {
-    let to = |k: &[f64; 4], h: f64| std::array::from_fn(|i| y[i] + h * k[i]);
+    let moved = |k: &[f64; 4], h: f64| std::array::from_fn(|i| y[i] + h * k[i]);
     let a = f(t, y);
-    let b = f(t + h / 2.0, &to(&a, h / 2.0));
-    let c = f(t + h / 2.0, &to(&b, h / 2.0));
-    let d = f(t + h, &to(&c, h));
+    let b = f(t + h / 2.0, &moved(&a, h / 2.0));
+    let c = f(t + h / 2.0, &moved(&b, h / 2.0));
+    let d = f(t + h, &moved(&c, h));
     std::array::from_fn(|i| y[i] + h / 6.0 * (a[i] + 2.0 * (b[i] + c[i]) + d[i]))
 }
 
-/// One step of a plain loop, from time (s), state and step size (s). Returns the state at its end, and time
-/// (s) and approach speed (m/s) of an impact within it.
-pub type Stride = fn(&Task, f64, &[f64; 4], f64) -> ([f64; 4], Option<(f64, f64)>);
+/// One step of a plain loop, from time (s), state and step size (s). Returns the state at the end of the
+/// step; and time (s) and approach speed (m/s) of an impact in the step, if any.
+pub type StepFunction = fn(&Task, f64, &[f64; 4], f64) -> ([f64; 4], Option<(f64, f64)>);
 
-/// Follows the motion by a plain loop of `n` steps per cycle. Masses count as resting against each other
-/// where impacts at most four steps apart continue for twenty steps or more.
-pub fn marched(task: &Task, stride: Stride, n: f64) -> Result<Log, Found> {
+/// Runs a loop of `n` fixed steps per cycle. A run of impacts at most four steps apart that lasts twenty
+/// steps or more is logged as a rest of the masses against each other.
+pub fn fixed_step_loop(task: &Task, step: StepFunction, n: f64) -> Result<Log, OutcomeWithReason> {
     let h = task.cycle() / n;
     let steps = (task.until / h).ceil();
     if steps > task.most as f64 {
@@ -151,11 +157,11 @@ pub fn marched(task: &Task, stride: Stride, n: f64) -> Result<Log, Found> {
     }
     let (mut y, mut log) = (task.start, Log::default());
     for i in 0..steps as u64 {
-        let (next, impact) = stride(task, i as f64 * h, &y, h);
+        let (next, impact) = step(task, i as f64 * h, &y, h);
         y = next;
         log.impacts.extend(impact);
     }
-    // Joins impacts at most four steps apart to stretches.
+    // Joins impacts at most four steps apart to runs, with half a step of tolerance for rounding.
     for pair in log.impacts.windows(2) {
         let (from, to) = (pair[0].0, pair[1].0);
         match log.sticks.last_mut() {
@@ -170,17 +176,18 @@ pub fn marched(task: &Task, stride: Stride, n: f64) -> Result<Log, Found> {
 
 /// Semi-implicit Euler: velocities first, then displacements with the new velocities.
 pub fn euler(task: &Task, t: f64, y: &[f64; 4], h: f64) -> ([f64; 4], Option<(f64, f64)>) {
-    let rate = task.pushed(t, y, 0.0);
+    let rate = task.derivative(t, y, 0.0);
     let [v1, v2] = [y[1] + h * rate[1], y[3] + h * rate[3]];
     with_impact(task, t + h, [y[0] + h * v1, v1, y[2] + h * v2, v2])
 }
 
 /// Classical Runge–Kutta of order 4.
 pub fn classical(task: &Task, t: f64, y: &[f64; 4], h: f64) -> ([f64; 4], Option<(f64, f64)>) {
-    with_impact(task, t + h, rk4(&|t: f64, y: &[f64; 4]| task.pushed(t, y, 0.0), t, y, h))
+    with_impact(task, t + h, rk4(&|t: f64, y: &[f64; 4]| task.derivative(t, y, 0.0), t, y, h))
 }
 
-/// Applies the impact law at the end of a step if the masses overlap and approach.
+/// Applies the impact law at the end of a step, the time `t`, if the masses overlap and approach. Returns the
+/// state, and time (s) and approach speed (m/s) of the impact.
 fn with_impact(task: &Task, t: f64, mut y: [f64; 4]) -> ([f64; 4], Option<(f64, f64)>) {
     let impact = (task.gap(&y) < 0.0 && y[1] > y[3]).then(|| (t, task.collide(&mut y)));
     (y, impact)
@@ -192,7 +199,7 @@ fn with_impact(task: &Task, t: f64, mut y: [f64; 4]) -> ([f64; 4], Option<(f64, 
 pub fn moreau(task: &Task, t: f64, y: &[f64; 4], h: f64) -> ([f64; 4], Option<(f64, f64)>) {
     let (rig, middle) = (&task.rig, t + h / 2.0);
     let (x1, x2) = (y[0] + h / 2.0 * y[1], y[2] + h / 2.0 * y[3]);
-    let rate = task.pushed(middle, &[x1, y[1], x2, y[3]], 0.0);
+    let rate = task.derivative(middle, &[x1, y[1], x2, y[3]], 0.0);
     let (v1, v2, before) = (y[1] + h * rate[1], y[3] + h * rate[3], y[1] - y[3]);
     // The approach speed u after the step is at most −R times that before it; the impulse is not negative.
     let needed = rig.reduced_mass() * (v1 - v2 + rig.restitution * before);
