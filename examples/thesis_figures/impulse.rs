@@ -131,7 +131,7 @@ fn absent() -> Result<Sheet> {
             if found { "exists" } else { "none with J > 0" },
             found,
             if found {
-                "it is absent without dampers only"
+                "it is absent without dampers, and with dampers of 0.01 N s/m"
             } else {
                 "the root drawn has τ outside 0 < τ < T; only dampers bring one into it"
             },
@@ -141,7 +141,7 @@ fn absent() -> Result<Sheet> {
         figures::traces("Motion where no orbit has one impact a cycle", &portrait, rig.gap).height(100.0);
     Ok(Sheet::new(
         "impulse_absent",
-        "Figure 3.18 and beside 3.14: motions that are no orbits",
+        "Figure 3.18 and beside 3.15: motions that are no orbits",
         figure,
         claims,
     ))

@@ -127,11 +127,11 @@ fn a_force_that_drifts_within_its_steps_moves_no_mode() {
     let campaign = format!("{}#up", text(&path.join("campaign.toml")));
     let (code, answer, _) = vibro(&["modal", &campaign]);
     let zeta = &answer["modes"][0]["zeta"];
-    assert!(code == 0 && off(zeta, 0.00800776) < 4.0, "{zeta}");
+    assert!(code == 0 && off(zeta, 0.008_007_76) < 4.0, "{zeta}");
     assert!(zeta["std"].as_f64().unwrap() < 1e-6, "{zeta}");
 }
 
-/// 40, 600 and 1100 Hz on the axes of a handle, sampled at 5120 Hz: a_hv by the formula of ISO 5349-1.
+/// 40, 600 and 1100 Hz on the axes of a handle, sampled at 5120 Hz: `a_hv` by the formula of ISO 5349-1.
 #[test]
 fn a_handle_sampled_slowly_is_weighted_without_warping() {
     let Some((_root, path)) = unpacked("handle_5120.wav") else { return };
