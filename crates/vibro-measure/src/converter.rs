@@ -60,7 +60,7 @@ mod tests {
                 squares += (average(&values) - level).powi(2) / 200.0;
                 scatters += scatter(&values).powi(2) / 200.0;
             }
-            // The mean of 400 draws scatters by √(σ² + 1/12)/20 beside what is hidden. At σ = 0 the scatter is 0.
+            // The mean of 400 draws scatters by √(σ² + 1/12)/20 beside what is hidden; not at σ = 0.
             let chance = if sigma > 0.0 { scatters / 400.0 } else { 0.0 };
             let found = hidden(scatters.sqrt(), 1.0).powi(2);
             // The exponential is that of the first harmonic of the error, which has 6/π² of the variance; and

@@ -50,7 +50,7 @@ struct WeightedAxis {
     duration: f64,
 }
 
-/// Weights accelerations by the formula of the standard at each spectral line of overlapping parts, so that no
+/// Weights accelerations by the formula of the standard at each spectral line of overlapping parts: no
 /// frequency is warped at any sampling rate. Before the record is its first value, so that an offset of the
 /// sensor is no shock; behind it, its mirror image about the last value fades to the first. [`SETTLED`] is
 /// left out at either end of a part, where the transform joins its ends.

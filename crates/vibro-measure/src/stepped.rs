@@ -342,8 +342,8 @@ impl Blocks {
         growth(&f[begins.min(f.len())..], self.periods as f64 * self.period)
     }
 
-    /// Phasors at the excitation frequency, one per block: A e^{iφ} of A e^{εt} cos(ωt + φ), with the `growth` ε
-    /// in 1/samples from the middle of the block and the phase from the first sample.
+    /// Phasors at the excitation frequency, one per block: A e^{iφ} of A e^{εt} cos(ωt + φ). The `growth` ε
+    /// in 1/samples counts from the middle of the block, the phase from the first sample.
     fn phasors(&self, trace: &Trace, growth: f64) -> Vec<Complex64> {
         let omega = TAU / self.period;
         let edges = (0..).map(|block| self.start(block)).take_while(|end| *end <= self.samples);

@@ -49,12 +49,12 @@ fn the_formula_gives_the_table_of_the_standard() {
     }
 }
 
-/// The table of tolerances in docs/theory.md: its rows have the nominal centre, the weighting, both
+/// The table of tolerances in docs/weighting.md: its rows have the nominal centre, the weighting, both
 /// tolerances in per cent, and the deviation at each sampling rate.
 #[test]
 fn the_weighting_keeps_its_tolerances_at_every_third_octave_centre_and_rate() {
     let rates = [5_120.0, 6_400.0, 8_192.0, 12_800.0, 25_600.0, 51_200.0];
-    let document = include_str!("../../../../docs/theory.md");
+    let document = include_str!("../../../../docs/weighting.md");
     let head = rates.map(|rate| format!(" {rate:.0} Hz |")).concat();
     let (_, table) = document.split_once(&head).expect("the table has these sampling rates");
     let rows: Vec<Vec<f64>> = table.lines().skip(2).map_while(numbers).collect();

@@ -235,8 +235,8 @@ impl Samples<'_> {
         fitted
     }
 
-    /// Adds the rounding of a baseline whose noise is below a step of the converter to the covariance of a fit:
-    /// a flat baseline hides rounding within the pulse, and is off itself by as much at all its samples.
+    /// Adds the rounding of a baseline whose noise is below a step of the converter to the covariance of a
+    /// fit: a flat baseline hides rounding within the pulse, and is off itself by as much at all samples.
     fn round(&self, fit: &mut Fit) {
         let (noise, hidden) = self.noise();
         let variance = fit.variance();

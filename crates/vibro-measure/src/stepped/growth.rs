@@ -14,8 +14,8 @@ const FEWEST: usize = 4;
 /// Least distance of two frequencies, over the frequency, at which they show a slope.
 const APART: f64 = 1e-5;
 
-/// Relative growth of the sizes of the phasors of blocks over time, in 1 over the unit of their `length`, by a
-/// straight line through their logarithms; 0 where chance explains it.
+/// Relative growth of the sizes of the phasors of blocks, in 1 over the unit of their `length`, by a straight
+/// line through their logarithms; 0 where chance explains it.
 pub(super) fn growth(phasors: &[Complex64], length: f64) -> f64 {
     let n = phasors.len();
     if n < FEWEST {

@@ -59,8 +59,8 @@ fn the_force_is_that_of_the_steady_part() {
     assert!(point.force_std.unwrap() < 1e-3, "{:?}", point.force_std);
 }
 
-/// Forces that grow by 2 % within each step: the response of the linear oscillator is H(iω + ε), in closed form.
-/// Returns the largest error of a receptance in standard uncertainties, and the largest uncertainty over |H|.
+/// Forces that grow by 2 % within each step: the response of the oscillator is H(iω + ε), in closed form.
+/// Returns the errors of receptances in standard uncertainties, and the largest uncertainty over |H|.
 fn grown(draws: u64) -> (Vec<f64>, f64) {
     let (mut off, mut widest) = (Vec::new(), 0.0_f64);
     for seed in 0..draws {
