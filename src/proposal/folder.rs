@@ -39,15 +39,13 @@ pub struct FileSeries {
     pub reading: Reading,
 }
 
-/// A file and its channels.
-type Member = (PathBuf, Vec<Header>);
+/// A file, how it is read, and its channels.
+type Member = (PathBuf, Reading, Vec<Header>);
 
 /// The channels of a file, as far as its head shows them.
 struct Surveyed {
-    /// Whether the file states its sampling times.
-    timed: bool,
-    /// Where samples are lost: number of the longest stretch with even sampling.
-    stretch: Option<usize>,
+    /// How they were read: the stated options, as far as this file needs them.
+    reading: Reading,
     headers: Result<Vec<Header>>,
 }
 
@@ -63,9 +61,16 @@ impl Surveyed {
         let found = if timed || !stated { as_stored } else { survey(reading) };
         let lost = found.as_ref().ok().filter(|(_, headers, _)| untimed(headers));
         let stretch = lost.and_then(|(.., findings)| longest_stretch(findings));
-        let longest = stretch.map(|_| survey(&Reading { stretch, ..untimed_reading }));
-        let headers = longest.unwrap_or(found).map(|(_, headers, _)| headers);
-        Surveyed { timed, stretch, headers }
+        let (reading, found) = if stretch.is_some() {
+            let of_stretch = Reading { stretch, ..untimed_reading };
+            let found = survey(&of_stretch);
+            (of_stretch, found)
+        } else if timed {
+            (untimed_reading, found)
+        } else {
+            (reading.clone(), found)
+        };
+        Surveyed { reading, headers: found.map(|(_, headers, _)| headers) }
     }
 }
 
@@ -76,10 +81,8 @@ struct FileKind {
     name: String,
     /// Units and kinds of their channels.
     channels: String,
-    /// Whether the files state their sampling times.
-    timed: bool,
-    /// Number of the even stretch that is read.
-    stretch: Option<usize>,
+    /// The options with which they are read, in words.
+    reading: String,
 }
 
 impl FileKind {
@@ -123,9 +126,7 @@ impl Inventory {
         known: Option<&Campaign>,
         progress: &dyn Progress,
     ) -> Result<Inventory> {
-        let untimed_reading = reading.untimed();
-        let reader = untimed_reading.reader()?.within(folder);
-        reading.reader()?;
+        let reader = reading.reader()?.within(folder);
         let Recordings { files: all, others, skipped } = analysis::recordings(folder)?;
         let root = folder.root();
         let new = known.map(|campaign| analysis::unnamed(campaign, &all)).transpose()?;
@@ -155,11 +156,10 @@ impl Inventory {
         };
         let surveyed: Vec<Surveyed> = paths.par_iter().map(survey).collect();
         for (kind, members) in found.kinds(paths.into_iter().zip(surveyed), &numbers, &within) {
-            let files: Vec<String> = members.iter().map(|(path, _)| within(path)).collect();
+            let files: Vec<String> = members.iter().map(|(path, ..)| within(path)).collect();
             let pattern = kind.pattern(&files, &every, &numbers);
-            let reading = if kind.timed || kind.stretch.is_some() { &untimed_reading } else { reading };
-            let reading = Reading { stretch: kind.stretch, ..reading.clone() };
-            let headers = named_alike(&members.iter().map(|(_, all)| all.as_slice()).collect::<Vec<_>>());
+            let reading = members[0].1.clone();
+            let headers = named_alike(&members.iter().map(|(.., all)| all.as_slice()).collect::<Vec<_>>());
             let name = name(&files);
             found.series.push(FileSeries { name, files, headers, pattern, alike: false, reading });
         }
@@ -195,7 +195,7 @@ impl Inventory {
     ) -> Vec<(FileKind, Vec<Member>)> {
         let mut kinds: Vec<(FileKind, Vec<Member>)> = Vec::new();
         let mut places: HashMap<FileKind, usize> = HashMap::new();
-        for (path, Surveyed { timed, stretch, headers }) in surveyed {
+        for (path, Surveyed { reading, headers }) in surveyed {
             let why = match headers {
                 Ok(headers) if headers.is_empty() => "no records".to_owned(),
                 Ok(headers) if untimed(&headers) && headers.iter().any(|h| h.dx.is_none()) => {
@@ -208,12 +208,13 @@ impl Inventory {
                 }
                 Ok(headers) => {
                     let name = split_at_number(&within(&path), numbers).join("*");
-                    let kind = FileKind { name, channels: signature(&headers), timed, stretch };
+                    let reading_key = format!("{:?}", reading.stated());
+                    let kind = FileKind { name, channels: signature(&headers), reading: reading_key };
                     let place = *places.entry(kind.clone()).or_insert(kinds.len());
                     if place == kinds.len() {
                         kinds.push((kind, Vec::new()));
                     }
-                    kinds[place].1.push((path, headers));
+                    kinds[place].1.push((path, reading, headers));
                     continue;
                 }
                 Err(error) => short(&error),

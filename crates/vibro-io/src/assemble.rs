@@ -166,7 +166,9 @@ pub fn from_values(
         let perhaps_lost = time && one_or_two && (long as f64) < LARGEST_SHARE_LOST * n as f64;
         let found = match clock.jitter > 0.0 {
             true => Some(clock.finding(what)),
-            false if perhaps_lost => with_steps(Finding::caution(PERHAPS_LOST).number("step", clock.step)),
+            false if perhaps_lost => {
+                with_steps(Finding::caution(code::AXIS_ROUNDED_OR_LOST).number("step", clock.step))
+            }
             false => with_steps(clock.finding(what)),
         };
         let grid = Grid::Even { start: clock.start, step: clock.step, n };
@@ -180,9 +182,6 @@ pub fn from_values(
     let found = if keeps_stored { None } else { with_steps(found) };
     JudgedAxis { axis: Axis { kind, grid: Grid::Uneven(values) }, step_relative_std: 0.0, found }
 }
-
-/// Code of the finding that printed times fit an even step, and a shorter step with lost samples as well.
-pub const PERHAPS_LOST: &str = "axis-rounded-or-lost";
 
 /// If the share of double-length steps is below this, lost samples are possible as well as rounding, and a
 /// caution says so. A larger share is rounding: instruments lose fewer samples.

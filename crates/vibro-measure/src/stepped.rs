@@ -166,9 +166,7 @@ impl StepReading {
         let cut = clipped(&response.values, rate / frequency.value).len();
         let cut_force = clipped(&force.values, rate / frequency.value).len();
         let blocks = Blocks::of(periods, rate / frequency.value, samples);
-        let growth = blocks.growth(force, response);
-        let (f, x) = (blocks.phasors(force, growth), blocks.phasors(response, growth));
-        let ratio = ratios(&x, &f);
+        let (growth, f, ratio) = blocks.growing(force, response);
         let (begins, left, stays) = settled(&ratio);
         // While the force still rises, the ratio is right already but amplitudes are not: each has its own
         // first block.
@@ -335,11 +333,20 @@ impl Blocks {
         ((block * self.periods) as f64 * self.period).round() as usize
     }
 
-    /// Relative rate in 1/samples at which the force grows while the response is settled.
-    fn growth(&self, force: &Trace, response: &Trace) -> f64 {
-        let (f, x) = (self.phasors(force, 0.0), self.phasors(response, 0.0));
-        let begins = settled(&ratios(&x, &f)).0;
-        growth(&f[begins.min(f.len())..], self.periods as f64 * self.period)
+    /// Relative rate in 1/samples at which the force grows while the response is settled; the phasors of the
+    /// force, and those of response over force, fitted with this growth.
+    fn growing(&self, force: &Trace, response: &Trace) -> (f64, Vec<Complex64>, Vec<Complex64>) {
+        let fitted = |growth: f64| {
+            let (f, x) = (self.phasors(force, growth), self.phasors(response, growth));
+            let ratio: Vec<Complex64> = x.iter().zip(&f).map(|(x, f)| x / f).collect();
+            (f, ratio)
+        };
+        let (f, ratio) = fitted(0.0);
+        let begins = settled(&ratio).0.min(f.len());
+        let growth = growth(&f[begins..], self.periods as f64 * self.period);
+        // Most forces do not grow: their phasors are those already fitted.
+        let (f, ratio) = if growth == 0.0 { (f, ratio) } else { fitted(growth) };
+        (growth, f, ratio)
     }
 
     /// Phasors at the excitation frequency, one per block: A e^{iφ} of A e^{εt} cos(ωt + φ). The `growth` ε
@@ -364,10 +371,6 @@ impl Blocks {
         };
         edges.windows(2).map(one).collect()
     }
-}
-
-fn ratios(x: &[Complex64], f: &[Complex64]) -> Vec<Complex64> {
-    x.iter().zip(f).map(|(x, f)| x / f).collect()
 }
 
 /// First block from which on the phasors are settled, no later than half-way: the mean of the first quarter

@@ -1,7 +1,7 @@
 //! Chooses the abscissa of a text: from the options, from a column, or from the header.
 
 use super::header::{PerhapsRate, Stated};
-use crate::assemble::{NOMINAL, PERHAPS_LOST, domain, short};
+use crate::assemble::{NOMINAL, domain, short};
 use crate::options::Options;
 use vibro_record::code;
 use vibro_record::{Axis, AxisKind, Clock, Error, Finding, Grid, Result, evened};
@@ -246,7 +246,7 @@ fn trusted(printed: PrintedAbscissa, header: &Stated, findings: &mut Vec<Finding
             let found = Finding::caution("header-step-differs").name("column", label);
             findings.push(found.number("header", header).number("step", step));
         } else {
-            said.retain(|found| found.code != PERHAPS_LOST);
+            said.retain(|found| found.code != code::AXIS_ROUNDED_OR_LOST);
         }
     }
     findings.extend(said);
