@@ -20,16 +20,21 @@ struct Settled {
     pattern: String,
 }
 
+/// The figures of the antiresonance: number, R, and c₂ in N s/m.
+const SCENES: [(&str, f64, f64); 3] = [("3.13", 1.0, 0.0), ("3.14", 0.7, 0.0), ("3.15", 0.7, 0.1)];
+
 /// Largest displacements of both masses, each from its own rest.
 fn largest<'a>(states: impl Iterator<Item = &'a State>) -> [f64; 2] {
     states.fold([0.0, 0.0], |[a, b], s| [a.max(s.x1.abs()), b.max(s.x2.abs())])
 }
 
+/// Largest displacements of both masses in m on an orbit, from 200 instants of its period.
 fn of_orbit(orbit: &Orbit) -> [f64; 2] {
     let states: Vec<State> = (0..200).map(|i| orbit.state(f64::from(i) / 200.0 * orbit.period())).collect();
     largest(states.iter())
 }
 
+/// The motion from rest under impulses after 2000 cycles, read over the next 200.
 fn settled(rig: &Rig, nu: f64) -> Result<Settled> {
     let frequency = hertz(nu);
     let train = Excitation::Impulse(Impulses { impulse: IMPULSE, frequency });
@@ -40,15 +45,16 @@ fn settled(rig: &Rig, nu: f64) -> Result<Settled> {
     Ok(Settled { nu, largest: largest(portrait.states.iter()), pattern })
 }
 
+/// The figure (time to the impact; displacements), and what the thesis claims of it beside what is computed.
 pub fn sheet() -> Result<Sheet> {
     let rig = rig(0.7);
     let nu = grid(1.0, 2.4, 141);
     let all = nu.iter().map(|nu| settled(&rig, *nu)).collect::<Result<Vec<Settled>>>()?;
-    let mut claims = of_roots()?;
+    let mut claims = root_claims()?;
     let inside = |nu: f64| (BETWEEN.0..=BETWEEN.1).contains(&nu);
     let near = all.iter().min_by(|a, b| (a.nu - 1.75).abs().total_cmp(&(b.nu - 1.75).abs()));
     let least = all.iter().filter(|s| inside(s.nu)).min_by(|a, b| a.largest[0].total_cmp(&b.largest[0]));
-    let told = |s: &Settled| {
+    let in_words = |s: &Settled| {
         let [a, b] = s.largest.map(|x| 1e3 * x);
         format!("ν {:.2}: x₁ {a:.2} mm, x₂ {b:.2} mm, impacts/cycles {}", s.nu, s.pattern)
     };
@@ -62,16 +68,16 @@ pub fn sheet() -> Result<Sheet> {
     ));
     let what = "motion from rest near ν 1.75, R 0.7, c₁ and c₂ 0.1";
     let why = "x₁ is as large as the gap, and no motion has one impact a cycle";
-    claims.push(Claim::told(what, "x₁ near 0", near.map_or_else(String::new, told), near.is_none(), why));
+    claims.push(Claim::told(what, "x₁ near 0", near.map_or_else(String::new, in_words), near.is_none(), why));
     let what = "the same: least x₁ between the resonances";
     let at = least.map_or(f64::NAN, |s| s.nu);
-    let here = least.map_or_else(String::new, told);
+    let here = least.map_or_else(String::new, in_words);
     claims.push(Claim::told(what, "ν 1.75", here, true, "").against("1.75", at, "here x₁ is least in truth"));
     claims.push(of_sine());
-    claims.extend(printed());
+    claims.extend(printed_program_claims());
     let find = |nu: f64| under_impulses(&rig, IMPULSE, nu);
     let fine = grid(1.0, 2.4, 1121);
-    let (at, timings, x1) = spurious(&nu)?;
+    let (at, timings, x1) = spurious_roots(&nu)?;
     let crosses = |name: &str, y: &[f64]| {
         Series::points(name, at.clone(), y.to_vec()).ink(Ink::Nth(3)).marker(Marker::Cross)
     };
@@ -108,14 +114,15 @@ pub fn sheet() -> Result<Sheet> {
     ))
 }
 
-/// The equations as they are meant: χ̇ and τ put right.
-fn meant(restitution: f64, c2: f64) -> Program {
+/// Equations 3.42 to 3.44 with the slips in χ̇ and τ of the printed programs put right.
+fn corrected_program(restitution: f64, c2: f64) -> Program {
     impulses(restitution, c2, IMPULSE, &[])
 }
 
-/// ν, τ/T and largest x₁ in mm of the roots of figure 3.15 with τ outside 0 < τ < T.
-fn spurious(nu: &[f64]) -> Result<(Vec<f64>, Vec<f64>, Vec<f64>)> {
-    let program = meant(0.7, 0.1);
+/// ν, τ/T and largest x₁ in mm of the roots of figure 3.15 with τ outside 0 < τ < T: there the impact would
+/// lie outside its own cycle, which no motion can have.
+fn spurious_roots(nu: &[f64]) -> Result<(Vec<f64>, Vec<f64>, Vec<f64>)> {
+    let program = corrected_program(0.7, 0.1);
     let all = nu.iter().map(|nu| Ok((nu + 1e-4, program.at(nu + 1e-4)?))).collect::<Result<Vec<_>>>()?;
     let outside = all.iter().filter(|(_, r)| r.impulse.norm() > 0.0 && !(0.0..1.0).contains(&r.timing));
     let rows = outside.map(|(nu, root)| (*nu, (root.timing, 1e3 * root.largest[0])));
@@ -123,10 +130,11 @@ fn spurious(nu: &[f64]) -> Result<(Vec<f64>, Vec<f64>, Vec<f64>)> {
     Ok((at, timings, x1))
 }
 
-fn of_roots() -> Result<Vec<Claim>> {
+/// Claims: at ν 1.75 the root behind each of the figures 3.13 to 3.15 has τ outside its cycle.
+fn root_claims() -> Result<Vec<Claim>> {
     let mut claims = Vec::new();
-    for (figure, restitution, c2) in [("3.13", 1.0, 0.0), ("3.14", 0.7, 0.0), ("3.15", 0.7, 0.1)] {
-        let root = meant(restitution, c2).at(1.75)?;
+    for (figure, restitution, c2) in SCENES {
+        let root = corrected_program(restitution, c2).at(1.75)?;
         claims.push(Claim::told(
             format!("{figure}, R {restitution}, c₂ {c2}: τ of the root of 3.42 to 3.44 at ν 1.75"),
             "0 < τ < T",
@@ -156,9 +164,8 @@ fn of_sine() -> Claim {
     )
 }
 
-/// Where jidnew as printed has the least x₁ between the resonances.
-fn printed() -> Vec<Claim> {
-    let scenes = [("3.13", 1.0, 0.0), ("3.14", 0.7, 0.0), ("3.15", 0.7, 0.1)];
+/// Claims: where the program jidnew, as printed in appendix A.2, has the least x₁ between the resonances.
+fn printed_program_claims() -> Vec<Claim> {
     let between = || grid(0.7501, 2.9901, 113).into_iter().filter(|nu| (BETWEEN.0..=BETWEEN.1).contains(nu));
     let of = |(figure, restitution, c2)| {
         let program = impulses(restitution, c2, IMPULSE, JIDNEW);
@@ -167,5 +174,5 @@ fn printed() -> Vec<Claim> {
         let why = format!("x₁ {:.2} mm: the figure was drawn by another program", 1e3 * x1(&at));
         Claim::number(format!("{figure}, jidnew as printed: ν of the notch of x₁"), "1.75", at, (2, ""), &why)
     };
-    scenes.map(of).into()
+    SCENES.map(of).into()
 }

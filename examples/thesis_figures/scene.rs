@@ -30,7 +30,7 @@ pub fn under_impulses(rig: &Rig, impulse: f64, nu: f64) -> Vec<Orbit> {
     orbits_of(rig, &train, 1).map_or_else(|_| Vec::new(), |found| found.orbits)
 }
 
-/// The orbit with J > 0 that the energy rule of the thesis accepts.
+/// The orbit that the energy rule of the thesis accepts: the root with an impulse J (N s) above 0.
 pub fn accepted(orbits: &[Orbit]) -> Option<&Orbit> {
     orbits.iter().find(|o| o.validity.energy_rule)
 }
@@ -41,7 +41,8 @@ pub fn real(orbit: &Orbit) -> bool {
     v.exists && v.admissible && v.stable == Some(true)
 }
 
-/// Place and size of the largest value between `low` and `high`: the best of 2000 values, then by thirds.
+/// Place and size of the largest value between `low` and `high`: the best of 2001 equidistant
+/// values, then a ternary search around it.
 pub fn peak(low: f64, high: f64, value: impl Fn(f64) -> Option<f64>) -> (f64, f64) {
     let value = |x: f64| value(x).unwrap_or(f64::NEG_INFINITY);
     let step = (high - low) / 2000.0;
@@ -67,7 +68,8 @@ pub fn ratio(from: f64, to: f64) -> AxisSpec {
     AxisSpec::new("Frequency ratio ν", "").limits(from, to)
 }
 
-/// Lines that grow side by side, each from where it ended.
+/// Polylines put together from segments: a segment that starts at the end of a line extends it, another
+/// begins a new line.
 #[derive(Default)]
 struct Lines(Vec<Vec<(f64, f64)>>);
 
@@ -80,8 +82,8 @@ impl Lines {
     }
 }
 
-/// Adds a value of all orbits with J > 0 over ν, each followed from one ν to the next: real ones solid in the
-/// colour `nth`, the others thin and grey.
+/// Adds a value of all orbits that exist (J > 0) over ν, each followed from one ν to the next: those that can
+/// be seen ([`real`]) solid in the colour `nth`, the others thin and grey.
 pub fn add_orbits(
     plot: Plot,
     name: &str,

@@ -1,4 +1,4 @@
-//! All kinds of records, and what all of them check or list in a campaign.
+//! The kinds of analysis, one for each section of a campaign, and what runs over all of them.
 
 use super::answer::left_out;
 use super::entries::{check, entries};
@@ -12,7 +12,7 @@ use crate::read::{Folder, plain};
 use crate::record::{find_channel, shown};
 use std::path::{Path, PathBuf};
 
-/// All kinds of records, in the order in which they are measured and shown.
+/// All kinds of analysis, in the order in which they are measured and shown.
 pub(crate) const KINDS: &[AnalysisKind] = &[
     row::<sweep::Keys>(),
     row::<spectrum::Keys>(),
@@ -99,14 +99,14 @@ const fn row<A: Analysis>() -> AnalysisKind {
         names: A::FILES,
         check: check::<A>,
         files: files_of::<A>,
-        channels: channels_of::<A>,
+        channels: channel_errors::<A>,
         records: records_of::<A>,
         run: run_all::<A>,
     }
 }
 
 /// Errors about the channels that the tables of a kind name.
-fn channels_of<A: Analysis>(campaign: &Campaign) -> Result<Vec<Error>> {
+fn channel_errors<A: Analysis>(campaign: &Campaign) -> Result<Vec<Error>> {
     Ok(entries::<A>(campaign)?.iter().filter_map(|entry| channels_in(campaign, entry).err()).collect())
 }
 
@@ -140,7 +140,8 @@ fn files_of<A: Analysis>(campaign: &Campaign) -> Result<Vec<PathBuf>> {
     Ok(files.flatten().collect())
 }
 
-/// The files that the tables of a kind name, each with what is stated of its record.
+/// The files that the tables of a kind name, each with a text that is equal for tables that read the same
+/// channels in the same way.
 fn records_of<A: Analysis>(campaign: &Campaign) -> Result<Vec<NamedFile>> {
     let mut all = Vec::new();
     for entry in &entries::<A>(campaign)? {
@@ -170,6 +171,7 @@ fn run_all<A: Analysis>(job: &mut Job<'_>) -> Result<()> {
     }
     let entries = entries::<A>(job.campaign)?;
     if A::TOGETHER && !entries.is_empty() {
+        // All tables give one answer.
         return job.together(A::SECTION, |job| A::run(&entries, job));
     }
     A::run(&entries, job)

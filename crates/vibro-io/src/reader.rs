@@ -16,7 +16,7 @@ use std::io::Read;
 use std::path::{Path, PathBuf};
 use vibro_record::lanes::Extremes;
 use vibro_record::units::Unit;
-use vibro_record::{AxisKind, Error, Finding, Meta, Place, Record, Result};
+use vibro_record::{AxisKind, Error, Finding, Meta, Place, RATE_OVER_BASE_BAND, Record, Result};
 
 /// Everything a file holds.
 #[derive(Debug, Clone, PartialEq)]
@@ -109,7 +109,8 @@ impl Reader {
     /// Default: a base band means a spectrum.
     pub fn rate_of_base_band(mut self) -> Reader {
         self.options.rate_of_band = self.options.base_band.take().filter(|_| self.options.rate.is_none());
-        self.options.rate = self.options.rate.or(self.options.rate_of_band.map(|band| 2.56 * band));
+        self.options.rate =
+            self.options.rate.or(self.options.rate_of_band.map(|band| RATE_OVER_BASE_BAND * band));
         self
     }
 

@@ -39,7 +39,7 @@ const HIDING_DIGIT: f64 = 0.25;
 /// and shifts no instant visibly.
 const FINE_DIGIT: f64 = 2e-3;
 /// Sampling rate divided by the base band (the highest frequency shown), as analysers set it.
-const RATE_OVER_BASE_BAND: f64 = 2.56;
+pub const RATE_OVER_BASE_BAND: f64 = 2.56;
 /// Relative error of a sine's amplitude from which jitter is a caution instead of a note.
 const VISIBLE_ERROR: f64 = 0.01;
 

@@ -38,7 +38,7 @@ use lanes::Extremes;
 use num_complex::Complex64;
 
 pub use axis::{Axis, AxisKind, Grid};
-pub use clock::{Clock, Stretch, is_fine, stretches, uniform_std};
+pub use clock::{Clock, RATE_OVER_BASE_BAND, Stretch, is_fine, stretches, uniform_std};
 pub use error::{Error, Hint, Place, Result};
 pub use finding::{Estimate, Fact, Finding, Severity};
 pub use kind::{Kind, without_unit};

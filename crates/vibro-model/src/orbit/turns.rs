@@ -28,25 +28,26 @@ impl Flight {
     #[inline]
     fn signal(&self, signal: Signal, t: f64) -> [f64; 3] {
         let [one, two] = self.series(t);
-        let [value, slope, bend] = [0, 1, 2].map(|n| signal.of([one[n], two[n]]));
-        [if signal == Signal::Gap { self.gap + value } else { value }, slope, bend]
+        let [value, rate, acceleration] = [0, 1, 2].map(|n| signal.of([one[n], two[n]]));
+        [if signal == Signal::Gap { self.gap + value } else { value }, rate, acceleration]
     }
 
     /// Calls `visit` with every minimum and maximum of x₁, x₂ and the gap inside `0..duration`: its time, its
     /// value, and the signal's acceleration there.
     ///
     /// Zeros of the rates are searched on a grid that is fine against the motion; the free motion is carried
-    /// from point to point by matrices. Between two points with the rates f and slopes s there is no zero if
-    /// parabolas of the largest curvature M cannot bring both ends down to it, and one zero if f changes its
-    /// sign and s cannot. Other intervals are halved. Pairs of zeros closer than a millionth of the duration
-    /// may be missed: between them the signal changes by less than M(1e-6 duration)³.
+    /// from point to point by matrices. Where the rate f has |f″| ≤ M (`limit`) between two points, it has no
+    /// zero if, even bending toward zero with M from both ends, it cannot reach zero within the width. It has
+    /// exactly one if f changes sign and f′ keeps its sign. Other intervals are halved. Pairs of zeros closer
+    /// than a millionth of the duration may be missed: between them the signal changes by less than
+    /// M(1e-6 duration)³.
     pub(crate) fn each_turn(&self, duration: f64, mut visit: impl FnMut(Signal, f64, f64, f64)) {
         let own = self.free.map(|part| part.oscillator.omega2().sqrt());
         let fastest = self.waves.fastest().max(own[0]).max(own[1]);
         // At 0.35 rad a step, the error of the cubic through both ends is 0.35⁴/384 = 4e-5 of the rate.
         let steps = (fastest * duration / 0.35).ceil().max(1.0);
         let step = duration / steps;
-        let kernels = self.free.map(|part| Carry::new(&part.oscillator, step));
+        let kernels = self.free.map(|part| StepMatrix::new(&part.oscillator, step));
         let mut free = self.free.map(|part| (part.x, part.v));
         let mut left = self.rates(free, 0.0);
         let mut n = 0.0;
@@ -115,11 +116,11 @@ impl Flight {
             // A zero at the right end belongs to the next piece.
             if right.0 != 0.0 || start + width >= duration {
                 let t = start + cubic_zero(left, right, width);
-                let [value, rate, bend] = self.signal(signal, t);
+                let [value, rate, acceleration] = self.signal(signal, t);
                 // The rate is not exactly zero there: a step to its zero changes the value in second order.
-                let ahead = if bend == 0.0 { 0.0 } else { -rate / bend };
+                let ahead = if acceleration == 0.0 { 0.0 } else { -rate / acceleration };
                 let ahead = if ahead.abs() <= width { ahead } else { 0.0 };
-                visit(signal, t + ahead, value + rate * ahead / 2.0, bend);
+                visit(signal, t + ahead, value + rate * ahead / 2.0, acceleration);
             }
             return;
         }
@@ -153,14 +154,14 @@ struct Rates {
     limit: [f64; 2],
 }
 
-/// Matrix of one step of a free motion.
+/// Matrix, row by row, that carries place and speed of a free oscillator over one step.
 #[derive(Clone, Copy)]
-struct Carry([f64; 4]);
+struct StepMatrix([f64; 4]);
 
-impl Carry {
-    fn new(oscillator: &Oscillator, step: f64) -> Carry {
+impl StepMatrix {
+    fn new(oscillator: &Oscillator, step: f64) -> StepMatrix {
         let ((a, c), (b, d)) = (oscillator.free(1.0, 0.0, step), oscillator.free(0.0, 1.0, step));
-        Carry([a, b, c, d])
+        StepMatrix([a, b, c, d])
     }
 
     #[inline]

@@ -19,7 +19,7 @@ fn start(task: &Task) -> State {
     State { x1, v1, x2, v2 }
 }
 
-/// From event to event on exact flights.
+/// Follows the task's motion with [`Simulation`]: closed-form flights from impact to impact.
 pub fn flights(task: &Task) -> Result<Log, OutcomeWithReason> {
     let mut log = Log::default();
     Simulation::from_state(&task.rig, &sine(task), start(task), task.phase)?
@@ -36,7 +36,7 @@ pub fn swept(task: &Task, deviation: f64) -> Result<Log, OutcomeWithReason> {
     Ok(log)
 }
 
-/// From event to event with a contact of spring and damper.
+/// Follows the task's motion with [`Compliant`]: a contact of spring and damper.
 pub fn kelvin_voigt(task: &Task) -> Result<Log, OutcomeWithReason> {
     damping_ratio(task.rig.restitution)?;
     let Spring { stiffness, damping, .. } = task.spring();
@@ -56,7 +56,7 @@ pub fn kelvin_voigt(task: &Task) -> Result<Log, OutcomeWithReason> {
     Ok(log)
 }
 
-/// The motion with one impact a cycle in closed form, as its impact.
+/// Logs one impact at time 0: that of the first orbit with one impact a cycle, in closed form.
 pub fn closed_form(task: &Task) -> Result<Log, OutcomeWithReason> {
     let found = orbits(&task.rig, task.force, task.frequency)?;
     Ok(Log::of(found.orbits.iter().take(1).map(|o| (0.0, o.approach_velocity))))
@@ -76,7 +76,8 @@ pub fn soft_forms(task: &Task) -> Result<(Orbits, Vec<Option<Softened>>, Complia
     Ok((found, soft, compliance))
 }
 
-/// Closed forms at `n` frequencies of a sweep, each at the time at which the sweep passes it.
+/// Quasi-static sweep: logs the impact of the steady orbit at each of `n` frequencies, at the time at which
+/// the sweep passes it.
 pub fn standing(task: &Task, n: f64) -> Result<Log, OutcomeWithReason> {
     let mut log = Log::default();
     for i in 0..n as u32 {
