@@ -1,5 +1,6 @@
 //! The steps of a converter, and the noise that rounding to them adds.
 
+use crate::chance::normal_at;
 use std::f64::consts::PI;
 use vibro_record::lanes::{Survey, survey};
 
@@ -31,6 +32,18 @@ pub(crate) fn rounding(step: f64) -> f64 {
 pub(crate) fn hidden(scatter: f64, step: f64) -> f64 {
     let noise = (scatter.powi(2) - rounding(step).powi(2)).max(0.0);
     if step > 0.0 { rounding(step) * (-2.0 * (PI / step).powi(2) * noise).exp() } else { 0.0 }
+}
+
+/// Largest standard deviation of noise that a stretch of `n` values with this `scatter` may conceal; 0 where
+/// the scatter shows its noise, from q/√12 on. Of noise σ about the middle of a step q, 2Φ(−q/2σ) of the
+/// values leave the step: these are scatter²/q² of them and, at 95 %, at most 3/n more (Hanley &
+/// Lippman-Hand, If nothing goes wrong, is everything all right?, 1983).
+pub(crate) fn concealed(scatter: f64, n: f64, step: f64) -> f64 {
+    if step <= 0.0 || scatter >= rounding(step) {
+        return 0.0;
+    }
+    let leaves = ((scatter / step).powi(2) + 3.0 / n).min(1.0);
+    0.5 * step / normal_at(1.0 - 0.5 * leaves)
 }
 
 #[cfg(test)]
@@ -68,6 +81,17 @@ mod tests {
             let most = 1.1 * PI * PI / 6.0 * squares * (4.0 * PI * PI * squares).exp();
             assert!(found < most && squares < 1.3 * (found + chance), "{sigma}: {squares} {found}");
         }
+    }
+
+    /// A plain oracle: draws of the noise that 100 flat values may conceal are flat in 1 of 20 cases.
+    #[test]
+    fn a_flat_stretch_conceals_noise_of_a_fifth_of_a_step() {
+        let sigma = concealed(0.0, 100.0, 2.0);
+        let mut noise = Noise::new(7);
+        let flat = (0..4000).filter(|_| (0..100).all(|_| (sigma * noise.normal()).abs() < 1.0)).count();
+        // (1 − 3/100)^100 = 0.0476; of 4000 draws three standard deviations are 0.0101.
+        assert!((flat as f64 / 4000.0 - 0.0476).abs() < 0.0101, "{flat}");
+        assert_eq!((concealed(0.6, 100.0, 2.0), concealed(0.0, 100.0, 0.0)), (0.0, 0.0));
     }
 
     /// A plain oracle: the errors of a sine that meets its steps everywhere.

@@ -2,7 +2,7 @@
 
 use super::ringing::Ringing;
 use super::{ContactModel, KelvinVoigt, LowPass};
-use crate::converter::{hidden, rounding};
+use crate::converter::{concealed, hidden, rounding};
 use crate::mean::{average, scatter};
 use crate::residuals::{Whiteness, aicc, student};
 use nalgebra::{DMatrix, DVector};
@@ -274,7 +274,8 @@ impl Samples<'_> {
         // The parameters absorb noise within the contact: they take its degrees of freedom.
         let free = inside.1 - fit.parameters.len() as f64;
         let chance = SURE * fitted.whiteness.inflation * (2.0 / free.max(1.0) + 2.0 / before.1).sqrt();
-        let noise = (before.0 / before.1).max(rounding(self.quantum).powi(2));
+        let shown = before.0 / before.1;
+        let noise = shown + self.noise().1.powi(2) + concealed(shown.sqrt(), before.1, self.quantum).powi(2);
         free >= 1.0 && before.1 >= 8.0 && inside.0 / free > (1.0 + chance) * noise
     }
 
