@@ -120,6 +120,21 @@ fn a_sine_of_few_counts_that_is_clipped_is_named() {
     assert_eq!(std.iter().filter(|none| **none).count(), 1, "{std:?}");
 }
 
+/// Two unlike blows a turn in one direction: their velocities, at 0.25 and 0.75 turns.
+#[test]
+fn two_unlike_blows_of_a_turn_are_two_groups() {
+    let Some((_root, path)) = unpacked("drill_two_blows.wav") else { return };
+    let options = "--velocity 1 --reference 2 --sensitivity 10.9558963 --beam-angle 0 --beam-from axis \
+                   --pulses-per-turn 1 --edge rising";
+    let mut arguments = vec!["drill", text(&path)];
+    arguments.extend(options.split_whitespace());
+    let (code, answer, _) = vibro(&arguments);
+    let groups = answer["groups"].as_array().unwrap();
+    assert_eq!((code, groups.len()), (0, 2), "{groups:?}");
+    assert!(off(&groups[0]["before"], 9.590) < 4.0 && off(&groups[0]["after"], -7.480) < 4.0, "{groups:?}");
+    assert!((groups[1]["before"]["value"].as_f64().unwrap() - 5.4).abs() < 0.1, "{groups:?}");
+}
+
 /// The force grows or falls by up to 2 % within each step: ζ of H(iω + ε) is off by ε/ω.
 #[test]
 fn a_force_that_drifts_within_its_steps_moves_no_mode() {

@@ -15,10 +15,13 @@ const AVERAGED_TURNS: usize = 10;
 /// Most markers over a line: more hide it.
 const MOST_MARKERS: usize = 20;
 
-/// Colour and marker of the velocities before and after the impacts of each group.
-const FORMS: [[(Ink, Marker); 2]; 2] = [
+/// Colour and marker of the velocities before and after the impacts of each group; a fifth group looks like
+/// the first.
+const FORMS: [[(Ink, Marker); 2]; 4] = [
     [(Ink::Nth(1), Marker::Circle), (Ink::Nth(2), Marker::Square)],
     [(Ink::Nth(3), Marker::Triangle), (Ink::Nth(4), Marker::Diamond)],
+    [(Ink::Nth(5), Marker::Circle), (Ink::Nth(6), Marker::Square)],
+    [(Ink::Nth(7), Marker::Triangle), (Ink::Nth(8), Marker::Diamond)],
 ];
 
 /// All figures of a record, by file name.
@@ -80,7 +83,7 @@ fn marks(
     shown: impl Fn(&Impact) -> bool,
 ) -> (Plot, usize) {
     let mut marked = 0;
-    for (number, forms) in FORMS.iter().enumerate() {
+    for (number, forms) in (0..drill.groups.len()).zip(FORMS.iter().cycle()) {
         let of_group: Vec<Impact> =
             drill.impacts.iter().filter(|i| i.group == number && shown(i)).copied().collect();
         let of_group = thin(&of_group, MOST_MARKERS);

@@ -5,6 +5,9 @@ use crate::measure::drill::{Corner, Drill, Group};
 use crate::report::layout::{headed, pair};
 use crate::report::{Cell, Table};
 
+/// Which velocities these are: the energy differs by per cents where the drive accelerates the striker.
+const MIDDLE: &str = "Velocities before and after impact, energy and restitution: continued to the middle of the contact, as if the impact took no time. First contact is earlier.";
+
 /// Results of a drill, one row a number.
 pub fn drill(name: &str, d: &Drill) -> Table {
     let columns = [("record", ""), ("quantity", ""), ("value", ""), ("unit", ""), ("n", "")];
@@ -51,12 +54,13 @@ pub fn drill(name: &str, d: &Drill) -> Table {
         row("crest factor, weighted", pair(e.crest_factor, None), "", e.a_hv.n);
         row("peak, unweighted", pair(e.unweighted_peak, None), "m/s²", e.a_hv.n);
     }
-    table
+    table.note(if d.impacts.is_empty() { "" } else { MIDDLE })
 }
 
 /// Means of a group of impacts, by their names.
 fn means(group: &Group) -> impl Iterator<Item = (&'static str, &Estimate)> {
     let all = [
+        ("velocity at first contact", Some(&group.first_contact)),
         ("velocity before impact", Some(&group.before)),
         ("velocity after impact", Some(&group.after)),
         ("phase of impact", Some(&group.phase)),

@@ -30,6 +30,10 @@ const EXTRAPOLATED: f64 = 1.3;
 const CLOSE: f64 = 0.25;
 /// Largest part of the impacts that follow another closely by accident; more are ringing.
 const ACCIDENTS: f64 = 0.1;
+/// Least gap between the phases of two groups of impacts, over the widest within a group.
+const PARTED: f64 = 3.0;
+/// Standard uncertainties by which the mean velocities of two blows of a turn differ where they are unlike.
+const UNLIKE: f64 = 4.0;
 /// Standard uncertainties beyond which a restitution outside 0 to 1 is impossible, not chance.
 const BEYOND: f64 = 2.0;
 
@@ -48,11 +52,15 @@ pub struct Impact {
     pub phase: f64,
     /// Standard uncertainty of the phase, in turns.
     pub phase_std: f64,
-    /// Velocity right before the contact, in m/s.
+    /// Velocity at first contact, in m/s.
+    pub first_contact: f64,
+    /// Standard uncertainty of this velocity, in m/s.
+    pub first_contact_std: f64,
+    /// Velocity of approach, continued to the middle of the contact, in m/s.
     pub before: f64,
     /// Standard uncertainty of this velocity, in m/s.
     pub before_std: f64,
-    /// Velocity right after the contact, in m/s.
+    /// Velocity of separation, continued back to the middle of the contact, in m/s.
     pub after: f64,
     /// Standard uncertainty of this velocity, in m/s.
     pub after_std: f64,
@@ -82,8 +90,9 @@ impl Offset {
 
 /// Impacts of one direction, by the sign of the jump of the velocity, and their means.
 ///
-/// A striker that hits the bit in front and is caught behind has two groups; a mean over both would describe
-/// no impact. The first group is the strongest: it has the largest sum of squared jumps over the record.
+/// A striker that hits the bit in front and is caught behind has two groups, as have two unlike blows a turn:
+/// a mean over both would describe no impact. The first group is the strongest of the direction with the
+/// largest sum of squared jumps over the record.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct Group {
@@ -96,9 +105,12 @@ pub struct Group {
     /// Mean phase in turns after the edge, on the circle; no uncertainty where impacts come all round the
     /// turn.
     pub phase: Estimate,
-    /// Mean velocity right before the contact, in m/s.
+    /// Mean velocity at first contact, in m/s.
+    pub first_contact: Estimate,
+    /// Mean velocity of approach, continued to the middle of the contact, in m/s: momentum and energy balance
+    /// at one instant.
     pub before: Estimate,
-    /// Mean velocity right after the contact, in m/s.
+    /// Mean velocity of separation, continued back to the middle of the contact, in m/s.
     pub after: Estimate,
     /// Mean kinetic energy before, in J, where the mass is known.
     pub energy: Option<Estimate>,
@@ -125,27 +137,68 @@ pub(super) fn groups(
     options: &DrillOptions,
     offset: &Offset,
 ) -> Vec<Group> {
-    let rises = |i: &Impact| i.after > i.before;
-    let strength = |up: bool| {
-        let own = impacts.iter().filter(|i| rises(i) == up);
-        own.map(|i| (i.after - i.before).powi(2)).sum::<f64>()
-    };
-    let first = strength(true) > strength(false);
-    let both = impacts.iter().any(rises) && !impacts.iter().all(rises);
-    for impact in impacts.iter_mut() {
-        impact.group = usize::from(both && rises(impact) != first);
+    let strength =
+        |own: &[usize]| own.iter().map(|i| (impacts[*i].after - impacts[*i].before).powi(2)).sum::<f64>();
+    let mut sides = [true, false].map(|up| {
+        (0..impacts.len()).filter(|i| (impacts[*i].after > impacts[*i].before) == up).collect::<Vec<_>>()
+    });
+    sides.sort_by(|a, b| strength(b).total_cmp(&strength(a)));
+    let mut members: Vec<(bool, Vec<usize>)> = Vec::new();
+    for (front, side) in [true, false].into_iter().zip(sides).filter(|(_, side)| !side.is_empty()) {
+        let mut parts = by_phase(impacts, side, turns);
+        parts.sort_by(|a, b| strength(b).total_cmp(&strength(a)));
+        members.extend(parts.into_iter().map(|part| (front, part)));
     }
-    let count = if impacts.is_empty() { 0 } else { 1 + usize::from(both) };
-    let group = |number| {
-        let members = impacts.iter().zip(residuals).filter(|(i, _)| i.group == number);
-        let mut group = Group::new(&members.collect::<Vec<_>>(), number == 0, gap, options).allowing(offset);
+    for (number, (_, own)) in members.iter().enumerate() {
+        for i in own {
+            impacts[*i].group = number;
+        }
+    }
+    let group = |(number, (front, own)): (usize, &(bool, Vec<usize>))| {
+        let own: Vec<_> = own.iter().map(|i| (&impacts[*i], &residuals[*i])).collect();
+        let mut group = Group::new(&own, *front, gap, options).allowing(offset);
         group.share = group.n as f64 / turns as f64;
-        if both {
+        if members.len() > 1 {
             group.findings = group.findings.into_iter().map(|found| found.count("group", number)).collect();
         }
         group
     };
-    (0..count).map(group).collect()
+    members.iter().enumerate().map(group).collect()
+}
+
+/// The impacts of one direction at each of the phases at which a turn has one, in the order of time, where
+/// their velocities differ; all of them otherwise. A turn with two unlike blows has no mean blow. Phases are
+/// parted at their widest gaps on the circle.
+fn by_phase(impacts: &[Impact], own: Vec<usize>, turns: usize) -> Vec<Vec<usize>> {
+    let a_turn = (own.len() as f64 / turns.max(1) as f64).round() as usize;
+    if a_turn < 2 {
+        return vec![own];
+    }
+    let mut round = own.clone();
+    round.sort_by(|a, b| impacts[*a].phase.total_cmp(&impacts[*b].phase));
+    let phase = |k: usize| impacts[round[k % round.len()]].phase + (k / round.len()) as f64;
+    let mut gaps: Vec<(f64, usize)> = (0..round.len()).map(|k| (phase(k + 1) - phase(k), k + 1)).collect();
+    gaps.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let inner = gaps.get(a_turn).map_or(0.0, |gap| gap.0);
+    if gaps[a_turn - 1].0 < PARTED * inner {
+        return vec![own];
+    }
+    let mut borders: Vec<usize> = gaps[..a_turn].iter().map(|gap| gap.1).collect();
+    borders.sort_unstable();
+    let part = |k: usize| {
+        let end = borders.get(k + 1).copied().unwrap_or(borders[0] + round.len());
+        let mut part: Vec<usize> = (borders[k]..end).map(|i| round[i % round.len()]).collect();
+        part.sort_unstable();
+        part
+    };
+    let parts: Vec<Vec<usize>> = (0..a_turn).map(part).collect();
+    let mean = |part: &Vec<usize>| Mean::of(&part.iter().map(|i| impacts[*i].before).collect::<Vec<_>>());
+    let means: Vec<Mean> = parts.iter().map(mean).collect();
+    let unlike = |a: &Mean, b: &Mean| {
+        a.std.zip(b.std).is_some_and(|(s, t)| (a.value - b.value).abs() > UNLIKE * s.hypot(t))
+    };
+    let differ = means.iter().any(|a| means.iter().any(|b| unlike(a, b)));
+    if differ { parts } else { vec![own] }
 }
 
 impl Group {
@@ -163,6 +216,7 @@ impl Group {
         self.energy.iter_mut().for_each(|e| add(e, momentum * unknown));
         self.energy_given.iter_mut().for_each(|e| add(e, momentum * (1.0 - after / before) * unknown));
         self.restitution.iter_mut().for_each(|r| add(r, (1.0 + r.value) * unknown / before.abs()));
+        add(&mut self.first_contact, unknown);
         add(&mut self.before, unknown);
         add(&mut self.after, unknown);
         let found = Finding::doubt(code::DRILL_MEAN_VELOCITY).number("mean", offset.value);
@@ -178,7 +232,8 @@ impl Group {
             return self;
         }
         let energies = [self.energy.as_mut(), self.energy_given.as_mut()].into_iter().flatten();
-        for estimate in [&mut self.before, &mut self.after].into_iter().chain(energies) {
+        let velocities = [&mut self.first_contact, &mut self.before, &mut self.after];
+        for estimate in velocities.into_iter().chain(energies) {
             (estimate.value, estimate.std) = (f64::NAN, None);
         }
         (self.restitution, self.phase.std) = (None, None);
@@ -198,7 +253,10 @@ impl Group {
         let (own, residuals): (Vec<&Impact>, Vec<&[Vec<f64>; 2]>) =
             members.iter().copied().filter(|(i, _)| used(i)).unzip();
         let mean = |of: &dyn Fn(&Impact) -> f64| Mean::of(&own.iter().map(|i| of(i)).collect::<Vec<f64>>());
-        let (before, after) = (mean(&|i| i.before), mean(&|i| i.after));
+        let (before, after, first) = (mean(&|i| i.before), mean(&|i| i.after), mean(&|i| i.first_contact));
+        // The length of the contact is as uncertain for all impacts.
+        let shared = |i: &Impact| (i.first_contact_std.powi(2) - i.before_std.powi(2)).max(0.0).sqrt();
+        let first = Mean { std: first.std.map(|std| std.hypot(mean(&shared).value)), ..first };
         let mut findings = Vec::new();
         if clipped > 0 {
             let found = Finding::doubt("drill-impacts-over-range");
@@ -252,8 +310,24 @@ impl Group {
             clipped,
             share: f64::NAN,
             phase,
-            before: estimate(before, [1.0, 0.0], "m/s", "parabola up to the contact, mean over impacts"),
-            after: estimate(after, [0.0, 1.0], "m/s", "parabola from the contact on, mean over impacts"),
+            first_contact: estimate(
+                first,
+                [1.0, 0.0],
+                "m/s",
+                "parabola up to first contact, mean over impacts",
+            ),
+            before: estimate(
+                before,
+                [1.0, 0.0],
+                "m/s",
+                "parabola continued to the middle of the contact, mean over impacts",
+            ),
+            after: estimate(
+                after,
+                [0.0, 1.0],
+                "m/s",
+                "parabola continued back to the middle of the contact, mean over impacts",
+            ),
             energy: energy(&|i| i.before * i.before, [before.value, 0.0], "½ m v² before, mean over impacts"),
             energy_given: energy(
                 &|i| i.before * i.before - i.after * i.after,

@@ -16,6 +16,9 @@ const SIGNIFICANT: f64 = 5.0;
 pub(super) struct Parabola {
     /// Extrapolated value, in the unit of the samples.
     pub value: f64,
+    /// Slope there per sample, and half the second derivative.
+    pub slope: f64,
+    pub bend: f64,
     /// Variance of the value for unit variance of the samples.
     pub leverage: f64,
     /// Sum of the squares of the residuals, and their degrees of freedom.
@@ -58,7 +61,13 @@ impl Parabola {
         good().for_each(|(k, x, y)| residuals[k] = y - fitted[0] - x * (fitted[1] + x * fitted[2]));
         let squares = residuals.iter().map(|r| r * r).sum();
         let (value, leverage, freedom) = (fitted[0], inverse[(0, 0)], n as f64 - 3.0);
-        value.is_finite().then_some(Parabola { value, leverage, squares, freedom, residuals })
+        let (slope, bend) = (fitted[1] * scale, fitted[2] * scale * scale);
+        value.is_finite().then_some(Parabola { value, slope, bend, leverage, squares, freedom, residuals })
+    }
+
+    /// Value `by` samples from the place to which it is extrapolated.
+    pub fn beside(&self, by: f64) -> f64 {
+        self.value + by * (self.slope + by * self.bend)
     }
 
     /// Variance of the extrapolated value, from the residuals of this fit alone.

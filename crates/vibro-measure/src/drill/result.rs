@@ -29,10 +29,10 @@ pub struct Drill {
     pub reference: Pulses,
     /// Every impact.
     pub impacts: Vec<Impact>,
-    /// Impacts by direction, the strongest group first.
+    /// Impacts by direction, and by phase where a turn has unlike ones; the strongest group first.
     pub groups: Vec<Group>,
-    /// Mean velocity before the impacts of the strongest group, in m/s. All means down to the restitution are
-    /// of that group.
+    /// Mean velocity before the impacts of the strongest group, continued to the middle of the contact, in
+    /// m/s. All means down to the restitution are of that group.
     pub before: Option<Estimate>,
     /// Mean velocity after the impacts, in m/s.
     pub after: Option<Estimate>,

@@ -153,6 +153,8 @@ mod tests {
             time_std: 0.5,
             phase: 0.0,
             phase_std: 0.0,
+            first_contact: 0.0,
+            first_contact_std: 0.0,
             before: 0.0,
             before_std: 0.0,
             after,

@@ -17,6 +17,8 @@ fn impacts(of: &[(f64, f64, f64)]) -> Vec<Impact> {
         time_std: 0.0,
         phase: *phase,
         phase_std: 0.0,
+        first_contact: *before,
+        first_contact_std: 0.0,
         before: *before,
         before_std: 0.0,
         after: *after,
@@ -59,6 +61,34 @@ fn front_and_rear() {
     assert!((rear.value - 3.3 / 12.3).abs() < 1e-12 && rear.std.is_some(), "{rear:?}");
     assert!(front.before.std.is_some());
     assert!(groups.iter().all(|g| g.findings.is_empty()), "{groups:?}");
+}
+
+/// Two blows a turn in one direction, with velocities and phases that scatter by chance.
+#[test]
+fn two_unlike_blows_a_turn_are_two_groups_and_two_alike_are_one() {
+    let of = |weak: f64| {
+        let mut noise = Noise::new(11);
+        let mut turn = |cycle: usize| {
+            let mut blow = |phase: f64, speed: f64| Impact {
+                cycle,
+                time: cycle as f64 + phase,
+                ..impacts(&[(phase + 0.01 * noise.normal(), speed + 0.2 * noise.normal(), -0.78 * speed)])[0]
+            };
+            [blow(0.25, 9.59), blow(0.75, weak)]
+        };
+        (0..45).flat_map(|cycle| turn(cycle)).collect::<Vec<Impact>>()
+    };
+    let mut all = of(5.4);
+    let groups = grouped(&mut all, 45, &options(None));
+    assert_eq!(groups.iter().map(|g| (g.n, g.share)).collect::<Vec<_>>(), [(45, 1.0), (45, 1.0)]);
+    for (group, (phase, speed)) in groups.iter().zip([(0.25, 9.59), (0.75, 5.4)]) {
+        // Means of 45: 0.2/√45 = 0.03 and 0.01/√45 = 0.0015.
+        let (before, at) = (&group.before, &group.phase);
+        assert!((before.value - speed).abs() < 5.0 * before.std.unwrap() && before.std.unwrap() < 0.06);
+        assert!((at.value - phase).abs() < 5.0 * at.std.unwrap() && at.std.unwrap() < 0.004, "{at:?}");
+    }
+    assert!(all.iter().all(|i| i.group == usize::from(i.phase > 0.5)));
+    assert_eq!(grouped(&mut of(9.59), 45, &options(None)).len(), 1);
 }
 
 #[test]
@@ -130,6 +160,8 @@ fn twenty(before: f64, after: f64, std: f64) -> Vec<Impact> {
             time_std: 0.0,
             phase: 0.5,
             phase_std: 1e-3,
+            first_contact: speed(before, k),
+            first_contact_std: std,
             before: speed(before, k),
             before_std: std,
             after: speed(after, k * k),
