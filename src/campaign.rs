@@ -53,7 +53,7 @@ use toml::de::DeTable;
 /// Folder for results where none is named.
 const RESULTS: &str = "results";
 
-/// The part of a campaign file that holds for all records. [`crate::analysis`] reads the tables of records.
+/// The part of a campaign file that applies to all records. [`crate::analysis`] reads the tables of records.
 #[derive(Debug, Clone, Default, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Campaign {
@@ -69,7 +69,7 @@ pub struct Campaign {
     pub excitation: Option<Drive>,
     /// Contact law of the masses; without it the contact stiffness is unknown.
     pub contact: Option<ContactKeys>,
-    /// How the overlay's predictions are made.
+    /// Model of the overlay's predictions, and its settings.
     pub model: ModelEntry,
     /// Parameters to be fitted to the responses.
     pub fit: FitEntry,
@@ -95,15 +95,15 @@ pub struct Fault {
     pub(crate) section: &'static str,
     /// Name of the table in messages.
     pub(crate) name: String,
-    /// Position of the table in the text, and its file.
+    /// Byte at which the table begins in the text, and the file that it names.
     pub(crate) place: (usize, Option<PathBuf>),
     /// The error, which points at its line.
     pub error: Error,
 }
 
 impl Campaign {
-    /// Reads a campaign file and checks the tables that hold for all records. `sections` are the names of the
-    /// tables of records.
+    /// Reads a campaign file and checks the tables that apply to all records. `sections` are the names of
+    /// the tables of records.
     ///
     /// # Errors
     /// If the file is not TOML, or has an unknown key or an invalid value; each error points at its line.
@@ -168,7 +168,7 @@ impl Campaign {
         locate::written(&self.text, &[]).parse().map_err(|e| e.in_file(&self.path))
     }
 
-    /// The tables outside the sections `left_out`, without comments and blanks.
+    /// Text of all tables except the sections `left_out`, without comments and blanks.
     ///
     /// # Errors
     /// If the text is not TOML.
@@ -183,7 +183,7 @@ impl Campaign {
     pub(crate) const FILL_IN: &str =
         "Fill in what is missing and remove the # in front of the table and its keys.";
 
-    /// Findings on tables in comments, which lack a value, and on files that a proposal did not use.
+    /// Findings on proposed tables that are still in comments, and on files that the proposal did not use.
     pub(crate) fn commented(&self) -> Vec<Finding> {
         let lines: Vec<&str> = self.text.lines().collect();
         let comment = |line: &&str| line.strip_prefix('#').map(|text| text.trim_start().to_owned());
@@ -210,7 +210,7 @@ impl Campaign {
             let lacking = keys.iter().filter(|(_, value)| value.is_empty());
             let lacking: Vec<&str> = lacking.map(|(key, _)| key.as_str()).collect();
             let found = Finding::note("table-in-comment").about(file.unwrap_or(&head));
-            // A proposal that is no file has no line numbers.
+            // A proposal that is not written to a file has no line numbers.
             let found = if self.is_file() { found.count("line", i + 1) } else { found };
             Some(match refused(i) {
                 Some(why) => found.name("why", why.trim_end_matches('.')),
@@ -256,7 +256,7 @@ impl Campaign {
         &self.folder
     }
 
-    /// Whether the campaign is a file; else it is a proposal.
+    /// Whether the campaign exists as a file; otherwise it is a proposal.
     pub fn is_file(&self) -> bool {
         self.folder.is_file(&self.path)
     }
@@ -292,7 +292,7 @@ impl Campaign {
         Ok(())
     }
 
-    /// Rig keys that the file does not state; they take the values of the thesis' rig.
+    /// Rig keys that the file does not state and that take the values of the thesis' rig.
     pub(crate) fn rig_left_out(&self) -> Vec<&'static str> {
         let table = self.table().unwrap_or_default();
         let given = |key: &&str| table_of(&table, "rig").is_none_or(|rig| rig.contains_key(*key));

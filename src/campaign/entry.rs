@@ -23,7 +23,7 @@ pub struct Entry<K> {
     pub reading: Reading,
     /// Keys of the analysis.
     pub keys: K,
-    /// Its place among the tables of its section, from 1.
+    /// Number of the table in its section, from 1.
     pub number: usize,
     head: Range<usize>,
     places: Vec<(String, Range<usize>)>,
@@ -40,12 +40,12 @@ struct Named {
 const NAMED: [&str; 2] = ["name", "file"];
 
 impl<K> Entry<K> {
-    /// Position of the table and its file, which identify it in the campaign.
+    /// Byte at which the table begins, and its file: together they identify it in the campaign.
     pub fn place(&self) -> (usize, Option<PathBuf>) {
         (self.head.start, self.file.clone())
     }
 
-    /// The first stated key about the reading of a file.
+    /// The first key of the table that tells how a file is read, if any.
     pub fn reads(&self) -> Option<&'static str> {
         let mut keys = Reading::KEYS.into_iter().chain(Channel::KEYS);
         keys.find(|key| self.places.iter().any(|(name, _)| name == key))
@@ -53,8 +53,8 @@ impl<K> Entry<K> {
 }
 
 impl Campaign {
-    /// The tables of a section in their order, each with the error of a number outside its range. Tables of
-    /// records in files also have the keys of `Reading` and `Channel`.
+    /// The tables of a section in their order, each with the error of a number outside its range, if any.
+    /// With `of_a_file` they also have the keys `name` and `file`, and those of `Reading` and `Channel`.
     ///
     /// # Errors
     /// If one has an unknown key, or a value of the wrong kind.

@@ -14,12 +14,12 @@ const TABLE_SYNONYMS: &[(&str, &str)] = &[
     ("contact", "pulse"),
 ];
 
-/// The text of a campaign, with keys that are known beside those of a type.
+/// The text of a campaign; `extra_keys` are accepted beside the keys of the type that is read.
 pub fn written<'a>(text: &'a str, extra_keys: &'a [&'a str]) -> Written<'a> {
     Written { text, extra_keys, table_synonyms: TABLE_SYNONYMS }
 }
 
-/// Position of a key in a table or its subtables.
+/// Bytes of a key and its value in a table or its subtables.
 pub fn find(table: &DeTable<'_>, key: &str) -> Option<Range<usize>> {
     table.iter().find_map(|(name, value)| match value.get_ref() {
         _ if name.get_ref() == key => Some(name.span().start..value.span().end),

@@ -1,5 +1,5 @@
-//! Ranges of the numbers in options of the command line and keys of a campaign, in one table for both. Values
-//! of a rig, of its excitation and of the settings of a model are checked by the model:
+//! Ranges of numbers, in one table for the options of the command line and the keys of a campaign. The model
+//! checks the values of a rig, of its excitation and of the settings of a model:
 //! [`crate::model::Parameter`].
 
 use crate::error::{Error, Result};
@@ -8,14 +8,14 @@ use toml::de::DeValue;
 /// Largest magnitude of a quantity. Estimators multiply at most six stated values, so products stay below
 /// 1e308.
 const LARGEST: f64 = 1e50;
-/// Smallest magnitude of a quantity that is not 0, for the same reason.
+/// Smallest magnitude of a quantity that is not 0: products of six stay above 1e-308.
 const LEAST: f64 = 1e-50;
 /// Longest time in s: thirty years.
 const LONGEST: f64 = 1e9;
-/// Shortest time in s: less than any contact or sampling interval.
+/// Shortest time in s: shorter than any contact or sampling interval.
 const SHORTEST: f64 = 1e-12;
 
-/// Lower bound of a number, and what the error says was expected if the number is below it or not finite.
+/// Lower bound of a number, and the expectation named in the error if the number is below it or not finite.
 type Sign = (f64, &'static str);
 const ABOVE: Sign = (f64::MIN_POSITIVE, "a finite number above 0");
 const ZERO: Sign = (0.0, "a finite number of 0 or more");
@@ -55,7 +55,7 @@ const ROWS: &[Row] = &[
     (ANY, 1e3, 1.0, "", &["integrate"]),
 ];
 
-/// Checks the value of an option or a key; a key without a row here is checked with its table.
+/// Checks the value of an option or a key. A key without a row here passes; its own table checks it.
 ///
 /// # Errors
 /// With the key and its range, if the value lies outside.

@@ -1,5 +1,5 @@
-//! Settings for reading a file that the file does not state itself: keys of a campaign and options of the
-//! command line alike.
+//! Settings for reading a file, where the file does not state them: keys of a campaign and options of the
+//! command line.
 
 use super::value::channel;
 use crate::error::{Error, Result};
@@ -70,7 +70,7 @@ pub enum Decimal {
 /// Checks a setting that must be a finite number above 0.
 ///
 /// # Errors
-/// If it is not.
+/// If it is not finite, or not above 0.
 pub fn above_zero(key: &'static str, value: Option<f64>) -> Result<()> {
     match value {
         Some(v) if !(v.is_finite() && v > 0.0) => {
@@ -104,7 +104,7 @@ impl Reading {
         Reading::KEYS.into_iter().filter_map(stated).collect()
     }
 
-    /// The same for files that state their sampling rate or frequencies themselves.
+    /// These settings without those of the axis, for files that state their sampling rate or frequencies.
     pub fn untimed(&self) -> Reading {
         Reading { rate: None, base_band: None, span: None, stretch: None, resample: None, ..self.clone() }
     }

@@ -22,7 +22,7 @@ pub struct Drive {
     /// Kind of excitation: `sine`.
     #[serde(default)]
     pub kind: DriveKind,
-    /// Force amplitude in N; left out, the measured force is taken.
+    /// Force amplitude in N; if left out, the measured force is used.
     pub force: Option<f64>,
 }
 
@@ -39,15 +39,15 @@ pub enum DriveKind {
 #[derive(Debug, Clone, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Compute {
-    /// Overlay measured responses on the model. Default: where a rig is given.
+    /// Overlay measured responses on the model, where a rig is given. Default true.
     pub overlay: bool,
     /// Draw waterfalls. Default true.
     pub waterfall: bool,
-    /// Lines on each side of the excitation that are searched for the peak. Default 3.
+    /// Spectral lines on each side of the excitation frequency that are searched for the peak. Default 3.
     #[serde(alias = "band")]
     pub peak_lines: usize,
-    /// Lowest frequency used, in Hz. Default: the larger of two lines and a quarter of the lowest
-    /// excitation.
+    /// Lowest frequency used, in Hz. Default: two line spacings or a quarter of the lowest excitation
+    /// frequency, whichever is larger.
     pub fmin: Option<f64>,
     /// Highest frequency in waterfalls, in Hz. Default: the last visible line.
     pub fmax: Option<f64>,
@@ -79,13 +79,13 @@ impl Default for Compute {
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ModelEntry {
-    /// The model that predicts. Left out, the ladder chooses.
+    /// Model of the predictions. If left out, the ladder of models chooses it.
     pub name: Option<Follows>,
-    /// Relative change of an amplitude that does not matter when a model is chosen. Default 0.02.
+    /// Relative change of an amplitude that is negligible when a model is chosen. Default 0.02.
     pub tolerance: f64,
-    /// Cycles that the simulated rig stays at each point of a sweep before it is read. Default 300.
+    /// Excitation cycles simulated at each point of a sweep before the motion is read. Default 300.
     pub settle: u32,
-    /// Cycles read. Default 64.
+    /// Excitation cycles over which the motion is read. Default 64.
     pub measure: u32,
 }
 
@@ -141,7 +141,7 @@ impl ModelEntry {
 #[derive(Debug, Clone, PartialEq, Default, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct FitEntry {
-    /// Parameters to fit. Without any, nothing is fitted.
+    /// Parameters to fit; if empty, nothing is fitted.
     pub parameters: Vec<Parameter>,
     /// Prior of a parameter from another measurement: `[value, standard uncertainty]`.
     pub prior: BTreeMap<Parameter, [f64; 2]>,
@@ -153,12 +153,12 @@ pub struct FitEntry {
     /// mass, to a slope from the lowest to the highest frequency, and to the force where that is not
     /// fitted. Default 0.01, with a caution.
     pub calibration: Option<f64>,
-    /// Relative standard uncertainty of each single amplitude beside the noise in its spectrum: the
-    /// repeatability of the measurement. Default 0.
+    /// Repeatability of the measurement: relative standard uncertainty of each single amplitude, in
+    /// addition to the noise in its spectrum. Default 0.
     pub scatter: Option<f64>,
 }
 
-/// Largest number of starting points.
+/// Largest number of starting points: each is a search of its own, so the computing time grows with it.
 const MOST_STARTS: usize = 1000;
 
 impl FitEntry {
@@ -181,7 +181,7 @@ impl FitEntry {
         })
     }
 
-    /// Checks that no value is impossible.
+    /// Checks that all values are possible.
     ///
     /// # Errors
     /// The key with an impossible value, and the reason.
@@ -234,7 +234,7 @@ impl FitEntry {
         first_fault(checks)
     }
 
-    /// Lowest and highest value of a parameter, in its unit.
+    /// Lowest and highest value that a fit may give a parameter, in its unit.
     pub fn range(&self, parameter: Parameter) -> (f64, f64) {
         let (least, most) = parameter.limits();
         // A gap below 0 (masses pressed together) is searched only within stated bounds.

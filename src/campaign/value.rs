@@ -23,7 +23,7 @@ pub fn two<const MARK: char>(typed: &str) -> Result<(f64, f64), Kind> {
     kind::pair(typed, MARK)
 }
 
-/// Low-pass of average and displacement of a drill, or of the instrument of a pulse.
+/// Low-pass of the average and the displacement of a drill, or of the instrument that measured a pulse.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum LowPass {
     /// Corner in Hz.
@@ -32,7 +32,7 @@ pub enum LowPass {
     Off,
 }
 
-/// The values that it may have.
+/// The values that a low-pass may have.
 const LOW_PASS: Kind = Kind::NumberOr("a corner in Hz", "none");
 
 impl LowPass {
@@ -44,7 +44,7 @@ impl LowPass {
     /// Parses a typed value.
     ///
     /// # Errors
-    /// If it is neither.
+    /// If the text is neither a number nor `none`.
     pub fn typed(text: &str) -> Result<LowPass, Kind> {
         match text {
             "none" => Ok(LowPass::Off),
@@ -63,7 +63,7 @@ impl<'de> Deserialize<'de> for LowPass {
     }
 }
 
-/// One value.
+/// One value as it is read: a text, a whole number or another number.
 enum Scalar<'a> {
     Text(&'a str),
     Whole(i64),

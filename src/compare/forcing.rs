@@ -8,17 +8,18 @@ use crate::units::notation::significant;
 /// Force amplitude over excitation frequency.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Forcing {
-    /// Frequency in Hz and force in N of each point, rising in frequency; a single one where the force is
-    /// the same for all points.
+    /// Frequency in Hz and force amplitude in N of each point, by rising frequency; a single pair where the
+    /// force is the same for all points.
     points: Vec<(f64, f64)>,
-    /// Whether it was measured at each point.
+    /// Whether the force was measured at each point.
     measured: bool,
 }
 
-/// Largest ratio of neighbouring forces of one level: a shaker's force drops by less at a resonance, and
-/// chosen levels differ by more.
+/// Largest ratio between forces of one level that are next to each other by size. A shaker's force drops by
+/// less at a resonance, and chosen levels differ by more.
 const LEVEL: f64 = 1.2;
-/// Relative difference of the measured from the stated force that is a caution: load cells err by 1 or 2 %.
+/// Relative difference between measured and stated force above which a caution is given: load cells err by
+/// 1 or 2 %.
 const DIFFERS: f64 = 0.05;
 
 impl Forcing {
@@ -35,8 +36,8 @@ impl Forcing {
         (!points.is_empty()).then_some(Forcing { points, measured: true })
     }
 
-    /// The force of each of these responses, with findings: the stated one for all, else each its own. A
-    /// sweep without one takes the median of the others.
+    /// The force of each response, with findings: the stated force for all, else the measured force of each.
+    /// A sweep without a measured force takes the median of all measured forces.
     ///
     /// # Errors
     /// If no force is stated and none was measured.
@@ -97,8 +98,8 @@ impl Forcing {
         }
     }
 
-    /// Force in N of a point of the sweep, and its standard uncertainty: 0 where it is stated, taken from
-    /// other points, or not known.
+    /// Force in N of a point of the sweep, and its standard uncertainty in N: 0 where the force is stated or
+    /// taken from other points, or its uncertainty is not known.
     pub(super) fn of(&self, point: &ResponsePoint) -> (f64, f64) {
         match point.force {
             Some(force) if self.measured => (force, point.force_std.unwrap_or(0.0)),
@@ -106,7 +107,7 @@ impl Forcing {
         }
     }
 
-    /// Median in N.
+    /// Median of the force in N.
     pub fn median(&self) -> f64 {
         median(self.points.iter().map(|p| p.1))
     }
@@ -117,11 +118,11 @@ pub(super) fn range(values: impl Iterator<Item = f64>) -> (f64, f64) {
     values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)))
 }
 
-/// Levels of force in order of their first sweep: indices into `forces`, the median of each sweep where
-/// known.
+/// Levels of force in the order of their first sweep, as indices into `forces`, the median force of each
+/// sweep where it is known.
 ///
-/// Forces in order of size are split where one is more than 1.2 times that before it, so the order of the
-/// sweeps does not matter. A sweep of unknown force belongs to the first level.
+/// The forces are sorted by size and split where one is more than 1.2 times the one before, so the order of
+/// the sweeps does not matter. A sweep of unknown force belongs to the first level.
 pub fn levels(forces: &[Option<f64>]) -> Vec<Vec<usize>> {
     let mut known: Vec<(f64, usize)> =
         forces.iter().enumerate().filter_map(|(i, force)| Some(((*force)?, i))).collect();

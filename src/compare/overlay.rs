@@ -42,17 +42,17 @@ pub struct Overlay {
     pub findings: Vec<Finding>,
 }
 
-/// Frequencies of the predicted curve: spaced more closely than the width of a line in a figure.
+/// Number of frequencies of the predicted curve: closer together than the width of a line in a figure.
 const CURVE: usize = 1200;
 
 /// Compares measured displacement responses (fundamentals of spectra) with the motions of the rig. `force`
 /// is in N. With `None` each point is predicted for its own measured force, and the curve for forces
 /// interpolated between the points.
 ///
-/// Each point is predicted by a simulated sweep through the points in their order: history chooses between
-/// coexisting solutions as in the measurement. Where contacts are rigid and the sweep reaches a motion of
-/// the closed form, the closed form gives the amplitude. The ladder of models decides whether contacts are
-/// rigid, unless a model is named.
+/// Each point is predicted by a simulated sweep through the points in their order, so that coexisting
+/// solutions are chosen by the history, as in the measurement. Where contacts are rigid and the sweep reaches
+/// a motion of the closed form, the closed form gives the amplitude. The ladder of models decides whether
+/// contacts are rigid, unless a model is named.
 ///
 /// # Errors
 /// If no response states its mass and direction, no force is known, or the rig is impossible; if the named
@@ -69,7 +69,7 @@ pub fn overlay(
         findings.push(Finding::caution("responses-not-overlaid").count("n", left_out));
     }
     let (low, high) = frequencies(&swept);
-    // Room for the markers of the outermost points.
+    // The curve extends beyond the outermost points, to leave room for their markers.
     let margin = 0.03 * (high - low);
     let ends = ((low - margin).max(low / 2.0), high + margin);
     let curve = |forcing: &Forcing| Prediction::over(rig, forcing, ends, CURVE);
@@ -116,7 +116,7 @@ fn frequencies<'a>(swept: impl IntoIterator<Item = &'a Swept<'a>>) -> (f64, f64)
     range(swept.into_iter().flat_map(|s| &s.response.points).map(|p| p.excitation))
 }
 
-/// Findings on the predicted motions.
+/// Findings on coexisting solutions, irregular motions, and points without a prediction.
 fn of_motions(pairs: &[Pair], pace: Pace) -> Vec<Finding> {
     let count = |of: &dyn Fn(&Pair) -> bool| pairs.iter().filter(|p| of(p)).count();
     let cycles = (pace.settle + pace.measure) as usize;
@@ -191,12 +191,12 @@ mod tests {
         assert_eq!(levels, [&["weak".to_owned(), "weak again".to_owned()][..], &["strong".to_owned()][..]]);
         assert_eq!(own.pairs.len(), 90);
         for pair in &own.pairs {
-            // Both are the same quotient, computed in different ways: a few roundings.
+            // Measurement and prediction are the same quotient, computed in two ways: a few roundings.
             let residual = pair.residual.unwrap();
             assert!(residual.abs() < 1e-12 * pair.measured.value, "{pair:?}");
         }
         assert!(!own.findings.iter().any(|f| f.code == "points-off-prediction"), "{:?}", own.findings);
-        // With one force for all, points at another force are off by the ratio of forces.
+        // With one stated force for all points, a point at another force is off by the ratio of the forces.
         let stated = overlay(&rig, Some(0.1), &Predicting::default(), &responses[..1]).unwrap();
         assert_eq!(stated.force, Some(0.1));
         let worst = stated.pairs.iter().map(|p| p.measured.value / p.predicted.unwrap()).fold(1.0, f64::min);
@@ -213,7 +213,7 @@ mod tests {
         let rig = Rig::thesis();
         let mut sweep = free("m", &rig, 0.1);
         sweep.points[7].amplitude.value *= 2.0;
-        // Point 9 is within its uncertainty, point 11 below its upper limit.
+        // Point 9 is off by less than its uncertainty; the prediction of point 11 is below its upper limit.
         sweep.points[9].amplitude.value *= 1.2;
         sweep.points[9].amplitude.std = Some(sweep.points[9].amplitude.value);
         sweep.points[11].amplitude.value *= 0.5;
@@ -230,8 +230,8 @@ mod tests {
 
     #[test]
     fn a_mass_that_rings_on_rests_in_the_closed_form() {
-        // A sweep up from impacts at 5 Hz past the fold at 10.66 Hz (0.1 N, R 0.98): above it the masses
-        // part and the struck one rings on.
+        // A sweep up from impacts at 5 Hz past the fold at 10.66 Hz (0.1 N, R 0.98): above the fold the
+        // impacts cease and mass 2 rings on.
         let rig = Rig { restitution: 0.98, ..Rig::thesis() };
         let mut sweep = free("m", &rig, 0.1);
         sweep.direction = Some(Direction::Up);

@@ -23,7 +23,7 @@ pub struct Pair {
     pub direction: Direction,
     /// Excitation frequency in Hz.
     pub frequency: f64,
-    /// Force amplitude of the prediction in N.
+    /// Force amplitude in N for which the amplitude is predicted.
     pub force: f64,
     /// Measured amplitude in m.
     pub measured: Estimate,
@@ -31,19 +31,20 @@ pub struct Pair {
     pub upper_limit: Option<f64>,
     /// Predicted amplitude in m; `None` where the motion cannot be followed.
     pub predicted: Option<f64>,
-    /// Scatter of the predicted amplitude from cycle to cycle in m: 0 for a motion that repeats every
-    /// cycle.
+    /// Standard deviation of the predicted amplitude from cycle to cycle in m; 0 for a motion that repeats
+    /// every cycle.
     pub scatter: Option<f64>,
     /// Kind of the predicted motion.
     pub motion: Option<MotionKind>,
-    /// Pattern of the predicted motion: impacts/cycles, or a word.
+    /// Pattern of the predicted motion: impacts/cycles, or a word such as `irregular`.
     pub regime: Option<String>,
-    /// Model that predicted the amplitude: the closed form where it has the motion of the simulated sweep,
-    /// else the simulated model.
+    /// Model that predicted the amplitude: the closed form where one of its motions is that of the
+    /// simulated sweep, else the simulated model.
     pub model: Model,
-    /// Number of stable motions of the closed form at this point: with more than one, history decides.
+    /// Number of stable motions of the closed form at this point; with more than one, the history of the
+    /// sweep decides which is reached.
     pub choices: usize,
-    /// Measured minus predicted in m.
+    /// Measured minus predicted amplitude in m.
     pub residual: Option<f64>,
 }
 
@@ -82,16 +83,16 @@ impl Predictor<'_> {
     }
 }
 
-/// Relative difference of both amplitudes up to which a simulated motion is one of the closed form: near a
-/// border of stability 300 cycles leave that much of the start.
+/// Largest relative difference between the amplitudes of a simulated motion and of the closed form that count
+/// as the same motion. Near a border of stability, 300 cycles leave this much of the transient.
 const SETTLED: f64 = 0.02;
 
 /// The motion of the closed form that a simulation reached.
 pub(super) fn reached<'a>(simulated: &Simulated, motions: &'a [Motion]) -> Option<&'a Motion> {
     let kind = MotionKind::of(simulated.regime);
     motions.iter().filter(|m| m.is_seen() && m.kind == kind).find(|m| {
-        // A mass at rest still rings in a simulation: its amplitude is compared with that of the other
-        // mass.
+        // A mass at rest in the closed form may still ring in the simulation: the difference is then
+        // related to the amplitude of the other mass.
         let size = |i: usize| if m.amplitude[i] > 0.0 { m.amplitude[i] } else { m.amplitude[1 - i] };
         (0..2).all(|i| (simulated.amplitude[i] - m.amplitude[i]).abs() <= SETTLED * size(i))
     })
@@ -122,17 +123,17 @@ pub struct PeakPair {
     pub amplitude_difference: Option<f64>,
 }
 
-/// Largest ratio of frequencies of a measured and a predicted peak that are paired: a stiffness is known to
-/// about 20 %, its frequency to 10 %.
+/// Largest ratio of the frequencies of a measured and a predicted peak that are paired: a stiffness is known
+/// to about 20 %, so the frequency is known to 10 %.
 const NEAR: f64 = 1.1;
 
 /// Each measured resonance of a sweep with the predicted one nearest to it.
 pub(super) fn peaks(sweep: &Swept<'_>, curve: &[Followed]) -> Vec<PeakPair> {
     let Swept { response, mass, direction, .. } = *sweep;
-    // At the end of a branch its last point is the peak: missing values beside it count as low.
+    // At the end of a branch its last point may be the peak: missing amplitudes beside it count as 0.
     let closed: Vec<f64> =
         curve.iter().map(|p| if p.amplitude.is_nan() { 0.0 } else { p.amplitude }).collect();
-    // Free motion has no peak within the gap: where it ends, impacts begin.
+    // Maxima of the free motion are left out: its curve ends, without a peak, where impacts begin.
     let maxima = local_maxima(&closed, 1.2).into_iter().filter(|m| curve[m.at].impacting);
     let predicted: Vec<(f64, f64)> = maxima.map(|m| top(curve, &closed, m.at)).collect();
     let one = |r: &Resonance| {
@@ -167,7 +168,7 @@ fn top(curve: &[Followed], closed: &[f64], i: usize) -> (f64, f64) {
         .map_or((curve[i].frequency, closed[i]), |v| (v.frequency, v.height))
 }
 
-/// How well one sweep is predicted.
+/// Agreement of one sweep with its prediction.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Score {
     /// Sweep.
@@ -176,7 +177,8 @@ pub struct Score {
     pub n: usize,
     /// Points without a prediction.
     pub without: usize,
-    /// Predicted points that are not compared: measured and predicted amplitude are below the noise floor.
+    /// Predicted points left out of the ratios: the measured amplitude is below the noise floor, and the
+    /// predicted one below its 95 % upper limit.
     pub faint: usize,
     /// Median of |measured − predicted| over the larger of both, at points that are not faint; `None`
     /// without such points.
@@ -185,13 +187,14 @@ pub struct Score {
     pub max_relative: Option<f64>,
     /// Excitation frequency in Hz of the largest ratio.
     pub max_at: Option<f64>,
-    /// Root mean square of measured − predicted, in m.
+    /// Root mean square of measured − predicted in m, over all points with a prediction.
     pub rms: Option<f64>,
 }
 
 impl Pair {
-    /// |measured − predicted| over the larger of both: 50 % for twice and for half the prediction. `None`
-    /// without a prediction, and where both are below the noise floor.
+    /// |measured − predicted| over the larger of both: 0.5 for twice and for half the prediction. `None`
+    /// without a prediction, and where the measured amplitude is below the noise floor and the predicted one
+    /// below its 95 % upper limit.
     fn deviation(&self) -> Option<f64> {
         let (predicted, residual) = (self.predicted?, self.residual?);
         let larger = predicted.max(self.measured.value);
@@ -218,13 +221,14 @@ pub(super) fn score(sweep: &str, pairs: &[Pair]) -> Score {
     }
 }
 
-/// Deviation over the larger amplitude beyond which a point may be an outlier: calibration and mounting of
-/// a sensor err by less.
+/// Deviation over the larger amplitude above which a point may be an outlier: errors of the calibration and
+/// the mounting of a sensor are smaller.
 const FAR: f64 = 0.05;
-/// Deviation in standard uncertainties beyond which it is one: by chance one point of 1.7 million.
+/// Deviation in standard uncertainties above which a point is an outlier: by chance, one point in 1.7 million
+/// of a normal distribution exceeds it.
 const SIGMAS: f64 = 5.0;
 
-/// Caution about points far off the prediction, which a median hides.
+/// Caution about points far from the prediction: the median of a sweep does not show them.
 pub(super) fn outliers(sweep: &str, pairs: &[Pair]) -> Option<Finding> {
     let certain =
         |p: &&Pair| p.measured.std.is_none_or(|std| p.residual.is_some_and(|r| r.abs() > SIGMAS * std));

@@ -6,12 +6,12 @@ use crate::model::sweep::{Gauge, Observable};
 use crate::model::{Compliant, Event, Excitation, Law, Motion, Regime, Rig, Simulation, Sine, State};
 use std::f64::consts::TAU;
 
-/// Duration at each point, in excitation cycles.
+/// Simulated duration at each point of a sweep, in excitation cycles.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Pace {
-    /// Cycles before reading.
+    /// Cycles before the motion is read, in which the transient decays.
     pub settle: u32,
-    /// Cycles read; patterns longer than a ninth of them count as irregular.
+    /// Cycles over which the motion is read; patterns longer than a ninth of them count as irregular.
     pub measure: u32,
 }
 
@@ -22,7 +22,7 @@ pub struct Simulated {
     pub amplitude: [f64; 2],
     /// Standard deviations of these from cycle to cycle in m.
     pub scatter: [f64; 2],
-    /// Impacts and cycles of its pattern.
+    /// Impacts and cycles of the motion's pattern.
     pub regime: Regime,
 }
 
@@ -30,9 +30,9 @@ pub struct Simulated {
 /// first. State and phase of the force continue from point to point. The contact follows `law`, or is rigid
 /// with the rig's restitution.
 ///
-/// Each point has its own answer: an error where a parameter is impossible or the motion has too many
-/// events to follow. The sweep then continues from the state reached, or from rest where the motion could
-/// not start or its state is not finite.
+/// Each point has its own result: an error where a parameter is impossible or the motion has too many
+/// events to follow. After an error the sweep continues from the state reached, or from rest where the motion
+/// could not start or its state is not finite.
 pub fn simulated(rig: &Rig, law: Option<Law>, points: &[(f64, f64)], pace: Pace) -> Vec<Result<Simulated>> {
     let rigid = |sine: Sine, state, phase| Simulation::from_state(rig, &sine, state, phase);
     let Some(law) = law else { return swept(rig, points, |motion| read(motion, pace), rigid) };
@@ -40,19 +40,21 @@ pub fn simulated(rig: &Rig, law: Option<Law>, points: &[(f64, f64)], pace: Pace)
     swept(rig, points, |motion| read(motion, pace), soft)
 }
 
-/// As [`simulated`] with rigid contacts, but gives up a point with more impacts than a plain pattern: a rig
-/// of wrong parameters could take minutes.
+/// As [`simulated`] with rigid contacts, but refuses a point with more than 100 impacts per cycle: a fit may
+/// try parameters with which one point would take minutes.
 pub(super) fn simulated_briefly(rig: &Rig, points: &[(f64, f64)], pace: Pace) -> Vec<Result<Simulated>> {
     let rigid = |sine: Sine, state, phase| Simulation::from_state(rig, &sine, state, phase);
     swept(rig, points, |motion| plain(motion).and_then(|()| read(motion, pace)), rigid)
 }
 
-/// Cycles checked for too many impacts, twice: at first, and when the transient may have decayed.
+/// Excitation cycles in each of two consecutive checks for too many impacts: in the second the transient may
+/// have decayed.
 const CHECKED: u32 = 8;
-/// Flights a cycle from which a motion is given up: it is chatter, or the rig of wrong parameters.
+/// Mean number of flights per cycle above which a motion is refused: it is chatter, or the rig has wrong
+/// parameters.
 const BUSY: u32 = 100;
 
-/// Refuses a motion with more flights than a plain pattern.
+/// Refuses a motion with more than 100 flights per cycle.
 fn plain(motion: &mut Simulation) -> Result<()> {
     for _ in 0..2 {
         let until = motion.time() + f64::from(CHECKED) / motion.frequency();
@@ -89,7 +91,7 @@ fn swept<M: Motion>(
     points.iter().map(one).collect()
 }
 
-/// Lets a motion settle and reads it.
+/// Lets a motion settle, then reads its amplitudes and its pattern.
 fn read(motion: &mut dyn Motion, pace: Pace) -> Result<Simulated> {
     let frequency = motion.frequency();
     motion.advance(motion.time() + f64::from(pace.settle) / frequency, &mut |_| {})?;
@@ -126,8 +128,8 @@ mod tests {
             let Some(orbit) = real else { continue };
             assert_eq!(at.regime, Regime::Periodic { impacts: 1, cycles: 1 }, "{point:?}");
             for mass in 0..2 {
-                // After 300 cycles the rest of the start is below 0.95^300 = 2e-7 (multipliers up to 0.97
-                // near a flip leave 1e-4); the gauge errs by 3e-6.
+                // After 300 cycles the transient is below 0.95^300 = 2e-7 (multipliers up to 0.97 near a
+                // flip leave 1e-4); the gauge errs by 3e-6.
                 let radius = orbit.spectral_radius().unwrap();
                 let left = radius.powi(300) + 2e-5;
                 let expected = orbit.fundamental[mass].norm();

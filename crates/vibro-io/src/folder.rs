@@ -23,8 +23,8 @@ use vibro_record::{Error, Place, Result};
 /// A SHA-256.
 pub type Digest = [u8; 32];
 
-/// A folder; a run reaches files only through it. Paths are as the user sees them: the folder's own path
-/// joined with a name in it.
+/// A folder on disk or in memory. A run reaches files only through it. Paths are as the user sees them: the
+/// folder's own path joined with a name in it.
 ///
 /// ```
 /// use std::path::Path;
@@ -106,8 +106,8 @@ impl Folder {
         &self.root
     }
 
-    /// The path of a name in it; refused where it leads outside, by `..`, as an absolute name or through a
-    /// link, unless that is allowed.
+    /// The path of a file by its name in this folder. A name that leads outside (by `..`, as an absolute
+    /// name or through a link) is refused, unless [`Folder::allow_outside`] permits it.
     ///
     /// # Errors
     /// If the name leads outside and that is not allowed.
@@ -190,18 +190,18 @@ impl Folder {
         self.part(path).map_or(path, |(file, _)| file)
     }
 
-    /// Whether it is a regular file, or a link to one.
+    /// Whether the path is that of a regular file, or of a link to one.
     pub fn is_file(&self, path: &Path) -> bool {
         self.occupant_by(path, |path| fs::metadata(path)) == Occupant::File
     }
 
-    /// Whether it is a folder, or a link to one.
+    /// Whether the path is that of a folder, or of a link to one.
     pub fn is_folder(&self, path: &Path) -> bool {
         self.occupant_by(path, |path| fs::metadata(path)) == Occupant::Folder
     }
 
-    /// The names of all that lies in the folder itself, hidden files too, in order; none where it cannot be
-    /// listed.
+    /// Sorted names of the files directly in the folder, hidden ones included; on disk also of its
+    /// subfolders. Names that are not UTF-8 are left out. Empty if the folder cannot be listed.
     pub fn names(&self) -> Vec<String> {
         let mut names: Vec<String> = match &self.side {
             Side::Disk => {
@@ -235,7 +235,7 @@ impl Folder {
         Ok(Some(lock))
     }
 
-    /// Opens a file to read its bytes in order.
+    /// Opens a file for reading from its start.
     fn open(&self, path: &Path) -> Result<Box<dyn Read>> {
         // Opening a pipe would block for ever.
         if self.exists(path) && !self.is_file(path) {
@@ -261,7 +261,7 @@ impl Folder {
         Ok(bytes)
     }
 
-    /// The bytes of a file of this name in the folder itself; `None` where it is a link or cannot be read.
+    /// The bytes of a file of this name in the folder itself; `None` if it is a link or cannot be read.
     pub fn own_file(&self, name: &str) -> Option<Vec<u8>> {
         let path = self.root.join(name);
         if self.occupant(&path) == Occupant::File { self.read(&path).ok() } else { None }
@@ -281,8 +281,8 @@ impl Folder {
         }
     }
 
-    /// Opens a file as a measurement and remembers that; the path names no part of a file, see
-    /// [`Folder::part`]. `-` is standard input.
+    /// Opens a file as a measurement and records it as read. The path must be that of a whole file:
+    /// [`Folder::part`] splits others. `-` is standard input.
     ///
     /// # Errors
     /// As [`Source::file`].
@@ -294,12 +294,13 @@ impl Folder {
         }
     }
 
-    /// Remembers that the run reads a file, even if its content is known from an earlier run.
+    /// Records that the run reads a file as a measurement, even if its content is known from an earlier
+    /// run.
     pub fn reads(&self, path: &Path) {
         locked(&self.opened).extend(self.identity(path));
     }
 
-    /// Whether the run reads a file, under this name or another.
+    /// Whether the run reads this file as a measurement, under this name or another.
     pub fn opened(&self, path: &Path) -> bool {
         self.identity(path).is_some_and(|file| locked(&self.opened).contains(&file))
     }
@@ -326,7 +327,8 @@ impl Folder {
         matches!(self.side, Side::Disk) && fs::metadata(path).is_ok_and(|meta| meta.permissions().readonly())
     }
 
-    /// Length in bytes and time of the last change of a file; of the whole file where the path names a part.
+    /// Length in bytes and time of the last change of a file (in memory: 1970); of the whole file if the
+    /// path names a part.
     pub fn stamp(&self, path: &Path) -> Option<(u64, SystemTime)> {
         let path = self.file(path);
         match &self.side {

@@ -33,7 +33,7 @@ use vibro_record::{AxisKind, Error, Finding, Meta, Place, Record, Result, Values
 const BEGIN: &str = "LabVIEW Measurement";
 const END_OF_HEADER: &str = "***End_of_Header***";
 const SPECIAL: [&str; 2] = ["***Start_Special***", "***End_Special***"];
-/// Most comments kept of a segment: each record of it takes them all as notes.
+/// Largest number of comments kept of a segment: each of its records copies all of them as notes.
 const MOST_COMMENTS: usize = 100;
 
 pub(super) fn sniff(head: &[u8], _: &Source) -> bool {
@@ -103,13 +103,14 @@ impl<'a> Iterator for NumberedLines<'a> {
     }
 }
 
-/// Whether the first cell with text in a line is a number or stands for a missing value.
+/// Whether a line is a row of values: its first cell with text is a number or marks a missing value, or all
+/// its cells are blank.
 fn is_row(line: &str, separator: char) -> bool {
     let cell = line.split(separator).map(str::trim).find(|cell| !cell.is_empty()).unwrap_or_default();
     number::either(cell.as_bytes()).is_some() || number::is_missing(cell.as_bytes())
 }
 
-/// A header: tags in lower case, each with its values; a channel's values have the index of its column.
+/// A header: tags in lower case, each with its values, indexed by the column of the rows below.
 #[derive(Debug, Default)]
 struct Head<'a> {
     tags: HashMap<String, Vec<&'a str>>,
@@ -127,8 +128,8 @@ impl<'a> Head<'a> {
                 head.ended = true;
                 break;
             }
-            // The separator is given by a tag, so not known yet; no tag has any of these characters in its
-            // name.
+            // A tag states the separator, so it is not known yet. No name of a tag contains one of these
+            // characters.
             let mark = line.find(['\t', ',', ';']).unwrap_or(line.len());
             let (tag, values) = line.split_at(mark);
             let separator = values.chars().next().unwrap_or('\t');
@@ -142,12 +143,12 @@ impl<'a> Head<'a> {
         head
     }
 
-    /// The first value of a tag that is not empty.
+    /// The first value of a tag that is not blank.
     fn tag_value(&self, tag: &str) -> Option<&'a str> {
         self.tags.get(tag)?.iter().copied().find(|value| !value.is_empty())
     }
 
-    /// The value of a tag above a column.
+    /// The value of a tag in one column; `None` if it is blank.
     fn above(&self, tag: &str, column: usize) -> Option<&'a str> {
         self.tags.get(tag)?.get(column).copied().filter(|value| !value.is_empty())
     }
@@ -158,17 +159,17 @@ impl<'a> Head<'a> {
 struct SegmentColumn {
     name: String,
     values: Vec<f64>,
-    /// Digits of the values as printed, from which their resolution follows.
+    /// Printed digits of the values; they give the resolution.
     digits: super::text::Digits,
 }
 
-/// Heads and columns of a segment.
+/// General header, own header and columns of a segment.
 struct Segment<'h, 'a> {
     general: &'h Head<'a>,
     head: &'h Head<'a>,
     /// Columns of the rows: channels, and X columns before them.
     columns: Vec<SegmentColumn>,
-    /// Index of each channel's column and of its X column, where there is one.
+    /// Index of each channel's column, and of its X column if it has one.
     channels: Vec<(usize, Option<usize>)>,
     comments: Vec<String>,
 }
@@ -238,7 +239,8 @@ impl<'h, 'a> Segment<'h, 'a> {
         Ok(Segment { general, head, columns, channels, comments })
     }
 
-    /// One record for each channel with values; after the first segment, names end with its number: `a (2)`.
+    /// One record for each channel with values. From the second segment on, names end with its number: `a
+    /// (2)`.
     fn records(
         self,
         source: &Source,
@@ -278,8 +280,8 @@ impl<'h, 'a> Segment<'h, 'a> {
         Ok(records)
     }
 
-    /// The abscissa of a channel: its X column, or `X0` and `Delta_X` of the header, which have more digits,
-    /// where they agree with it or there is no column.
+    /// The abscissa of a channel. `X0` and `Delta_X` of the header have more digits than an X column: they
+    /// are used if they agree with it or there is none. Else the X column is used.
     fn abscissa(
         &self,
         channel: usize,
@@ -313,7 +315,7 @@ impl<'h, 'a> Segment<'h, 'a> {
                 meta.found(found.number("header", stated.1).number("step", step));
             }
         }
-        // For an uneven column, `Abscissa::axis` adds the finding.
+        // For an uneven column, `Abscissa::axis` adds the finding later.
         meta.findings.extend(found.filter(|_| axis.step().is_some()));
         meta.clock = step_relative_std;
         Abscissa::of(axis)

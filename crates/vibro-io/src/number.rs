@@ -1,13 +1,13 @@
 //! Parses numbers as instruments print them.
 //!
-//! In addition to what Rust's own parser reads: Fortran's `1.0D+03`, exponents without a letter
-//! (`1.234-101`), three-digit exponents, a decimal comma, blanks around and between sign and digits of a
-//! fixed-width field.
+//! Reads more than Rust's own parser: Fortran's `1.0D+03`, exponents of three digits without a letter
+//! (`1.234-101`), a decimal comma, digits grouped in threes, a typographic or trailing minus, blanks around
+//! a number.
 //!
-//! Results are correctly rounded: up to 19 digits are gathered in a 64-bit integer; where that integer is
-//! below 2⁵³ and the power of ten at most 10²², one multiplication or division of exact numbers gives the
-//! nearest double (Clinger, "How to read floating point numbers accurately", 1990, section 4); otherwise the
-//! digits go to the standard library.
+//! Results are correctly rounded. Up to 19 digits are gathered in a 64-bit integer. If it is below 2⁵³ and
+//! the power of ten at most 10²², one multiplication or division of exact numbers gives the nearest double
+//! (Clinger, "How to read floating point numbers accurately", 1990, section 4). Otherwise the standard
+//! library parses the digits.
 
 /// 10⁰ … 10²², all exact in a double.
 const POWERS: [f64; 23] = [
@@ -22,7 +22,7 @@ const MISSING: &str = "novalue|nan|nat|inf|infinity|∞|na|n/a|null|none|ol|over
 /// Numbers that instruments print for infinity and "not a number" (SCPI-1999, volume 1, 7.2.1.4 and 7.2.1.5).
 const OVERLOAD: [f64; 2] = [9.9e37, 9.91e37];
 
-/// Parses one number with a decimal point. Blanks around it are allowed; anything else left over gives
+/// Parses one number with a decimal point. Blanks around it are allowed; any other text beside it gives
 /// `None`.
 pub fn parse(text: &[u8]) -> Option<f64> {
     parse_with(text, b'.')
@@ -53,14 +53,14 @@ fn negative(text: &[u8], decimal: u8) -> Option<f64> {
     (used == magnitude.len() && magnitude[0] != b'-' && magnitude[0] != b'+').then_some(-value)
 }
 
-/// As [`parse_with`], where the user stated the decimal mark: then the other mark groups digits, also of
-/// whole numbers.
+/// As [`parse_with`] for a decimal mark that the user stated: the other mark may then group the digits of
+/// whole numbers, too.
 pub(crate) fn parse_stated(text: &[u8], decimal: u8) -> Option<f64> {
     parse_with(text, decimal).or_else(|| ungrouped(text.trim_ascii(), decimal, true))
 }
 
-/// Whether `text` may be a whole number in groups of three digits, between marks that may also be decimal
-/// marks: `1,000`.
+/// Whether the mark in `text` may either group the digits of a whole number or be its decimal mark: `1,000`
+/// may be 1000 or 1.
 pub(crate) fn may_be_grouped(text: &[u8]) -> bool {
     [b'.', b','].iter().any(|decimal| {
         !text.contains(decimal)
@@ -69,8 +69,8 @@ pub(crate) fn may_be_grouped(text: &[u8]) -> bool {
     })
 }
 
-/// A number with digits in groups of three: between apostrophes or narrow blanks; or between the other mark,
-/// if the number also has its own decimal mark or the user `stated` that.
+/// Parses a number with digits in groups of three. Apostrophes or narrow blanks separate groups; so does
+/// the other mark, if the number contains its decimal mark or the user `stated` which mark that is.
 #[cold]
 fn ungrouped(text: &[u8], decimal: u8, stated: bool) -> Option<f64> {
     let text = std::str::from_utf8(text).ok()?;
@@ -80,7 +80,7 @@ fn ungrouped(text: &[u8], decimal: u8, stated: bool) -> Option<f64> {
     let group =
         text[group..].chars().next().filter(|group| *group != mark || stated || text.contains(own))?;
     let whole = text.split(own).next()?.trim_start_matches(['-', '+']);
-    // A grouped number does not begin with 0: `0.123` is a decimal.
+    // A grouped number does not begin with 0: `0.123` has three decimals.
     if group == mark && whole.starts_with('0') {
         return None;
     }
@@ -107,13 +107,14 @@ pub(crate) fn is_missing(text: &[u8]) -> bool {
         || lower.starts_with(b"1.#")
 }
 
-/// Parses the number at the start of `text`: its value and the bytes it took. Leading blanks are not allowed.
+/// Parses the number at the start of `text`: its value and its length in bytes. Leading blanks are not
+/// allowed.
 ///
 /// A number that overflows a double gives `None`; one that underflows gives 0 or a subnormal.
 #[inline]
 pub fn prefix(text: &[u8], decimal: u8) -> Option<(f64, usize)> {
-    // No branch on the sign: signs come at random, and a wrong branch prediction costs more than the whole
-    // number.
+    // No branch on the sign: measured signs are random, and a wrong branch prediction costs more time than
+    // the whole number.
     let first = *text.first()?;
     let negative = first == b'-';
     let mut at = usize::from(negative) + usize::from(first == b'+');
@@ -173,14 +174,13 @@ pub fn scientific<const W: usize>(field: &[u8; W]) -> Option<f64> {
 /// Parses all of `field` as a digit, the point, digits, `E`, a sign and two digits; `None` for everything
 /// else.
 ///
-/// The loop over the digits has no branch: where the length of the field is known to the compiler it is
-/// unrolled.
+/// The loop over the digits has no branch; the compiler unrolls it where it knows the length of the field.
 #[inline(always)]
 #[allow(clippy::inline_always)] // the length must be known to the compiler
 pub fn exponential(field: &[u8]) -> Option<f64> {
     let w = field.len();
-    // Up to nineteen digits always fit into 64 bits. Whether the integer is exact in a double is checked
-    // below.
+    // 24 characters hold 19 digits, which always fit into 64 bits. Below follows the check that the integer
+    // is exact in a double.
     if !(8..=24).contains(&w) {
         return None;
     }
@@ -212,8 +212,8 @@ pub fn exponential(field: &[u8]) -> Option<f64> {
     Some(if exponent < 0 { mantissa as f64 / power } else { mantissa as f64 * power })
 }
 
-/// Eight ASCII digits as a number: pairs, fours and then eight digits are joined in one register. `None` for
-/// others.
+/// Eight ASCII digits as a number, joined to pairs, fours and eight within one register. `None` if any byte
+/// is no digit.
 #[inline]
 fn eight_digits(text: [u8; 8]) -> Option<u64> {
     const ZEROS: u64 = 0x3030_3030_3030_3030;
@@ -245,8 +245,8 @@ pub(crate) fn exponential_of(width: usize) -> Option<Exponential> {
     FROM_8.get(width.checked_sub(8)?).copied()
 }
 
-/// An exponent and the bytes it takes: `E+03`, `D-3`, `e5`, or a bare sign and digits; `None` where there is
-/// none.
+/// An exponent and its length in bytes: `E+03`, `D-3`, `e5`, or a bare sign and three digits; `None` if
+/// there is none.
 #[inline]
 fn exponent_part(text: &[u8]) -> Option<(i32, usize)> {
     let lettered = matches!(text.first()?, b'e' | b'E' | b'd' | b'D' | b'q' | b'Q');

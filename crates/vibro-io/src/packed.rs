@@ -1,8 +1,9 @@
 //! Files that contain other files: a zip archive of files, a workbook of sheets.
 //!
-//! The part with by far the most rows is read; a sheet is read as the text that a spreadsheet program would
-//! export ([`sheets`]). A hidden sheet is read only if no visible one has a table. Any other part has a path
-//! as in a folder: `walk.zip/Gyroscope.csv`, `walk.xlsx/Sheet 2`.
+//! The part with at least ten times the rows of any other is read. A sheet is read as the text that a
+//! spreadsheet program would export ([`sheets`]). A hidden sheet is read only if no visible one has a
+//! table. A user names any other part by a path as in a folder: `walk.zip/Gyroscope.csv`, `walk.xlsx/Sheet
+//! 2`.
 
 #[cfg(feature = "sheets")]
 mod sheets;
@@ -54,7 +55,7 @@ impl Member {
         self.bytes().starts_with(ZIP) || self.bytes().starts_with(COMPOUND)
     }
 
-    /// Rows of numbers in a text; bytes of a file of a known binary format; 0 of any other file.
+    /// Size by which parts are ranked: rows of numbers in a text, bytes of a known binary format, else 0.
     fn rows(&self) -> usize {
         if text::encoding::is_text(self.bytes()) {
             return text::count_rows(self.bytes());
@@ -63,8 +64,8 @@ impl Member {
     }
 }
 
-/// Parts with their numbers of rows, longest first, and how many parts have more than 1/`LONGER` of the most
-/// rows.
+/// Parts with their sizes by [`Member::rows`], largest first, and how many parts exceed 1/[`LONGER`] of the
+/// largest size.
 type Ranked = (Vec<(usize, Member)>, usize);
 
 /// All parts of an archive or a workbook; `None` for other files.
@@ -109,7 +110,7 @@ pub fn main_part(source: &Source, limit: Limit) -> Result<Option<(Source, Option
     Ok(Some((parts.swap_remove(0).1.source, found)))
 }
 
-/// Paths of the parts of comparable length, where none of them is clearly the longest; empty for other files.
+/// Paths of the parts of comparable length if none is clearly the longest, else none.
 ///
 /// # Errors
 /// If it is damaged or encrypted, or unpacks to more than the limit.
@@ -137,7 +138,8 @@ fn unpack(packed: Option<&(usize, Member)>) -> String {
     format!("unpack it, and name {name}")
 }
 
-/// A file of a folder to be read as a measurement, or a part of one; `-` is standard input.
+/// The source of a measurement: a file of a folder, or a part of an archive or workbook; `-` is standard
+/// input.
 ///
 /// # Errors
 /// As [`Source::file`] and [`part`].
@@ -148,7 +150,7 @@ pub fn file_or_part(folder: &Folder, path: &Path, limit: Limit) -> Result<Source
     }
 }
 
-/// The part of this name.
+/// Reads the part of this name.
 ///
 /// # Errors
 /// As [`main_part`]; if there is no such part.
@@ -166,7 +168,7 @@ fn part(source: &Source, name: &Path, limit: Limit) -> Result<Source> {
 }
 
 /// Finding on a sheet with a column in percent. Cells formatted as percent are stored as fractions of one,
-/// other cells as shown; the crate that reads sheets does not tell which.
+/// other cells as shown; calamine, which reads sheets, does not tell which.
 pub fn percent(source: &Source) -> Option<Finding> {
     let text = source.in_memory().filter(|_| source.is_sheet())?;
     let in_percent = |cell: &&str| {
@@ -223,13 +225,13 @@ fn unreadable(source: &Source, why: ZipError) -> Error {
     }
 }
 
-/// The files of a zip archive, or the sheets of a workbook that is one.
+/// The files of a zip archive, or the sheets of a workbook stored as one.
 #[cfg(feature = "zip")]
 fn members(source: &Source, named: Option<&Path>, limit: Limit) -> Result<Vec<Member>> {
     use std::io::{BufReader, Read};
     let archive = zip::ZipArchive::new(BufReader::new(source.open()?));
     let mut archive = archive.map_err(|why| match why {
-        // The list of files is at the end of an archive.
+        // An archive ends with the list of its files, which is missing if it was cut short.
         ZipError::InvalidArchive(_) => {
             let found = "its end is missing: it is no whole archive";
             Error::input(Place::file(source.path()), found, "a whole file").hint("copy or download it again")
@@ -243,7 +245,7 @@ fn members(source: &Source, named: Option<&Path>, limit: Limit) -> Result<Vec<Me
     for i in 0..archive.len() {
         let mut member = archive.by_index(i).map_err(|why| unreadable(source, why))?;
         let name = member.name().map_err(|why| damaged(source, why))?.into_owned();
-        // macOS adds hidden files and a folder `__MACOSX` of its own.
+        // macOS adds hidden files and a folder `__MACOSX`.
         let own = name.split('/').any(|name| name.starts_with('.') || name == "__MACOSX");
         let other = own || named.is_some_and(|named| named != Path::new(&name));
         if !member.is_file() || book.is_none() && other {

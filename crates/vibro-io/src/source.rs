@@ -1,4 +1,4 @@
-//! Where bytes come from: a file on disk or a buffer in memory.
+//! Source of the bytes of a measurement: a file on disk or a buffer in memory.
 
 use std::borrow::Cow;
 use std::fs::File;
@@ -7,10 +7,10 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 use vibro_record::{Error, Place, Result};
 
-/// Most bytes that [`Source::head`] gives: enough to tell every format apart.
+/// Largest number of bytes that [`Source::head`] returns: enough to tell every format apart.
 const HEAD: usize = 64 * 1024;
 
-/// The name of standard input.
+/// Path that means standard input.
 const PIPE: &str = "-";
 
 /// Bytes read from standard input so far: a second reader gets the same bytes.
@@ -23,11 +23,11 @@ pub(crate) struct Source {
     len: u64,
     /// All bytes of a small file or a buffer, the first ones of a larger file.
     bytes: Vec<u8>,
-    /// If it is a sheet of a workbook as text: the sheet's first column, counted from 0.
+    /// For the text of a workbook's sheet: the sheet's first column, counted from 0.
     sheet: Option<u32>,
 }
 
-/// Something to read from and to seek in.
+/// An input that can be read and positioned (`Seek`).
 pub(crate) trait ReadSeek: Read + Seek + Send {}
 impl<T: Read + Seek + Send> ReadSeek for T {}
 

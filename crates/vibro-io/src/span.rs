@@ -5,11 +5,10 @@ use crate::held::Contents;
 use std::ops::Range;
 use vibro_record::{Axis, AxisKind, Error, Grid, Meta, Record, Result};
 
-/// Indices of the samples of `axis` that lie within a `span` in s: from its first value on and before its
-/// second.
+/// Indices of the samples of `axis` at or after the first time of `span` and before its second, in s.
 ///
 /// # Errors
-/// If there are none.
+/// If no sample lies there.
 pub fn within(axis: &Axis, span: (f64, f64)) -> Result<Range<usize>> {
     let part = axis.between(span.0, span.1);
     if !part.is_empty() {
@@ -20,8 +19,8 @@ pub fn within(axis: &Axis, span: (f64, f64)) -> Result<Range<usize>> {
     Err(Error::usage(found, format!("a part of {} to {} s", short(axis.start()), short(end))).setting("span"))
 }
 
-/// Notes in the history of a channel which part of it was read; the declared number of values is kept only
-/// for a whole channel.
+/// Notes in a channel's history which part of it was read. Keeps the declared number of values only if the
+/// whole channel was read.
 pub fn note(meta: &mut Meta, span: Option<(f64, f64)>, declared: Option<usize>) {
     meta.declared_n = declared.filter(|_| span.is_none());
     if let Some((from, to)) = span {
@@ -41,13 +40,14 @@ pub fn cut(mut contents: Contents, span: Option<(f64, f64)>) -> Result<Contents>
         if trace.axis.kind != AxisKind::Time || trace.axis.is_empty() {
             continue;
         }
-        // Only in rising times is a span one part. For others the error names the stretches, which are
-        // numbered in the whole trace.
+        // Only where times rise is a span one contiguous part. Else the error of `sampling_rate` names the
+        // stretches, numbered in the whole trace.
         let rises = |instants: &[f64]| instants.is_sorted_by(|a, b| a < b);
         if matches!(&trace.axis.grid, Grid::Uneven(instants) if !rises(instants)) {
             trace.sampling_rate()?;
         }
-        // The times of a span count from 1970, in the file's unit, or from the first row, in s.
+        // A span of dates counts from 1970, in the unit that `epoch` finds. Any other is in s on the
+        // trace's axis.
         let counted = [span.0, span.1].into_iter().find_map(|t| if t.is_finite() { epoch(t) } else { None });
         let (from, factor) = counted.map_or((0.0, 1.0), |(_, factor)| (trace.meta.origin, factor));
         let part = within(&trace.axis, (span.0 * factor - from, span.1 * factor - from))?;

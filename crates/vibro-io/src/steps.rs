@@ -7,23 +7,24 @@ use std::path::{Path, PathBuf};
 use vibro_record::units::{Quantity, Unit};
 use vibro_record::{Error, Result, StepTraces, Trace};
 
-/// Traces of a stepped sine: one file a step, or one file with a channel of force and one of response a step.
+/// Traces of a stepped sine: one file for each step, or one file with a force and a response channel for
+/// each step.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Steps {
     /// Files, in the order of the steps.
     pub files: Vec<PathBuf>,
-    /// Channel of the force; in a single file, one channel a step.
+    /// Name of the force channel; for a single file, one name for each step.
     pub force: Vec<String>,
-    /// Channel of the response; in a single file, one channel a step.
+    /// Name of the response channel; for a single file, one name for each step.
     pub response: Vec<String>,
     /// Sampling rate in Hz, where the files do not state it.
     pub rate: Option<f64>,
 }
 
 impl SweepReader {
-    /// Reads force and response of all steps in SI units, with stated calibrations; a response of unknown
-    /// unit has the stated unit. A step has an error of its own if its file cannot be read or lacks a
-    /// channel, or if a channel is no force or no motion.
+    /// Reads force and response of all steps in SI units, with stated calibrations. A response of unknown
+    /// unit gets the stated unit. A step gets its own error if its file cannot be read or lacks a channel,
+    /// if its force is no force, or if its response is no motion.
     ///
     /// # Errors
     /// If there are several files and several channels of force or response.
@@ -49,7 +50,7 @@ impl SweepReader {
             ([file], forces, responses) => {
                 let pairs = forces.par_iter().zip(responses.par_iter());
                 let pair = |(force, response): (&String, &String)| {
-                    // Each step has a name of its own.
+                    // The name of the response channel tells the steps apart.
                     let path = PathBuf::from(format!("{}#{response}", file.display()));
                     let (_, step) = one(file, force, response);
                     (path.clone(), step.map(|step| StepTraces { path, ..step }))

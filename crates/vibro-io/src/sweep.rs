@@ -12,8 +12,8 @@ use vibro_record::{
     Values, Window,
 };
 
-/// Reads a sweep of spectra, with the settings of the analyser. What is not stated here is taken from the
-/// files. Where both differ, the setting here is used with a finding, or the file is refused.
+/// Reads a sweep of spectra, with the settings of the analyser. A setting not stated here is taken from the
+/// files. If both differ, the setting here is used with a finding, or the file is refused.
 #[derive(Debug, Clone, Default)]
 pub struct SweepReader {
     /// Name of the sweep.
@@ -27,16 +27,17 @@ pub struct SweepReader {
     pub unit: Option<Unit>,
     /// Quantity of the responses, if stated; else that of the unit, else a displacement is assumed.
     pub quantity: Option<Quantity>,
-    /// Factor on stored responses, if stated: unit per stored number, even where the files say volts.
+    /// Factor on stored responses, if stated, in `unit` per stored number, even if the files say volts.
     pub calibration: Option<f64>,
-    /// Factor on stored forces, if stated: newtons per stored number, even where the files say volts.
+    /// Factor on stored forces, if stated, in N per stored number, even if the files say volts.
     pub force_calibration: Option<f64>,
     /// Window, if stated: `Some(None)` says that it is unknown. Else that of the files, else Hann is
     /// assumed.
     pub window: Option<Option<Window>>,
     /// Peak or RMS, if stated; else that of the files, else peak is assumed.
     pub scaling: Option<Scaling>,
-    /// Number of integrations in frequency by the analyser before it stored, if stated.
+    /// Number of integrations (in frequency) that the analyser made before it stored, if stated; else 1 is
+    /// assumed for displacements, 0 for other responses.
     pub analyser_integrated: Option<u8>,
     /// Format of the files, detected if `None`.
     pub format: Option<Format>,
@@ -114,8 +115,8 @@ impl SweepReader {
         })
     }
 
-    /// Peak amplitudes of a response or a `force` in SI units, with metadata and window, from the file's
-    /// statements and the settings of this reader.
+    /// Peak amplitudes of a response or a `force` in SI units, with metadata and window. The settings of
+    /// this reader precede the file's statements.
     fn peaks(
         &self,
         recording: &Recording,
@@ -164,9 +165,9 @@ impl SweepReader {
         Ok((meta, values, window))
     }
 
-    /// Factor to SI units from the values as the reader gives them, and that unit.
+    /// Factor from the values as read to SI units, and the SI unit.
     fn factor(&self, meta: &Meta, force: bool, found: &mut impl FnMut(Finding)) -> Result<(f64, Unit)> {
-        // The reader has already converted values with a stated unit to SI, by the factor `taken`.
+        // If the file states a unit, the reader has already multiplied the values by `taken`, to SI.
         let (written, taken) = (&meta.unit, factor_to_si(meta));
         let meant = self.meant();
         let raw = matches!(written.quantity(), Quantity::Voltage | Quantity::Ratio);
@@ -177,14 +178,14 @@ impl SweepReader {
                 found(Finding::caution("response-unit-assumed").name("unit", unit.symbol()));
                 (1.0, unit)
             }
-            // Volts or a ratio in the file: unit and calibration together state what a stored number means.
+            // The file is in volts or a ratio: a stated unit with a calibration replaces them.
             Some(stated) if meant != Some(written.quantity()) && raw && self.calibration.is_some() => {
                 (stated.factor() / taken, stated.si())
             }
             _ if meant.is_some_and(|meant| meant != written.quantity()) => {
                 return Err(self.other_quantity(written, raw, force));
             }
-            // A stated unit holds for the stored numbers, so the conversion `taken` is undone.
+            // A stated unit is that of the stored numbers, so the conversion by `taken` is undone.
             Some(stated) if !force && stated.factor() != taken => {
                 let differs = Finding::caution("sweep-unit-overrides-files").name("used", stated.symbol());
                 found(differs.name("file", written.symbol()).number("factor", taken));
@@ -218,7 +219,7 @@ impl SweepReader {
     }
 }
 
-/// Hint where a file holds other records.
+/// Hint for a file with other records than one spectrum.
 const SPECTRA: &str = "list the spectra of the analyser; time records and frequency responses have tables of their own in a campaign";
 
 /// Hint where values are levels in dB.
@@ -263,8 +264,8 @@ fn scaled(spectrum: &Spectrum, axis: &Axis, factor: f64) -> Result<Values> {
     })
 }
 
-/// Collects findings of the files, each once and at most 50. Those on settings that the sweep decides itself
-/// are dropped.
+/// Collects findings of the files, each once and at most 50. Findings on settings that the sweep decides
+/// itself are dropped.
 fn gather(recording: &Recording, findings: &mut Vec<Finding>) {
     const SETTLED: [&str; 4] =
         [code::SCALING_UNSAID, code::UNIT_UNSAID, code::AXIS_UNIT_ASSUMED, code::ABSCISSA_UNSAID];

@@ -36,10 +36,10 @@ pub struct SweepList {
     pub places: Vec<Place>,
 }
 
-/// Length of a name in a hand-over file: eight characters, a point, three characters.
+/// Characters of a name in a hand-over file: eight, a point, three.
 const NAME: usize = 11;
 
-/// Hint on what a list file holds.
+/// Hint on the contents of a list file.
 const HOLDS: &str = "a list holds: number of points, lines, base band in Hz, force names, response names, one a line; \
                      time traces, one file a step, go to a campaign: [[sweep]] with name, traces = \"step_*.csv\", force and response";
 
@@ -73,8 +73,8 @@ impl SweepList {
         Ok(list)
     }
 
-    /// The list that a source holds; `None` where it is anything else, or larger than 1 MiB (ten thousand
-    /// points).
+    /// The list that a source holds; `None` if it holds none, or is larger than 1 MiB (room for ten
+    /// thousand points).
     pub(super) fn of(source: &Source) -> Option<SweepList> {
         let bytes = source.all().ok().filter(|_| source.len() < 1 << 20)?;
         parse(source.path(), &encoding::decode(&bytes)).ok()
@@ -101,13 +101,14 @@ impl SweepList {
         self.response.len()
     }
 
-    /// Whether there are none; never so for a list that was read.
+    /// Whether the list has no points. A list that was read has at least one.
     pub fn is_empty(&self) -> bool {
         self.response.is_empty()
     }
 }
 
-/// Hint to name the pattern of a sweep's steps instead of one step, where the folder holds others.
+/// Hint to name the steps of a sweep by a pattern instead of one of their files, if the folder holds
+/// others.
 fn steps(path: &Path) -> Option<Hint> {
     let all = pattern(path.file_name()?.to_str()?);
     let folder = path.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new("."));

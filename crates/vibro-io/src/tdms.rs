@@ -1,14 +1,14 @@
-//! TDMS: what LabVIEW and NI-DAQmx write.
+//! TDMS files of LabVIEW and NI-DAQmx.
 //!
 //! ```text
 //! segment: TDSm, table of contents, version, length, start of its raw data; then
 //!   objects: path /'group'/'channel', layout of its raw data, properties
 //!   raw data: channel after channel, sample after sample of all, or DAQmx buffers
 //! ```
-//! Source: National Instruments, "TDMS File Format Internal Structure". Every numeric channel is a record: a
-//! trace, or a spectrum where its abscissa is in Hz. The channel's scales ([`scale`]) convert raw values; a
-//! channel with an unknown scale is left out, for its raw values are no measurement. The file `_index` beside
-//! it is not needed.
+//! Source: National Instruments, "TDMS File Format Internal Structure". Every numeric channel is a record:
+//! a trace, or a spectrum where its abscissa is in Hz. The channel's scales ([`scale`]) convert raw values;
+//! a channel with an unknown scale is left out, since its raw values are no measurement. The index file
+//! beside it (`_index`) is not needed.
 
 mod axes;
 mod description;
@@ -35,16 +35,17 @@ use vibro_record::lanes::Extremes;
 use vibro_record::units::Unit;
 use vibro_record::{Error, Finding, Meta, Result, Values};
 
-/// Bytes that are read at a time.
+/// Bytes that are read at a time; few in tests, so that small files have several blocks.
 const BLOCK: usize = if cfg!(test) { 64 } else { 1 << 20 };
-/// Values of a channel that are scaled and reduced to extremes together: a few at a time would be slow.
+/// Values of a channel that are scaled and reduced to extremes in one step: fewer are slower, more take
+/// more memory.
 const LOOK: usize = if cfg!(test) { 4 } else { 1 << 16 };
 
 pub(super) fn sniff(head: &[u8], _: &Source) -> bool {
     head.starts_with(b"TDSm") || head.starts_with(b"TDSh")
 }
 
-/// All records; for a `survey`, only the extremes of their values where these are enough.
+/// Reads all records. A `survey` keeps only the extremes of a channel's values where these are enough.
 pub(super) fn read(source: &Source, options: &Options, survey: bool) -> Result<Contents> {
     if source.head().starts_with(b"TDSh") {
         return Err(Error::usage("the index of a TDMS file", "the file with the values")
@@ -58,7 +59,7 @@ pub(super) fn read(source: &Source, options: &Options, survey: bool) -> Result<C
     let mut above: Vec<&Object> = objects.iter().filter(|object| object.path.len() < 2).collect();
     above.sort_by_key(|object| Reverse(object.path.len()));
     let raw = objects.iter().map(|object| {
-        // Values of several slots, which need not lie side by side, are all kept.
+        // Objects of several slots keep all values, since the slots need not lie side by side.
         let kept = if survey && object.slots.len() == 1 { KeptValues::Undecided } else { KeptValues::Values };
         Raw { object, scales: Scales::of(&above, object), columns: Vec::new(), kept }
     });
@@ -152,7 +153,7 @@ struct Channel<'a> {
     clock: Option<Arc<AbscissaChannel>>,
 }
 
-/// Text on the unit or scale that changes between values of a channel, which has then no scale for all; else
+/// Text on a unit or scale that changes between the values of a channel, so that none holds for all; else
 /// `None`.
 fn changed(object: &Object) -> Option<String> {
     let text = |value: &Value| value.text().unwrap_or_default();
@@ -163,12 +164,12 @@ fn changed(object: &Object) -> Option<String> {
     Some(format!("{key} changes from {} to {now} behind value {at}", text(before)))
 }
 
-/// Which values of an object are kept.
+/// Whether an object keeps its values or only their extremes.
 #[derive(Clone)]
 enum KeptValues {
     /// All of them.
     Values,
-    /// Not decided yet: extremes are enough, unless the first values rise and may be an abscissa.
+    /// Not decided yet: extremes are enough unless the first values rise, and so may be an abscissa.
     Undecided,
     /// Not kept: only extremes and first values.
     Summary(Extremes),
@@ -184,7 +185,7 @@ struct Raw<'a> {
 }
 
 impl Raw<'_> {
-    /// Once there are more than `many` values, reduces them to their extremes where these are enough.
+    /// Reduces the values to their extremes where these are enough, once there are more than `many` values.
     fn look(&mut self, many: usize) {
         if self.columns.iter().all(|column| column.len() <= many) {
             return;
@@ -212,7 +213,7 @@ impl Raw<'_> {
         !matches!(self.kept, KeptValues::Summary(_)) && self.columns.iter().all(Vec::is_empty)
     }
 
-    /// Measured values, or the scale that is not known.
+    /// Measured values, or the type of a scale that is not known.
     fn measured(self) -> std::result::Result<Held, String> {
         match self.kept {
             KeptValues::Summary(summary) => Ok(Held::Summary(summary)),
@@ -221,7 +222,7 @@ impl Raw<'_> {
     }
 }
 
-/// Appends the values that a segment holds of the objects from index `first` on to `raw`.
+/// Appends to `raw` the values in a segment of as many objects, from index `first` on.
 fn values(
     file: &mut BufReader<impl Read + Seek>,
     layout: &RawData,
@@ -233,7 +234,7 @@ fn values(
     let (mut left, mut block) = (layout.len, Vec::new());
     while left > 0 {
         for part in layout.parts.iter() {
-            // Of a part that the end of the file cuts short, only whole rows are read.
+            // If the file ends within a part, only its whole rows are read.
             let mut rows = part.rows.min(left / part.width.max(1));
             left = if rows < part.rows { 0 } else { left - rows * part.width };
             let most = (BLOCK as u64 / part.width.max(1)).max(1);
@@ -263,7 +264,7 @@ fn values(
     Ok(())
 }
 
-/// Properties of the file, the group and the channel that no reader needs.
+/// Notes on a channel: the properties of file, group and channel, without those of scales and waveform.
 fn notes(above: &[&Object], channel: &Object) -> Vec<(String, String)> {
     let above = above.iter().rev().copied().filter(|object| channel.path.starts_with(&object.path));
     let all = above.chain([channel]).flat_map(|object| &object.properties);

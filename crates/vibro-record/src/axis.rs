@@ -27,7 +27,7 @@ pub enum Grid {
         /// Number of values.
         n: usize,
     },
-    /// Each value on its own.
+    /// Values at any distances, each one stored.
     Uneven(Vec<f64>),
 }
 
@@ -58,8 +58,9 @@ impl Axis {
 
     /// Axis from printed abscissa values, which may carry too few digits.
     ///
-    /// The grid is even, with step (last − first)/(n − 1), where every value lies within twice `resolution`
-    /// (half a unit in the last printed digit) of it, plus rounding; otherwise the values are kept.
+    /// The grid is even, with step (last − first)/(n − 1), if every value lies within twice `resolution` of
+    /// it, plus rounding; otherwise all values are kept. `resolution` is half a unit in the last printed
+    /// digit.
     pub fn from_values(kind: AxisKind, values: Vec<f64>, resolution: f64) -> Axis {
         let n = values.len();
         if n >= 2 {
@@ -67,7 +68,7 @@ impl Axis {
             let step = (values[n - 1] - start) / (n - 1) as f64;
             let scale = start.abs().max(values[n - 1].abs());
             let tolerance = resolution * 1.000_001 + 4.0 * f64::EPSILON * scale;
-            // The end points are rounded as well as the value, hence twice the resolution.
+            // The end points of the grid are rounded like the value itself, hence twice the resolution.
             let near = |(i, v): (usize, &f64)| (v - (start + i as f64 * step)).abs() <= 2.0 * tolerance;
             if step.is_finite() && step > 0.0 && values.iter().enumerate().all(near) {
                 return Axis { kind, grid: Grid::Even { start, step, n } };
@@ -84,7 +85,7 @@ impl Axis {
         }
     }
 
-    /// Whether there are none.
+    /// Whether the axis has no values.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
@@ -128,8 +129,8 @@ impl Axis {
         Axis { kind: self.kind.clone(), grid }
     }
 
-    /// Indices of the values from `from` on and before `to`. On an even axis a value within 1e-9 of a step of
-    /// a bound lies on it.
+    /// Indices of the values from `from` (included) to `to` (excluded). On an even axis a value within 1e-9
+    /// of a step of a bound counts as equal to the bound.
     ///
     /// ```
     /// use vibro_record::Axis;
@@ -151,7 +152,7 @@ impl Axis {
     /// The values with these indices.
     ///
     /// # Panics
-    /// If they do not lie below [`Axis::len`].
+    /// On an uneven axis, if the indices do not lie below [`Axis::len`].
     pub fn part(&self, indices: Range<usize>) -> Axis {
         let grid = match &self.grid {
             Grid::Even { step, .. } => {

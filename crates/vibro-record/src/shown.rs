@@ -15,7 +15,7 @@ pub fn shown(path: impl AsRef<Path>) -> String {
     text.chars().map(|c| if is_unprintable(c) { '\u{fffd}' } else { c }).collect()
 }
 
-/// A path as it is typed in a shell.
+/// A path as it is typed in a shell: between quotes where one of its characters needs them.
 pub fn typed(path: impl AsRef<Path>) -> String {
     let text = shown(path);
     let splits = |c: char| c.is_whitespace() || "()[]{}<>;&|'`$!".contains(c);

@@ -15,7 +15,7 @@ pub enum Values {
 }
 
 impl Default for Values {
-    /// None.
+    /// No lines.
     fn default() -> Values {
         Values::Real(Vec::new())
     }
@@ -42,7 +42,7 @@ impl Values {
         }
     }
 
-    /// Whether there are none.
+    /// Whether there are no lines.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
@@ -108,7 +108,7 @@ impl Scaling {
 pub struct Spectrum {
     /// Channel, unit, history.
     pub meta: Meta,
-    /// Frequency in Hz, or an index.
+    /// Frequency in Hz; an index where the file states no frequencies.
     pub axis: Axis,
     /// Values of the lines in SI units.
     pub values: Values,

@@ -1,4 +1,4 @@
-//! A stepped-sine sweep: one force spectrum and one response spectrum a step.
+//! A stepped-sine sweep: one force spectrum and one response spectrum per step.
 
 use super::{Axis, Finding, Spectrum, Step, Trace, Values};
 use crate::units::Unit;
@@ -29,7 +29,7 @@ pub struct SweepPoint {
     pub force_path: Option<PathBuf>,
     /// Response file.
     pub response_path: PathBuf,
-    /// Peak values of the force spectrum by line; empty where there is none.
+    /// Peak amplitude of the force at each spectral line; empty without a force file.
     pub force: Values,
     /// Excitation frequency in Hz, where a hand-over file states it.
     pub given: Option<f64>,
@@ -48,36 +48,36 @@ impl SweepPoint {
 /// Traces of force and response of one step, sampled together.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StepTraces {
-    /// File.
+    /// File that holds both traces.
     pub path: PathBuf,
     /// Force in N.
     pub force: Trace,
-    /// Displacement, velocity or acceleration.
+    /// Response: displacement, velocity or acceleration in SI units.
     pub response: Trace,
 }
 
-/// All steps in the order in which they were taken.
+/// A sweep: all steps in the order in which they were taken.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Sweep {
     /// Name, for figures and messages.
     pub name: String,
     /// Direction, where it was stated.
     pub direction: Option<Direction>,
-    /// Mass whose response it is, where stated: 1 excited mass, 2 passive mass.
+    /// Mass whose response was measured, where stated: 1 excited mass, 2 passive mass.
     pub mass: Option<u8>,
     /// Frequencies of the spectral lines in Hz, the same for all spectra.
     pub axis: Axis,
-    /// Number of times that the analyser integrated the measured signal in frequency before it stored the
+    /// Number of integrations over time that the analyser did in the frequency domain before it stored the
     /// response.
     pub analyser_integrated: u8,
-    /// The steps.
+    /// The steps in the order of the measurement.
     pub points: Vec<SweepPoint>,
     /// Findings about the sweep as a whole.
     pub findings: Vec<Finding>,
 }
 
 impl Sweep {
-    /// Steps that made the responses, from the first point.
+    /// Processing steps that led to the responses, as recorded at the first point.
     pub fn history(&self) -> &[Step] {
         self.points.first().map_or(&[], |p| &p.response.meta.history)
     }

@@ -8,23 +8,23 @@ use std::path::{Path, PathBuf};
 /// ones more calls.
 const BLOCK: usize = 16 * 1024;
 
-/// Largest difference in time between two channels of one record, at its start and at its end, divided by the
-/// sampling interval.
+/// Largest time offset between two channels of one record, at its start and at its end, in sampling
+/// intervals. A hundredth of an interval shifts the phase by 1.8° at half the sampling rate.
 const LARGEST_OFFSET: f64 = 0.01;
 
 /// Samples that come block by block, in SI units.
 pub trait Stream: Send {
-    /// Appends the next samples to `block`, one `Vec` a channel, and returns their number in each channel; 0
-    /// at the end.
+    /// Appends the next samples to `block`, one `Vec` per channel, and returns their number in each channel;
+    /// 0 at the end.
     ///
     /// # Errors
     /// If the source cannot be read, or a sample is missing and that is not allowed.
     fn append(&mut self, block: &mut Vec<Vec<f64>>) -> Result<usize>;
 
-    /// From here on hands out only these of the present channels, in this order.
+    /// From here on hands out only these channels, in this order; the indices count the present channels.
     fn keep(&mut self, channels: &[usize]);
 
-    /// Adds to the channels the findings that only their values show, once all have been read.
+    /// Adds findings that depend on the values to their channels, after all samples have been read.
     fn finish(&self, channels: &mut [Meta]);
 }
 
@@ -127,7 +127,7 @@ impl Traces {
         Ok(Traces { path, channels, findings, rate, start, frames, factors, stream })
     }
 
-    /// File.
+    /// The file; an empty path for traces that were not read from a file.
     pub fn path(&self) -> &Path {
         &self.path
     }
@@ -170,12 +170,12 @@ impl Traces {
         all
     }
 
-    /// Replaces the content of `block` by the next samples, one `Vec` a channel in SI units, and returns
+    /// Replaces the content of `block` by the next samples, one `Vec` per channel in SI units, and returns
     /// their number in each channel; 0 at the end. Missing samples are NaN, where they are allowed.
     ///
     /// # Errors
-    /// If the file cannot be read, or a sample is missing (or beyond all numbers in its unit) and that is not
-    /// allowed.
+    /// If the file cannot be read, or a sample is missing (or too large for a double in SI units) and that is
+    /// not allowed.
     pub fn next_block(&mut self, block: &mut Vec<Vec<f64>>) -> Result<usize> {
         block.iter_mut().for_each(Vec::clear);
         self.append(block)
@@ -229,8 +229,8 @@ impl Traces {
     }
 }
 
-/// Index of a channel among `all`, pairs of name and quantity: by its name, in any case of letters where no
-/// name fits exactly, or by its number from 1. `path` is the file that an error names.
+/// Index of a channel in `all` (name and quantity of each), by its name or by its number from 1. Letter case
+/// is ignored where no name fits exactly. `path` is the file that an error names.
 ///
 /// # Errors
 /// If there is none, or two have this name.

@@ -16,7 +16,7 @@ pub use quantity::Quantity;
 
 /// Exponents of m, kg, s, A, K and rad, doubled so that `√Hz` is a whole number.
 ///
-/// The angle is a base of its own, though SI counts it as a number: else rad/s would be Hz, wrong by 2π.
+/// The angle is a base unit here, though SI counts it as a number: else rad/s would be Hz, wrong by 2π.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub struct Dimension(pub [i8; 6]);
 
@@ -60,7 +60,7 @@ pub fn is_level(word: &str) -> bool {
 }
 
 impl Unit {
-    /// Dimensionless one.
+    /// The dimensionless unit 1.
     pub fn none() -> Unit {
         Unit { symbol: "1".into(), dimension: Some(Dimension::NONE), factor: 1.0 }
     }
@@ -102,8 +102,8 @@ impl Unit {
         Unit::parse(text).or_else(|| Some(Unit::opaque(text)).filter(|unit| unit.reference().is_some()))
     }
 
-    /// The reference, at 0 dB, of a unit of levels that states it: an amplitude or a power density; else
-    /// `None`.
+    /// Value at 0 dB of a unit of levels that states this reference, if it is an amplitude or a power
+    /// density; else `None`.
     ///
     /// ```
     /// use vibro_record::units::Unit;
@@ -120,7 +120,7 @@ impl Unit {
         (unit.quantity() != Quantity::Other || unit.symbol().ends_with("/Hz")).then_some(unit)
     }
 
-    /// Spelling.
+    /// Text of the unit.
     pub fn symbol(&self) -> &str {
         &self.symbol
     }
@@ -145,8 +145,8 @@ impl Unit {
         self.dimension
     }
 
-    /// Factor that converts a value in this unit to Hz: a frequency as it is, an angular velocity divided by
-    /// 2π; `None` for any other quantity.
+    /// Factor that converts a value in this unit to Hz. For an angular velocity it includes 1/(2π); `None`
+    /// for quantities other than frequency and angular velocity.
     ///
     /// ```
     /// use vibro_record::units::Unit;
@@ -217,7 +217,7 @@ pub fn scale<'a>(values: impl IntoIterator<Item = &'a mut f64>, factor: f64) -> 
 
 /// Level in decibels of an amplitude against a reference amplitude of the same unit: 20 lg(value/reference).
 ///
-/// Zero gives minus infinity, as the definition has it; callers clip where they draw.
+/// A value of zero gives −∞; callers limit it when they draw.
 pub fn decibel(value: f64, reference: f64) -> f64 {
     20.0 * (value / reference).abs().log10()
 }

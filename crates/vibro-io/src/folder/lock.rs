@@ -15,9 +15,9 @@ pub struct Lock {
     _file: File,
 }
 
-/// Time between two attempts, and time after which another writer counts as stuck: even a large campaign
-/// writes its figures and tables in a second.
+/// Time between two attempts to lock: short beside the writing of a campaign.
 const PAUSE: Duration = Duration::from_millis(20);
+/// Time after which another writer counts as stuck: even a large campaign writes figures and tables in 1 s.
 const PATIENCE: Duration = Duration::from_secs(10);
 
 impl Lock {
@@ -42,7 +42,7 @@ impl Lock {
                 return Err(strange());
             }
             let open = OpenOptions::new().read(true).write(true).create(true).truncate(false).open(&path);
-            // A lock file of another user: locking it needs no right to write.
+            // The lock file of another user may be read-only: it can be locked without the right to write.
             let file = open.or_else(|e| File::open(&path).map_err(|_| e));
             let mut file = file.map_err(refused)?;
             let mut process = String::new();
@@ -60,8 +60,9 @@ impl Lock {
                 Ok(()) if read.is_err() || !process.bytes().all(|c| c.is_ascii_digit()) => {
                     return Err(strange());
                 }
-                // Some network drives have no locks: no other writer is waited for. The writer before may
-                // have removed the file between opening and locking it: then it is opened again.
+                // Some network drives have no locks: the folder is then written without one. If the
+                // previous writer removed the file between opening and locking here, the loop opens it
+                // again.
                 Ok(()) | Err(TryLockError::Error(_)) if is_at(&path, &file) => {
                     let _ = file.set_len(0).and_then(|()| file.rewind());
                     let _ = write!(file, "{}", std::process::id());

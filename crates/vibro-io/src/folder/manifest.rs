@@ -65,7 +65,7 @@ impl Manifest {
         manifest
     }
 
-    /// The list as text of its file.
+    /// The list as the text that [`Manifest::FILE`] holds.
     pub fn text(&self) -> String {
         let (mut text, mut owner) = (HEAD.to_owned(), None);
         for (of, name, digest) in &self.0 {
@@ -79,7 +79,7 @@ impl Manifest {
         text
     }
 
-    /// Digests of files of this name that were written as a recording, or else as a result.
+    /// Known digests of a file of this name, written as a recording if `recording`, else as a result.
     fn held_by(&self, recording: bool, name: &str) -> impl Iterator<Item = &Digest> {
         let owners: &[Owner] = if recording { &[Owner::Recordings] } else { &[Owner::Run, Owner::Results] };
         let of = |owner: &Owner| {
@@ -93,12 +93,13 @@ impl Manifest {
         self.held_by(false, name).next().is_some()
     }
 
-    /// Whether vibro wrote a file of this name and content: a result, or, for recordings, a recording.
+    /// Whether vibro wrote a file of this name and content: as a recording for [`Owner::Recordings`], else
+    /// as a result.
     pub fn knows(&self, owner: Owner, name: &str, digest: &Digest) -> bool {
         self.held_by(owner == Owner::Recordings, name).any(|known| known == digest)
     }
 
-    /// Adds a file; digests known for its name stay.
+    /// Adds a file. Digests already known for its name are kept.
     pub fn add(&mut self, owner: Owner, name: impl Into<String>, digest: Digest) {
         if owner != Owner::Person {
             self.0.insert((owner, name.into(), digest));
@@ -110,14 +111,14 @@ impl Manifest {
         self.0.retain(|(_, known, _)| known != name);
     }
 
-    /// Files of one owner, each with a digest that it may have.
+    /// Files of one owner with their digests; a file with several known digests comes several times.
     pub fn owned(&self, owner: Owner) -> impl Iterator<Item = (&str, &Digest)> {
         self.0.iter().filter(move |(of, ..)| *of == owner).map(|(_, name, digest)| (name.as_str(), digest))
     }
 }
 
-/// A line as `sha256sum` writes it: a name with a line break or a backslash is escaped, which a backslash
-/// before the digest marks.
+/// The line of a file as `sha256sum` writes it. Line breaks and backslashes in a name are escaped; a
+/// backslash before the digest marks that.
 pub fn listed(digest: &Digest, name: &str) -> String {
     let escaped = name.replace('\\', "\\\\").replace('\n', "\\n").replace('\r', "\\r");
     let mut line = if escaped == name { String::new() } else { "\\".to_owned() };

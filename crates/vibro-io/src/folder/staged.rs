@@ -14,7 +14,7 @@ use vibro_record::{Error, Result};
 pub enum Staged {
     /// On a disk.
     Disk(TempPath, PathBuf),
-    /// Among the files of a memory.
+    /// In a folder in memory.
     Memory(Arc<Mutex<Files>>, PathBuf, Vec<u8>),
 }
 
@@ -26,7 +26,7 @@ impl Staged {
     pub fn place(self) -> Result<()> {
         match self {
             Staged::Disk(file, path) => {
-                // It takes the permissions of the file that it replaces.
+                // The new file takes the permissions of the file that it replaces.
                 if let Ok(known) = fs::metadata(&path) {
                     let _ = fs::set_permissions(&file, known.permissions());
                 }
@@ -87,8 +87,8 @@ impl Folder {
     }
 }
 
-/// A temporary file with a hidden name in `folder`, so on its file system, with the permissions of any new
-/// file.
+/// A temporary file with a hidden name in `folder`, so that renaming it stays on one file system. It has
+/// the permissions of any new file.
 fn temporary(folder: &Path) -> std::io::Result<NamedTempFile> {
     let mut named = tempfile::Builder::new();
     named.prefix(".").suffix(PART);

@@ -28,7 +28,7 @@ fn a_manifest_is_read_as_it_was_written() {
         manifest.knows(Owner::Run, "a.csv", &[9; 32])
             && !manifest.knows(Owner::Recordings, "a.csv", &[9; 32])
     );
-    // What sha256sum (GNU coreutils 9.1) prints of an empty file of this name.
+    // Printed by sha256sum (GNU coreutils 9.1) for an empty file of this name.
     let empty = "\\e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855  a\\nb\n";
     assert_eq!(listed(&Sha256::digest([]).into(), "a\nb"), empty);
 }
@@ -61,7 +61,7 @@ fn memory_walks_as_a_disk_does() {
     for levels in 0..3 {
         let found = disk.walk(disk.root(), levels).unwrap();
         assert_eq!(found, memory.walk(memory.root(), levels).unwrap());
-        // b; with a level a/2 and out/mine; a/deep/er lies three levels down.
+        // At level 0 `b`, from level 1 on also `a/2` and `out/mine`; `a/deep/er/3` needs three levels.
         assert_eq!((found.files.len(), found.skipped.len()), ([1, 3, 3][levels], 0));
     }
 }
@@ -103,7 +103,7 @@ mod on_unix {
         assert_eq!(left, ["two\nlines.csv", "gone", "up", "y.csv", "zero.csv"]);
         assert!(folder.path(Path::new("y.csv")).is_err() && folder.path(Path::new("up/new.csv")).is_err());
         assert!(folder.path(Path::new("a/new.csv")).is_ok());
-        // Where it is allowed, `up` shows the other folder, too; its file counts once.
+        // With names outside allowed, `up` leads to the other folder, too; its file is listed once.
         let all = folder.allow_outside(true).walk(&here, 2).unwrap();
         let names: Vec<_> =
             all.files.iter().map(|path| path.strip_prefix(&here).unwrap().to_str().unwrap()).collect();

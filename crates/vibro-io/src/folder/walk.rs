@@ -17,12 +17,12 @@ pub struct Walk {
 }
 
 impl Folder {
-    /// Searches a folder and up to `levels` levels of folders below it. Each folder is visited once, whatever
-    /// links there are; links lead no further than [`Folder::path`] does. Hidden files and vibro's own
-    /// results are skipped silently.
+    /// Searches a folder and up to `levels` levels of folders below it. Each folder is visited once,
+    /// however many links lead to it. Links are followed only as far as [`Folder::path`] allows. Hidden
+    /// files and vibro's own results are skipped silently.
     ///
     /// # Errors
-    /// If the folder itself cannot be listed. One below it that cannot is skipped.
+    /// If the folder itself cannot be listed. A folder below it that cannot be listed is skipped.
     pub fn walk(&self, top: &Path, levels: usize) -> Result<Walk> {
         let mut walk = Walk::default();
         match &self.side {
@@ -89,7 +89,7 @@ impl Folder {
                     }
                 }
                 Some(target) if target.is_file() => {
-                    // A file in a folder that was searched is listed by its own name already.
+                    // A file in a folder already searched is listed under its own name.
                     let known =
                         target.parent().is_some_and(|folder| seen.contains(folder)) && !is_hidden(&target);
                     if !known && seen.insert(target) {
@@ -117,7 +117,7 @@ impl Walk {
             Some(path) if path.contains(is_unprintable) => {
                 "its name has a line break or a control character: rename it"
             }
-            // In lists written on DOS it separates folders.
+            // In lists written on DOS a backslash separates folders.
             Some(_) if name.contains(&b'\\') => "its name has a backslash: rename it",
             Some(_) => return self.files.push(path),
         };

@@ -1,4 +1,5 @@
-//! Sheets of workbooks as text: cells between tabs, numbers with all their digits, dates as date and time.
+//! Writes sheets of workbooks as text: tabs between cells, numbers with all their digits, dates as date and
+//! time.
 
 use super::{Member, Workbook, damaged, locked};
 use crate::limit::Limit;
@@ -15,14 +16,14 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 use vibro_record::Result;
 
-/// Row and column, counted from 0, and content.
+/// A cell: row and column, counted from 0, and content.
 type Cell = (u32, u32, Data);
 
-/// Microseconds of a day: a double of days resolves the times of this century to 0.6 µs.
+/// Microseconds of a day. Times are compared in µs, since a double of days resolves this century to 0.6 µs.
 const DAY: i64 = 86_400_000_000;
-/// Most decimals of a second that are recognised.
+/// Largest number of decimals of a second that is recognised: down to 1 µs.
 const DECIMALS: usize = 6;
-/// Largest difference in µs between a time and its printed form: days are rounded to a double.
+/// Largest difference in µs between a time and its printed form, since days are rounded to a double.
 const ROUNDING: i64 = 1;
 
 /// All sheets with cells, or the one of this name.
@@ -51,8 +52,8 @@ pub fn of(source: &Source, kind: Workbook, named: Option<&Path>, limit: Limit) -
     catch_unwind(read).unwrap_or_else(|_| Err(damaged(source, "its records contradict each other")))
 }
 
-/// Copies the stream of an `.xls` workbook to a compound file of its own. Its cells are checked first, since
-/// the crate reserves memory for all cells between the first and the last.
+/// Copies the stream of an `.xls` workbook to a compound file of its own. Its cells are checked first,
+/// since calamine reserves memory for all cells between the first and the last.
 fn checked(source: &Source, limit: Limit) -> Result<Cursor<Vec<u8>>> {
     let failed = |why| damaged(source, why);
     let mut file = cfb::CompoundFile::open(BufReader::new(source.open()?)).map_err(failed)?;
@@ -69,7 +70,7 @@ fn checked(source: &Source, limit: Limit) -> Result<Cursor<Vec<u8>>> {
         room += extent(stream.get(at..).unwrap_or_default())
             .ok_or_else(|| damaged(source, "a cell lies outside"))?;
     }
-    // Twice, for values and formulas.
+    // Counted twice: once for values, once for formulas.
     limit.hold(room * 2.0 * size_of::<Cell>() as f64)?;
     let mut own =
         cfb::CompoundFile::create_with_version(cfb::Version::V3, Cursor::new(Vec::new())).map_err(failed)?;
@@ -78,12 +79,13 @@ fn checked(source: &Source, limit: Limit) -> Result<Cursor<Vec<u8>>> {
     Ok(own.into_inner())
 }
 
-/// Kinds of records in `.xls`: the place of a sheet, its dimensions, the end of a part.
+/// Kinds of records in `.xls`: place of a sheet in the stream, its dimensions, end of a part.
 const BOUND_SHEET: u16 = 0x85;
 const DIMENSIONS: u16 = 0x200;
 const END: u16 = 0x0a;
-/// Kinds of cells: formulas, texts, numbers; and of several cells in a row, which end with the last column.
+/// Kinds of records of one cell: formula, text, number, truth value or error.
 const CELLS: [u16; 7] = [0x06, 0xd6, 0xfd, 0x203, 0x204, 0x205, 0x27e];
+/// Kind of a record of several cells in a row, which ends with the last column.
 const MANY: u16 = 0xbd;
 /// Most columns of an `.xls` sheet.
 const COLUMNS: u16 = 256;
@@ -100,7 +102,8 @@ fn records(stream: &[u8]) -> impl Iterator<Item = (u16, &[u8])> {
     .take_while(|(kind, _)| *kind != END)
 }
 
-/// Number of cells of a sheet, used ones and those between; `None` where one lies beyond the last column.
+/// Number of cells, used or not, up to the last row and column of a sheet; `None` if a cell lies beyond
+/// column [`COLUMNS`].
 fn extent(sheet: &[u8]) -> Option<f64> {
     let (mut rows, mut columns) = (1.0f64, 1.0f64);
     for (kind, data) in records(sheet) {
@@ -126,7 +129,7 @@ fn extent(sheet: &[u8]) -> Option<f64> {
     Some(rows * columns)
 }
 
-/// The sheets of a workbook that are meant: all, or the one of this name.
+/// The sheets of a workbook to read: all, or the one of this name.
 fn meant(sheets: &[Sheet], named: Option<&Path>) -> Vec<Sheet> {
     sheets.iter().filter(|of| named.is_none_or(|named| named == Path::new(&of.name))).cloned().collect()
 }
@@ -208,8 +211,8 @@ fn sheet(source: &Source, of: Sheet, mut cells: Vec<Cell>, limit: Limit) -> Resu
     Ok(Some(Member { name: of.name, source, hidden }))
 }
 
-/// Converts texts with a decimal comma to numbers where other cells are numbers with decimals, which are
-/// printed with a point here; not where each such text may be grouped digits (`1,000`).
+/// Converts texts with a decimal comma to numbers if other cells are numbers with decimals, as these are
+/// written with a point. Not done if each such text may be grouped digits (`1,000`).
 fn with_points(cells: &mut [Cell]) {
     let decimals = |cell: &Cell| matches!(cell.2, Data::Float(value) if value.fract() != 0.0);
     let comma = |cell: &Cell| match &cell.2 {
@@ -264,7 +267,8 @@ fn digits(value: f64) -> String {
     format!("{}e-{decimals}", text.replace('.', ""))
 }
 
-/// How the dates of a column are printed: with the decimals that they had before they were stored as days.
+/// Printed form of the dates of a column, with the decimals of a second that they had before they were
+/// stored as days.
 struct DateFormat {
     decimals: usize,
     /// Whether the date is printed.
@@ -303,7 +307,8 @@ impl DateFormat {
                 let date = ExcelDateTime::new(days as f64, ExcelDateTimeType::DateTime, since_1904);
                 date.to_ymd_hms_milli()
             };
-            // Days count from 1900 or 1904: a difference of years above 2 shows which.
+            // Days count from 1900 or 1904. If the year by the rule of 1900 differs by more than 2, it is
+            // 1904.
             let since_1904 = instant.to_ymd_hms_milli().0.abs_diff(from(false).0) > 2;
             let (year, month, day, ..) = from(since_1904);
             write!(text, "{year:04}-{month:02}-{day:02}{}", if self.timed { " " } else { "" })?;

@@ -314,7 +314,7 @@ mod sheets {
         {
             let found = days(start, rate);
             assert!(has_finding(&found.findings, "axis-serial-days", &[]), "{:?}", found.findings);
-            // A double resolves a day number of 45 000 to 0.32 µs; both ends of the axis may be off by that.
+            // A double rounds a day number of 45 000 by at most 0.32 µs, at both ends of the axis.
             let (trace, off) = (traces(&found)[0], 2.0 * 3.2e-7 * rate / 399.0);
             assert!(
                 (trace.axis.at(399) * rate / 399.0 - 1.0).abs() < off,
@@ -347,7 +347,7 @@ mod sheets {
 
     #[test]
     fn dates_are_seconds_from_the_first_with_their_resolution() {
-        // Across midnight in steps of 2.5 ms; a day number as a double resolves 0.6 µs.
+        // Across midnight, in steps down to 2.5 ms: a day number as a double resolves 0.6 µs.
         for (with_date, step) in [(true, 0.0025), (true, 0.5), (false, 0.0025)] {
             let bytes = workbook(|book| {
                 let sheet = book.add_worksheet();

@@ -1,4 +1,5 @@
-//! The abscissa of a channel: its waveform properties, or a channel of its group that is one by its name.
+//! The abscissa of a channel: its waveform properties, or a channel of its group whose name says time or
+//! frequency.
 
 use super::Channel;
 use super::description::{Slot, Value};
@@ -30,8 +31,8 @@ impl AbscissaChannel {
             Name { name: name.to_owned(), unit }.axis(name.len() == 1).filter(|_| name != "x" && name != "X")
         };
         let named = |name: &str| kind(name, None).filter(|of| kind(name, unit.clone()).as_ref() == Some(of));
-        // A name that only begins like a time is a clock if its values rise evenly: `Zeit_langsam` may, `time
-        // of flight` does not.
+        // A name that only begins like a time makes a clock only if the values rise evenly: `Zeit_langsam`
+        // may be one, a measured `time of flight` is none.
         let first = whole.split(['_', ' ']).next().filter(|word| word.len() > 1);
         let first = || named(first?).filter(|kind| *kind == AxisKind::Time);
         let (kind, sure) = named(whole).map(|kind| (kind, true)).or_else(|| Some((first()?, false)))?;
@@ -70,8 +71,8 @@ impl AbscissaChannel {
     }
 }
 
-/// Removes the clocks from the channels and assigns each to the channels of its group and length; of several
-/// clocks, each to the channels that follow it.
+/// Removes the clocks (abscissa channels) and assigns each to the channels of its group and length. Of
+/// several clocks, each holds for the channels that follow it.
 ///
 /// # Errors
 /// If it is ambiguous which channels belong to which clock.
@@ -90,7 +91,7 @@ pub fn assign(channels: &mut Vec<Channel>, options: &Options, findings: &mut Vec
             let by_step = kind == AxisKind::Time && step.is_some_and(|(_, step)| step != 1.0);
             by_step || clocks[*i].as_ref().is_some_and(|clock| clock.axis.kind == AxisKind::Time)
         });
-        // Among channels over time, a frequency that rises is a measured run-up, no abscissa.
+        // Among channels over time, a rising frequency is a measured run-up and no abscissa.
         for i in set.iter().filter(|_| timed) {
             clocks[*i].take_if(|clock| clock.axis.kind != AxisKind::Time);
         }
@@ -155,8 +156,8 @@ fn stated(object: &Object) -> (AxisKind, Option<(f64, f64)>, Option<Finding>) {
     (kind, object.number("wf_increment").map(|step| (start * factor, step * factor)), found)
 }
 
-/// The axis of a channel: its clock, with the stated step if both agree, for that has more digits; without a
-/// clock, as the properties state it.
+/// The axis of a channel: its clock, with the stated step if both agree, since that has more digits.
+/// Without a clock, the axis that the properties state.
 pub fn of(channel: &Channel, options: &Options, meta: &mut Meta) -> Axis {
     let (object, n) = (channel.object, channel.values.len());
     let (kind, step, found) = stated(object);
@@ -182,11 +183,12 @@ pub fn of(channel: &Channel, options: &Options, meta: &mut Meta) -> Axis {
         }
         _ => Abscissa::of(axis.clone()),
     };
-    // The file has the finding on an uneven clock already.
+    // The findings of the file already contain that on an uneven clock.
     if free && abscissa.even.is_none() { axis.clone() } else { abscissa.axis(n, options, meta) }
 }
 
-/// Findings where segments contradict the even `step` in s of all values.
+/// Findings on segments that contradict one even `step` in s: by another step, or by a gap between start
+/// times.
 fn changes(object: &Object, step: f64) -> Vec<Finding> {
     let of = |key: &str| {
         let all = object.changes.iter().filter(move |(of, _, at)| of == key && *at < object.declared);

@@ -1,11 +1,11 @@
-//! The description of a segment, word by word: properties, and how the raw data of an object lie.
+//! Reads the description of a segment word by word: properties, and the layout of each object's raw data.
 
 use crate::binary::NumberType;
 use vibro_record::{Error, Place, Result};
 
-/// Type codes of numbers in raw data and properties, and of DAQmx scalers, in the order of
-/// [`NumberType::coded`].
+/// Type codes of numbers in raw data and properties, in the order of [`NumberType::coded`].
 const NUMBERS: [u32; 10] = [1, 2, 3, 4, 5, 6, 7, 8, 9, 10];
+/// Type codes of DAQmx scalers, in the same order.
 const DAQMX: [u32; 10] = [1, 3, 5, 7, 0, 2, 4, 6, 8, 9];
 
 /// The value of a property.
@@ -27,7 +27,7 @@ impl Value {
     }
 }
 
-/// What a column of raw values is.
+/// Meaning of a column of raw values.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Slot {
     Real,
@@ -38,21 +38,21 @@ pub enum Slot {
     Scaler(u32),
 }
 
-/// How the raw data of an object lie in the chunks of a segment.
+/// Layout of an object's raw data in each chunk of a segment.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Index {
-    /// Number of rows; data that are no numbers are one row of all their bytes.
+    /// Number of rows; text counts as one row of all its bytes.
     pub rows: u64,
-    /// Bytes of a row; for DAQmx, of a row in each buffer.
+    /// Bytes of a row; for DAQmx, of a row of each buffer.
     pub widths: Vec<u64>,
     /// Whether all channels share the rows, as those of DAQmx do.
     pub shared: bool,
-    /// For each number of a row: what it is, its buffer, its byte and its type; empty for data that are no
-    /// numbers.
+    /// For each number of a row: its meaning, the index of its buffer, its byte in the row and its type.
+    /// Empty for text.
     pub fields: Vec<(Slot, usize, usize, NumberType)>,
 }
 
-/// Words of a description.
+/// Unread bytes of a description.
 pub struct Words<'a> {
     pub rest: &'a [u8],
     pub big_endian: bool,
@@ -143,7 +143,7 @@ impl<'a> Words<'a> {
 
     /// The layout of DAQmx data: scalers, then the widths of the buffers.
     fn shared(&mut self, digital: bool) -> Result<Index> {
-        // The type says only that these are raw data of DAQmx.
+        // This word says only that these are raw data of DAQmx.
         self.u32()?;
         self.one_dimension()?;
         let rows = self.u64()?;

@@ -1,5 +1,5 @@
-//! Layout of raw data in a segment, in whatever order they are stored: parts one after the other, each of
-//! equal rows, each row of fields.
+//! Layout of a segment's raw data, in one form for all orders of storage: parts one after the other, each
+//! part of rows of equal width, each row of fields.
 
 use crate::binary::NumberType;
 use std::sync::Arc;
@@ -9,7 +9,7 @@ use std::sync::Arc;
 pub struct RawData {
     /// Byte of the file at which they begin.
     pub at: u64,
-    /// Number of bytes that the file holds of them.
+    /// Number of their bytes that the file holds.
     pub len: u64,
     pub big_endian: bool,
     /// The parts of one chunk; chunks follow each other to the end.
@@ -17,7 +17,7 @@ pub struct RawData {
 }
 
 impl RawData {
-    /// Numbers that the raw data hold.
+    /// Number of values in the raw data.
     pub fn values(&self) -> f64 {
         let in_chunk =
             |of: fn(&RowBlock) -> u64| self.parts.iter().map(move |part| part.rows as f64 * of(part) as f64);
@@ -36,12 +36,12 @@ pub struct RowBlock {
     pub fields: Vec<Field>,
 }
 
-/// One number of each row.
+/// A number that each row of a part holds.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Field {
     /// Index of the object that it belongs to.
     pub object: usize,
-    /// Which of its columns: imaginary parts are the second, DAQmx scalers have one each.
+    /// Index of its column in that object: 1 for imaginary parts; each DAQmx scaler has its own.
     pub slot: usize,
     /// Byte of the row at which it begins.
     pub offset: usize,

@@ -1,12 +1,12 @@
-//! From raw values to measured ones: the scales `NI_Scale[0]`, `NI_Scale[1]`, … of a channel, the last of
-//! which gives the result.
+//! Converts raw values to measured ones by the scales `NI_Scale[0]`, `NI_Scale[1]`, … of a channel. The
+//! last scale gives the result.
 
 use super::description::Slot;
 use super::segment::Object;
 use std::collections::BTreeSet;
 use vibro_record::Values;
 
-/// Number of the input that stands for the raw values.
+/// Input number that means the raw values.
 const RAW: u32 = u32::MAX;
 
 /// The scales of a channel: its own, else those of its group or of the file.
@@ -15,7 +15,7 @@ pub struct Scales<'a> {
     n: u32,
 }
 
-/// How a scale computes its values from its inputs.
+/// Conversion of a scale's inputs to its values.
 enum Conversion {
     /// Raw values of a column.
     Raw(usize),
@@ -30,7 +30,7 @@ enum Conversion {
 impl<'a> Scales<'a> {
     /// The scales that hold for `channel`; `above` are the file and its groups, groups first.
     pub fn of(above: &[&'a Object], channel: &'a Object) -> Scales<'a> {
-        // Older files do not say how many there are.
+        // Older files do not state the number of scales: it follows from their highest index.
         let index = |key: &str| key.strip_prefix("NI_Scale[")?.split_once("]_Scale_Type")?.0.parse().ok();
         let last = |o: &Object| o.properties.keys().filter_map(|key| index(key)).max();
         let count = |o: &Object| {
@@ -56,8 +56,8 @@ impl<'a> Scales<'a> {
         if self.n == 0 {
             return Ok(Values::Real(columns.swap_remove(0)));
         }
-        // Collects the scales from the last down to the raw values, each once. Numbers are one higher here,
-        // so that the raw values are 0.
+        // Collects the scales from the last down to the raw values, each once. Here numbers are one higher
+        // than in the file, so that 0 means the raw values.
         let (mut wanted, mut chain) = (BTreeSet::from([self.n]), Vec::new());
         while let Some(number) = wanted.pop_last() {
             let (step, inputs) = self.step(number.wrapping_sub(1), slots)?;
@@ -99,14 +99,14 @@ impl<'a> Scales<'a> {
     fn step(&self, i: u32, slots: &[Slot]) -> Result<(Conversion, Vec<u32>), String> {
         let number = |key: &str| self.from.number(&format!("NI_Scale[{i}]_{key}"));
         let Some(kind) = self.from.text(&format!("NI_Scale[{i}]_Scale_Type")) else {
-            // No type: a scaler of DAQmx, whose column is known from the layout of the raw data.
+            // No type: a DAQmx scaler, whose column the layout of the raw data gives.
             let column = slots.iter().position(|slot| *slot == Slot::Scaler(i)).unwrap_or(0);
             return Ok((Conversion::Raw(column), Vec::new()));
         };
         let input = |key: &str| number(&format!("{kind}_{key}Input_Source")).map_or(RAW, |n| n as u32);
         let missing = |what: &str| format!("{kind} without {what}");
         let list = |name: &str| -> Result<Vec<f64>, String> {
-            // Four is NI's rule where the number of coefficients is left out.
+            // NI's default is 4 if the number of coefficients is left out.
             let n = number(&format!("{name}_Size")).unwrap_or(4.0);
             (0..n as u32).map(|j| number(&format!("{name}[{j}]")).ok_or_else(|| missing(name))).collect()
         };
@@ -131,7 +131,7 @@ impl<'a> Scales<'a> {
                 let sign = if kind == "Add" { 1.0 } else { -1.0 };
                 (Conversion::Sum(sign), vec![input("Right_Operand_"), input("Left_Operand_")])
             }
-            // This scale tells which software scales, and changes no values.
+            // This scale states only which software scales; it changes no values.
             "AdvancedAPI" => (Conversion::Polynomial(vec![0.0, 1.0]), vec![input("")]),
             other => return Err(other.to_owned()),
         })

@@ -7,7 +7,7 @@ use std::io::{BufReader, Read, Seek};
 use std::sync::Arc;
 use vibro_record::{Error, Finding, Result};
 
-/// Bytes before the objects of a segment.
+/// Bytes of a segment before its objects.
 const LEAD_IN: u64 = 28;
 /// Bits of a segment's table of contents.
 const OBJECTS: u32 = 1 << 1;
@@ -15,7 +15,7 @@ const NEW_LIST: u32 = 1 << 2;
 const RAW_DATA: u32 = 1 << 3;
 const INTERLEAVED: u32 = 1 << 5;
 const BIG_ENDIAN: u32 = 1 << 6;
-/// Stored as length of a segment that was not finished.
+/// Stored length of a segment that was never finished: it reaches to the end of the file.
 const OPEN: u64 = u64::MAX;
 
 /// The file, a group or a channel.
@@ -30,7 +30,7 @@ pub struct Object {
     pub declared: u64,
     /// Kind of its raw data, if these are no numbers.
     pub unreadable: Option<&'static str>,
-    /// What each column of its raw values is.
+    /// Meaning of each column of its raw values.
     pub slots: Vec<Slot>,
 }
 
@@ -50,7 +50,7 @@ impl Object {
 /// findings.
 ///
 /// # Errors
-/// If the file cannot be read, or a segment is not what the format says.
+/// If the file cannot be read, or a segment violates the format.
 pub fn all(
     file: &mut BufReader<impl Read + Seek>,
     len: u64,
@@ -106,7 +106,7 @@ pub fn go(file: &mut BufReader<impl Read + Seek>, to: u64) -> std::io::Result<()
     file.seek_relative(to.wrapping_sub(at) as i64)
 }
 
-/// What is known from the segments so far.
+/// State after the segments read so far, to which later ones may refer.
 #[derive(Default)]
 struct SegmentState {
     objects: Vec<Object>,
@@ -117,7 +117,7 @@ struct SegmentState {
     active: Vec<(usize, Option<Index>)>,
     /// Index of an object among the active ones.
     place: HashMap<usize, usize>,
-    /// Whether the present objects are interleaved, and the parts of a chunk of them.
+    /// Whether the values of the present objects are interleaved, and the parts of one chunk.
     parts: Option<(bool, Arc<[RowBlock]>)>,
 }
 
@@ -220,7 +220,7 @@ impl SegmentState {
         Ok(if buffers.is_empty() { parts } else { buffers })
     }
 
-    /// Adds the values of this many chunks to those declared.
+    /// Adds the values of this many chunks to the declared number of each active object.
     fn declare(&mut self, chunks: u64) {
         for (object, index) in &self.active {
             if let Some(Index { rows, .. }) = index {

@@ -239,7 +239,7 @@ fn interleaved_values_of_every_type() {
     }
 }
 
-/// A number or a text.
+/// Value of a property: a number, or a text as `Err`.
 type Said = std::result::Result<f64, &'static str>;
 
 /// Properties of scale `i`.
@@ -269,7 +269,7 @@ fn scaled(n: u32, properties: &[(String, Said)], raw: &[f64]) -> std::result::Re
 
 #[test]
 fn scales_one_behind_the_other() {
-    // 2x + 1, and 3 − 0.5y of that.
+    // y = 2x + 1, then 3 − 0.5y.
     let chain = [linear(0, 2.0, 1.0, u32::MAX), linear(1, -0.5, 3.0, 0)].concat();
     assert_eq!(scaled(2, &chain, &[0.0, 4.0]).unwrap(), [2.5, -1.5]);
     let of = |i: usize, kind: &'static str| (format!("NI_Scale[{i}]_Scale_Type"), Err(kind));
@@ -435,7 +435,7 @@ fn a_stated_step_against_a_channel_of_times() {
     let said = recording(&differ).unwrap().all_findings();
     assert!(has_finding(&said, "vector-against-rate", &["variable=Time", "used=vector", "rate=1"]));
     assert!(has_finding(&said, "axis-unit-assumed", &["unit=s"]));
-    // A rate that the user states wins over both.
+    // A rate stated by the user overrides both.
     let stated = crate::reader::Reader::new().rate(Some(8.0)).from_reader("x.tdms", &differ[..]).unwrap();
     assert_eq!(stated.records[0].axis().step(), Some(0.125));
     let agree = group(&[("Time", &[Prop::Text("unit_string", "s")], &times), ("a", &step(0.5), &[1.0; 4])]);
@@ -510,7 +510,7 @@ fn times_of_other_units_and_digits() {
     assert_eq!((axis.step(), found.len()), (Some(3600.0), 0));
     let (_, found) = of(&every(1.0, 5), "hh:mm");
     assert!(has_finding(&found, "axis-unit-unknown", &["said=hh:mm", "unit=s"]));
-    // Steps of 1 ms from 100 s on in single precision, whose numbers are 8 µs apart there.
+    // Steps of 1 ms from 100 s on in single precision, whose numbers near 100 are 8 µs apart.
     let single: Vec<f64> = (0..50).map(|i| f64::from((100.0 + f64::from(i) * 1e-3) as f32)).collect();
     let (axis, found) = of(&single, "s");
     assert!((axis.step().unwrap() - 1e-3).abs() < 8e-6 / 49.0);
@@ -566,13 +566,13 @@ fn what_changes_between_values() {
     let found = of(&start(0.5, 0.0), &start(0.25, 1.0));
     assert!(has_finding(&found, "step-changed", &["before=0.5", "step=0.25", "n=2"]));
     assert!(has_finding(&of(&start(0.5, 0.0), &start(0.5, 61.0)), "start-changed", &["gap=60", "n=2"]));
-    // Two values of half a second: the second segment begins where it should.
+    // Two values 0.5 s apart: a second segment that starts at 1 s leaves no gap.
     assert!(!has_finding(&of(&start(0.5, 0.0), &start(0.5, 1.0)), "start-changed", &[]));
 }
 
 #[test]
 fn many_segments_scales_and_channels_cost_what_is_there() {
-    // 29 sums, each of the one before and itself: 2²⁸ times the value.
+    // 28 sums in a chain, each of the scale before with itself: 2²⁸ times the value.
     let sum = |i: usize| {
         let side =
             |side: &str| (format!("NI_Scale[{i}]_Add_{side}_Operand_Input_Source"), Ok(i as f64 - 1.0));
@@ -580,7 +580,8 @@ fn many_segments_scales_and_channels_cost_what_is_there() {
     };
     let chain: Vec<_> = linear(0, 1.0, 0.0, u32::MAX).into_iter().chain((1..29).flat_map(sum)).collect();
     assert_eq!(scaled(29, &chain, &[1.0]).unwrap(), [2f64.powi(28)]);
-    // Segments share the parts of the one that describes them; empty ones hold nothing.
+    // Segments without a description share the parts of the last one described. Empty segments add no
+    // layout.
     let mut writer = Writer::new(false);
     let raw = writer.doubles(&[1.0, 2.0]);
     writer.segment(ALL, &[("/'g'/'a'", Raw::Of(10, 1), &[]), ("/'g'/'b'", Raw::Of(10, 1), &[])], &raw);
@@ -604,7 +605,7 @@ fn complaints_name_the_file_and_the_scale() {
     assert!(recording(&bytes).unwrap_err().to_string().contains("x.tdms, byte"));
     let units = [Prop::Text("unit_string", ""), Prop::Text("NI_UnitDescription", "V")];
     assert_eq!(traces(&group(&[("a", &units, &[1.0])]))[0].meta.unit.symbol(), "V");
-    // A property of extended precision: its type and 16 bytes in place of 10 and 8.
+    // A property of extended precision: type 0x0b and 16 bytes in place of type 10 and 8 bytes.
     let bytes = group(&[("a", &[Prop::F64("cal", 1.0)], &[5.0])]);
     let at = bytes.windows(3).position(|word| word == b"cal").unwrap() + 3;
     let mut extended = [&bytes[..at], &[0x0b, 0, 0, 0], &[0; 16], &bytes[at + 12..]].concat();
@@ -628,7 +629,7 @@ fn small() -> Vec<u8> {
 }
 
 proptest! {
-    /// Whatever a header declares: no panic, and no more memory than the file gives reason for.
+    /// A damaged header causes no panic, and no record with more values than the file has bytes.
     #[test]
     fn damaged_files_never_panic(at in 0usize..400, byte: u8, end in 0usize..400) {
         let mut bytes = small();

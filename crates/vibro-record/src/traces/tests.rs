@@ -26,7 +26,7 @@ fn a_quantity_is_the_name_of_the_only_channel_that_has_it() {
     assert!(found("acceleration").to_string().contains("try: one of these names"));
 }
 
-/// Two files of one clock that counts from instants of its own: 1 kHz, so 10 µs are a hundredth of a sample.
+/// Two files of one clock, each with its own time origin. At 1 kHz a hundredth of a sample is 10 µs.
 #[test]
 fn traces_of_two_files_begin_together_wherever_they_count_from() {
     let trace = |origin: f64, start: f64| {

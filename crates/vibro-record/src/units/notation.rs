@@ -23,8 +23,7 @@ pub fn power_of_ten(exponent: i32) -> String {
     "10".chars().chain(exponent.to_string().chars().map(raised)).collect()
 }
 
-/// A text whose numbers, written as programs write them, get powers of ten and true minus signs: `1e-9 m`
-/// becomes `10⁻⁹ m`.
+/// Rewrites the numbers of a text with powers of ten and true minus signs: `1e-9 m` becomes `10⁻⁹ m`.
 pub fn typeset(text: &str) -> String {
     let word = |word: &str| {
         let number = word.trim_end_matches([',', ';', ':']);
@@ -65,12 +64,12 @@ pub fn significant(value: f64, digits: usize) -> String {
     format!("{}×{}", mantissa.replace('-', MINUS), power_of_ten(exponent))
 }
 
-/// The shortest text of a number to twelve significant digits: beyond them are rounding errors of computing.
+/// Shortest text of a number rounded to twelve significant digits; further digits are rounding errors.
 pub fn shortest(value: f64) -> String {
     format!("{value:.11e}").parse().unwrap_or(value).to_string()
 }
 
-/// Most significant digits of a value that has an uncertainty.
+/// Largest number of significant digits of a value with an uncertainty: no measurement has more.
 const DIGITS: i32 = 10;
 
 /// A value with its standard uncertainty, both rounded to two significant digits of the uncertainty (GUM,
@@ -104,15 +103,15 @@ pub fn counted(n: usize, noun: &str) -> String {
     format!("{n} {noun}{}", if n == 1 { "" } else { "s" })
 }
 
-/// Decimals that show `value` to `digits` significant digits, none of them a trailing zero.
+/// Number of decimals that show `value` to `digits` significant digits without trailing zeros.
 pub fn decimals_needed(value: f64, digits: usize) -> usize {
     let (mantissa, exponent) = scientific(value, digits);
     let kept = mantissa.trim_start_matches('-').trim_end_matches('0').len().saturating_sub(2) as i32;
     usize::try_from(kept - exponent).unwrap_or(0)
 }
 
-/// The power of ten, a multiple of three, that brings `largest` to between 1 and 1000; 0 for numbers from 0.1
-/// to below 10 000, which need none.
+/// Exponent n, a multiple of three, for which `largest`/10ⁿ lies from 1 to below 1000; 0 for numbers from 0.1
+/// to below 10 000, which are written without a power of ten.
 pub fn engineering(largest: f64) -> i32 {
     if !largest.is_finite() || largest == 0.0 || (0.1..1e4).contains(&largest.abs()) {
         return 0;
@@ -124,7 +123,7 @@ pub fn engineering(largest: f64) -> i32 {
 /// Times in s below this are rounding errors of 0: no clock resolves them.
 const ROUNDING: f64 = 1e-15;
 
-/// A quantity in a sentence, with an SI prefix where one fits. A time below 10⁻¹⁵ s is written as 0.
+/// Value and unit for a sentence, with an SI prefix where one fits. A time below 10⁻¹⁵ s is written as 0 s.
 ///
 /// ```
 /// use vibro_record::units::notation::quantity;
@@ -147,8 +146,8 @@ pub fn quantity(value: f64, unit: &str, digits: usize) -> String {
     [number.as_str(), between, &unit].concat()
 }
 
-/// The reference of a level: a number from 1 to below 1000 in a unit with a prefix, as `1 µm/s`. 0.1 V is 100
-/// mV.
+/// The reference of a level: a number from 1 to below 1000 in a unit with a prefix, such as `1 µm/s`; so
+/// 0.1 V is written as `100 mV`.
 ///
 /// ```
 /// use vibro_record::units::notation::reference;
@@ -164,8 +163,8 @@ pub fn reference(value: f64, unit: &str) -> String {
 
 /// A unit multiplied by a power of ten, with an SI prefix where one fits (`m` and −3 give `mm`).
 ///
-/// Only coherent units take a prefix, in first place and to the first power; metres and seconds only prefixes
-/// below 1. Any other unit is preceded by the power itself.
+/// Only a coherent SI unit (m, not mm) in first place and to the first power takes a prefix; metres and
+/// seconds take only prefixes below 1. Any other unit is preceded by the power of ten.
 pub fn scaled_unit(unit: &str, exponent: i32) -> String {
     const PREFIXES: [(i32, &str); 8] =
         [(-12, "p"), (-9, "n"), (-6, "µ"), (-3, "m"), (3, "k"), (6, "M"), (9, "G"), (12, "T")];
@@ -193,8 +192,8 @@ pub fn scaled_unit(unit: &str, exponent: i32) -> String {
     if unit.is_empty() { power_of_ten(exponent) } else { format!("{} {unit}", power_of_ten(exponent)) }
 }
 
-/// Label of an axis or a column: `Displacement amplitude (mm)`. A quotient in a unit is written as a product,
-/// so that no brackets stand in brackets: `(m/s²)/N` as `m s⁻²/N`.
+/// Label of an axis or a column: `Displacement amplitude (mm)`. A quotient by time between brackets is
+/// written as a product, to avoid brackets within brackets: `(m/s²)/N` as `m s⁻²/N`.
 pub fn labelled(label: &str, unit: &str) -> String {
     match (label.is_empty(), unit.is_empty() || unit == "1") {
         (_, true) => label.to_owned(),
@@ -203,7 +202,7 @@ pub fn labelled(label: &str, unit: &str) -> String {
     }
 }
 
-/// A unit whose quotient in brackets, if it divides by time, is written as a product.
+/// The unit with a quotient by time between brackets written as a product: `(m/s)/N` becomes `m s⁻¹/N`.
 fn unbracketed(unit: &str) -> String {
     const PRODUCTS: [(&str, &str); 4] =
         [("/s)²", "² s⁻²"), ("/s²)²", "² s⁻⁴"), ("/s)", " s⁻¹"), ("/s²)", " s⁻²")];
@@ -221,7 +220,7 @@ fn rounded(value: f64, places: i32) -> String {
     fixed((value / unit).round() * unit, 0)
 }
 
-/// Power of ten of the first digit, once `value` is rounded to `digits` significant ones.
+/// Exponent of ten of the first digit, after `value` is rounded to `digits` significant digits.
 fn decade(value: f64, digits: usize) -> i32 {
     scientific(value, digits).1
 }

@@ -182,7 +182,7 @@ impl<'a> UnitParser<'a> {
         number.parse().ok()
     }
 
-    /// A factor; `below` a fraction bar a negative exponent is ambiguous.
+    /// A factor; if it is `below` a fraction bar, a negative exponent is refused as ambiguous.
     fn factor(&mut self, below: bool) -> Option<Parsed> {
         let mut name = "";
         let base = if self.one(&['(']).is_some() {
@@ -191,7 +191,7 @@ impl<'a> UnitParser<'a> {
             self.brackets += 1;
             return root((self.brackets <= MAX_BRACKETS).then(|| self.factor(below))??);
         } else if self.one(&['1']).is_some() {
-            // Digits after it would be another number, not its exponent.
+            // Digits after the 1 would be part of a number, not an exponent.
             return Some((Dimension::NONE, 1.0));
         } else {
             name = self.take(|c| c.is_alphabetic() || matches!(c, '%' | '°' | '_'));
@@ -253,7 +253,7 @@ fn symbol(name: &str) -> Option<Parsed> {
     Some((Dimension(exponents.map(|e| 2 * e)), factor * scale))
 }
 
-/// Spelling of a dimension without a name: base units with exponents, e.g. `m²·s⁻³`.
+/// Spelling of a dimension without a name: base units with exponents, e.g. `m^2·s^-3`.
 pub(crate) fn spell(dimension: Dimension) -> String {
     let names = ["m", "kg", "s", "A", "K", "rad"];
     let power = |e: i8| if e == 2 { String::new() } else { format!("^{}", f64::from(e) / 2.0) };

@@ -76,7 +76,7 @@ const TABLE: &[Entry] = &[
 ];
 
 impl Quantity {
-    /// The quantity of a dimension, [`Quantity::Other`] where it has no name here.
+    /// The quantity of a dimension; [`Quantity::Other`] where the table has no such dimension.
     pub fn of(dimension: Dimension) -> Quantity {
         TABLE.iter().find(|e| doubled(e.3) == dimension).map_or(Quantity::Other, |e| e.0)
     }
@@ -95,7 +95,7 @@ impl Quantity {
         self.entry().map_or("", |e| e.2)
     }
 
-    /// Whether it is a frequency response function, a motion over a force.
+    /// Whether it is the quantity of a frequency response function: motion over force.
     pub fn is_function(self) -> bool {
         matches!(self, Quantity::Receptance | Quantity::Mobility | Quantity::Accelerance)
     }
