@@ -28,7 +28,7 @@ struct Border {
 enum Goal {
     /// What are the impacts and rests of the motion?
     Motion,
-    /// What are the impacts of the motion, for methods with a soft contact?
+    /// What are the impacts and rests of the motion, for methods with a soft contact?
     Contact,
     /// Is there an impact, and when? Its time in s; `None` for no impact.
     First(Option<f64>),
@@ -54,7 +54,7 @@ enum Ability {
 /// Largest number of cycles for methods other than ours: with more they would take minutes.
 const MOST_RIVAL_CYCLES: f64 = 1e4;
 
-/// Methods in the order of the figure, each with its setting and what it can compute. The stiff spring
+/// Methods in the order of the figure, each with its setting and its ability. The stiff spring of 1e8 N/m
 /// counts as a rigid impact: it is in contact for 0.07 % of the period.
 const METHODS: &[(Method, f64, Ability)] = &[
     (by::CLOSED, 0.0, Ability::Orbits),

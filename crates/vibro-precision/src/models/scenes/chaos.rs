@@ -56,7 +56,7 @@ fn truth_runs() -> Result<Vec<[f64; 2]>> {
 pub(super) fn scene() -> Result<Setup> {
     let runs = truth_runs()?;
     let truth = [0, 1].map(|i| moments(runs.iter().map(|run| run[i])));
-    // Relative standard error of a method's statistics, including that of the truth.
+    // Relative standard error of the difference between a method's statistics and the truth.
     let scatter = truth.map(|[mean, std]| std / mean * (1.0 + 1.0 / TRUTH_STARTS as f64).sqrt());
     let judge = move |log: &[Log]| -> Verdict {
         let found = statistics(&log[0]);
