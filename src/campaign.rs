@@ -50,7 +50,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use toml::de::DeTable;
 
-/// Folder for results where none is named.
+/// Folder for results where the file names no folder.
 const RESULTS: &str = "results";
 
 /// The part of a campaign file that applies to all records. [`crate::analysis`] reads the tables of records.

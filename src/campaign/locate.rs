@@ -4,7 +4,7 @@ use crate::record::Written;
 use std::ops::Range;
 use toml::de::{DeTable, DeValue};
 
-/// (Term of the field that is no table name, table that a user probably wants.)
+/// Pairs of a term of the field that is not a table name, and the table that the user probably wants.
 const TABLE_SYNONYMS: &[(&str, &str)] = &[
     ("modal", "frf"),
     ("hammer", "frf"),

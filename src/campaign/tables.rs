@@ -93,11 +93,11 @@ pub struct ModelEntry {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Follows {
-    /// Impacts without duration.
+    /// Rigid impacts: a restitution, no duration.
     Restitution,
-    /// A contact of spring and damper.
+    /// A contact of a linear spring and a damper.
     KelvinVoigt,
-    /// A contact whose force is no straight line.
+    /// A contact whose force is not linear in the indentation.
     HuntCrossley,
 }
 

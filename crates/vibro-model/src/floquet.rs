@@ -5,8 +5,8 @@ use nalgebra::{Matrix2, Matrix4, RowVector4, SVD, Schur, Vector4};
 use num_complex::Complex64;
 use vibro_record::{Error, Result};
 
-/// Free flow Φ(t) of both masses in (x₁, v₁, x₂, v₂) over `t` (s). The force does not enter, since it moves
-/// all neighbouring motions alike. A wall has no neighbouring motions: its part is 0.
+/// Free flow Φ(t): matrix that carries a small disturbance of (x₁, v₁, x₂, v₂) over `t` (s). The force does
+/// not enter, since it moves all neighbouring motions alike. A wall cannot be disturbed: its part is 0.
 fn flow(rig: &Rig, t: f64) -> Matrix4<f64> {
     let mut phi = Matrix4::zeros();
     let moving = if rig.has_wall() { 1 } else { 2 };
@@ -36,10 +36,10 @@ fn saltation(rig: &Rig, before: &[f64; 4], after: &[f64; 4]) -> Matrix4<f64> {
 /// Monodromy Φ(T)S of a motion with one impact a period, from just before one impact to just before the next,
 /// and a bound on its rounding in the Frobenius norm, for relative errors of ε in the arguments.
 ///
-/// `before` and `after` are rates of the state (v₁, a₁, v₂, a₂) just before and after the impact. Errors: of
-/// the free flow, ε times its phase ΩT; of sums and products of four, 4ε each; of the quotient in the
-/// saltation, the four terms of each acceleration; of the Schur form, a few ε of the product. Together they
-/// are below 64 (1 + ΩT) ε times both norms.
+/// `before` and `after` are rates of the state (v₁, a₁, v₂, a₂) just before and after the impact. The bound
+/// covers these errors: of the free flow, ε times its phase ΩT; of each sum or product of four terms, 4ε; of
+/// the quotient in the saltation, the four terms of each acceleration; of the Schur form, a few ε of the
+/// product. Together they are below 64 (1 + ΩT) ε times the norms of flow and saltation.
 pub(super) fn monodromy(rig: &Rig, period: f64, before: &[f64; 4], after: &[f64; 4]) -> (Matrix4<f64>, f64) {
     let (flow, saltation) = (flow(rig, period), saltation(rig, before, after));
     let phase = rig.oscillators().iter().map(|o| o.omega2().sqrt() * period).fold(0.0, f64::max);
@@ -50,9 +50,9 @@ pub(super) fn monodromy(rig: &Rig, period: f64, before: &[f64; 4], after: &[f64;
 /// Whether all multipliers lie inside the unit circle; `None` where an error of norm `rounding` in the
 /// monodromy could move one onto it, and none lies outside with certainty.
 ///
-/// A matrix within `rounding` has the eigenvalue z exactly where the smallest singular value of M − z does
-/// not exceed it (L. N. Trefethen and M. Embree, *Spectra and Pseudospectra* (2005), §2), however
-/// ill-conditioned a double multiplier is.
+/// Some matrix within `rounding` of M has the eigenvalue z exactly where the smallest singular value of M − z
+/// does not exceed `rounding` (L. N. Trefethen and M. Embree, *Spectra and Pseudospectra* (2005), §2). This
+/// also holds for double multipliers, however ill-conditioned they are.
 pub(super) fn inside(monodromy: &Matrix4<f64>, multipliers: &[Complex64; 4], rounding: f64) -> Option<bool> {
     let open = |z: &Complex64| {
         let nearest = z / z.norm();
@@ -82,7 +82,7 @@ fn singular_floor(determinant: f64, norm_squared: f64) -> f64 {
     determinant * share * share.sqrt()
 }
 
-/// Eigenvalues, largest modulus first.
+/// Floquet multipliers: eigenvalues of the monodromy, largest modulus first.
 ///
 /// # Errors
 /// If the matrix has a value that is not finite, or the iteration does not converge.

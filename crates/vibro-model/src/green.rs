@@ -3,13 +3,13 @@
 use vibro_math::Oscillator;
 use vibro_record::{Error, Result};
 
-/// χ(t) = e^{−bt}[sin λt + e^{−bT} sin λ(T − t)] / (mλ(1 + e^{−2bT} − 2e^{−bT} cos λT)), 0 ≤ t ≤ T, in m/(N
-/// s).
+/// χ(t) = e^{−bt}[sin λt + e^{−bT} sin λ(T − t)] / (mλ(1 + e^{−2bT} − 2e^{−bT} cos λT)) for 0 ≤ t ≤ T, in
+/// m/(N s).
 ///
 /// Babitsky, *Theory of Vibro-Impact Systems* (1998); Rosenwasser (1969). Computed here as the free motion
-/// that returns to its start after T with its velocity lower by 1/m: (χ, χ̇)(0⁺) = (I − Φ(T))⁻¹(0, 1/m). This
-/// form holds at any damping. Its relative error is about ε/(ΩT)² where the period is short against the
-/// natural one.
+/// that returns after T to its start, with a velocity lower by 1/m: (χ, χ̇)(0⁺) = (I − Φ(T))⁻¹(0, 1/m). This
+/// form holds at any damping. Where the period T is short against the natural period, its relative error is
+/// about ε/(ΩT)².
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Green {
     pub(crate) oscillator: Oscillator,

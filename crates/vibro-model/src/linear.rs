@@ -3,10 +3,10 @@
 //!
 //! In a mode both accelerations are linear in the state: a = A(x₁, v₁, x₂, v₂) + constant + gain·F(t). The
 //! series of the motion follows from it term by term (xₖ₊₁ = vₖ/(k + 1), vₖ₊₁ = aₖ/(k + 1)), also for a
-//! matrix without a full set of eigenvectors (critical damping). In the norm max(s|xᵢ|, |vᵢ|) with s² = Cs +
-//! K, where K and C are the largest row sums of stiffness and damping over mass, ‖A‖ ≤ s. A piece lasts at
-//! most 1/s and 1/ω, so the truncation of the series after the power [`ORDER`] is below e/(ORDER + 1)! =
-//! 2.3e-17 of the norm: below rounding.
+//! matrix without a full set of eigenvectors (critical damping). Let K and C be the largest row sums of
+//! stiffness and damping over mass, and s² = Cs + K. Then ‖A‖ ≤ s in the norm max(s|xᵢ|, |vᵢ|). A piece lasts
+//! at most 1/s and 1/ω, so truncating the series after the power [`ORDER`] changes the motion by less than
+//! e/(ORDER + 1)! = 2.2e-17 of the norm: less than rounding.
 
 use super::flow::State;
 use super::motion::Path;
@@ -120,7 +120,7 @@ pub struct Quantity {
 }
 
 impl Quantity {
-    /// Its value at a state and an exciting force (N).
+    /// Value of the quantity at a state and an exciting force (N).
     pub fn value(&self, state: &State, force: f64) -> f64 {
         dot(&self.weights, &state.array()) + self.force * force + self.offset
     }
@@ -132,7 +132,7 @@ impl Quantity {
     }
 }
 
-/// The course of a quantity within one piece.
+/// A quantity as a polynomial of time within one piece.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct QuantityCourse {
     polynomial: Polynomial<{ ORDER + 1 }>,
@@ -145,7 +145,7 @@ impl QuantityCourse {
         if self.duration > 0.0 { self.polynomial.integral(t / self.duration) * self.duration } else { 0.0 }
     }
 
-    /// First time in s at which the quantity, not negative at the beginning, falls to zero. No root is
+    /// First time in s at which a quantity that is not negative at the beginning falls to zero. No root is
     /// missed.
     #[inline]
     pub fn first_fall(&self) -> Option<f64> {

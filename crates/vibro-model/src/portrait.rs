@@ -8,7 +8,7 @@ use super::regime::{Pattern, Watch};
 use std::f64::consts::TAU;
 use vibro_record::{Error, Result};
 
-/// Most cycles of a portrait.
+/// Largest number of cycles of a portrait: every impact and one state per cycle are kept in memory.
 pub(crate) const MOST_CYCLES: u32 = 100_000;
 
 /// A motion over some cycles of its excitation.
@@ -22,13 +22,13 @@ pub struct Portrait {
     pub pattern: Pattern,
     /// Peak, root mean square and impulse of the force between the masses.
     pub reaction: Reaction,
-    /// Time (s) and force (N) in the contacts of the last cycles; empty for rigid impacts.
+    /// Time (s) and force (N) in the contacts of the last, sampled cycles; empty for rigid impacts.
     pub force: Vec<(f64, f64)>,
-    /// Sampling times in s of the last cycles.
+    /// Sampling times in s, in the last cycles.
     pub time: Vec<f64>,
     /// States at these times.
     pub states: Vec<State>,
-    /// Time in s of each impact during the sampled cycles, and the states before and after it.
+    /// Time in s of each impact in the sampled cycles, and the states just before and just after it.
     pub jumps: Vec<(f64, State, State)>,
     /// Start times of the cycles in s.
     pub beginnings: Vec<f64>,
@@ -41,7 +41,7 @@ pub struct Portrait {
 pub struct PortraitOptions {
     /// Number of cycles.
     pub cycles: u32,
-    /// Samples a cycle of the traces.
+    /// Samples per cycle of the traces.
     pub samples: u32,
     /// Number of cycles at the end that are sampled.
     pub shown: u32,

@@ -39,7 +39,7 @@ pub struct Scene {
     pub buffer: Option<Buffer>,
 }
 
-/// Numbers of a compliant contact; its law determines which are needed.
+/// Numbers of a compliant contact; the contact law determines which of them are needed.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields, expecting = "a table")]
 pub struct ContactKeys {
@@ -47,7 +47,7 @@ pub struct ContactKeys {
     pub stiffness: Option<f64>,
     /// Damping: c in N s/m beside a linear spring, α in s/m in the Hunt–Crossley law.
     pub damping: Option<f64>,
-    /// Exponent n.
+    /// Exponent n of the force kδⁿ: 1 for a linear spring.
     pub exponent: Option<f64>,
 }
 
@@ -55,7 +55,7 @@ pub struct ContactKeys {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields, expecting = "a table")]
 pub struct Buffer {
-    /// Distance in m that mass 1 can move freely from its rest before its spring and damper act.
+    /// Distance in m from the rest of mass 1 to the buffer: the spring acts only beyond it.
     pub gap: f64,
     /// The damper always acts, not only in compression.
     pub damper_always: bool,

@@ -25,7 +25,7 @@ pub(super) struct Waves {
     count: usize,
     /// Σ|X| in m, a bound on |x|.
     pub amplitude: f64,
-    /// Bounds Σωⁿ|X| on the derivatives.
+    /// Bounds Σωⁿ|X| on the derivatives of order n.
     pub limits: Limits,
 }
 
@@ -77,8 +77,8 @@ impl Waves {
         self.terms.iter().take(self.count).fold(0.0, |most, wave| most.max(wave.omega))
     }
 
-    /// Adds x and its derivatives at time 0, each times its weight, to `terms`; returns a bound on the next
-    /// derivative.
+    /// Adds x and its derivatives at time 0, each times its weight, to `terms`; returns a bound on the first
+    /// derivative that is left out.
     #[inline]
     pub fn terms<const N: usize>(&self, weights: &[f64; N], terms: &mut [f64; N]) -> f64 {
         for wave in self.terms.iter().take(self.count) {

@@ -135,7 +135,7 @@ impl Unit {
         self.dimension.is_some()
     }
 
-    /// Whether it is a unit of levels, such as `dB re 1 m/s²`: values in it are no amplitudes.
+    /// Whether it is a unit of levels, such as `dB re 1 m/s²`: values in it are not amplitudes.
     pub fn is_level(&self) -> bool {
         !self.is_known() && is_level(self.symbol())
     }

@@ -1,4 +1,4 @@
-//! Effects of events: on the stage of a contact, the velocities, the spring of mass 1.
+//! Effects of events on the stage of a contact, on the velocities, and on the spring of mass 1.
 
 use super::compliant::{Compliant, ContactStage, Mark};
 use super::still::Still;
@@ -6,11 +6,12 @@ use crate::forcing::Tick;
 use crate::impact::Impact;
 use crate::motion::{Event, Piece};
 
-/// Separation speed in m/s below which pressed masses stay together after a rebound; it ends a chatter.
+/// Separation speed in m/s below which pressed masses stay together after a rebound, which ends a chatter. A
+/// larger speed leaves out more rebounds: at a pressing acceleration a, the last 2·1e-9/(a(1 − R)) s.
 const REST_SPEED: f64 = 1e-9;
 
 impl Compliant {
-    /// Applies the change at a root, and returns its event.
+    /// Applies the change that begins at a root of a watched quantity, and returns its event.
     pub(super) fn mark(&mut self, mark: Mark) -> Event {
         match mark {
             Mark::Meets if self.law.is_none() => self.rebound(),
@@ -45,7 +46,7 @@ impl Compliant {
         }
     }
 
-    /// An impact with the present state, its impulse not yet known.
+    /// The impact that begins at the present state; its impulse is still 0.
     fn met(&self) -> Impact {
         let (time, phase) = (self.time, self.drive.phase);
         Impact { time, phase, approach_velocity: self.state.approach(), impulse: 0.0 }
@@ -101,7 +102,7 @@ impl Compliant {
         event
     }
 
-    /// Finds the contact's stage after a jump of the force.
+    /// Updates the stage of the contact after a jump of the force or of a velocity.
     pub(super) fn find_stage(&mut self) {
         let pulls = self.modes.contact_force.value(&self.state, 0.0) < 0.0;
         match self.stage {

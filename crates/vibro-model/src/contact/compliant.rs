@@ -20,7 +20,7 @@ use vibro_record::{Error, Result};
 
 /// Most pieces of linear motion in one call: some minutes of work. An integrated piece counts as ten.
 const MOST_WORK: f64 = 1e9;
-/// Events in a row without time passing after which the simulation stops with an error.
+/// Largest number of events in a row at the same time; with more the simulation stops with an error.
 const MOST_AT_ONCE: u32 = 1000;
 
 /// Stage of a contact.
@@ -28,15 +28,15 @@ const MOST_AT_ONCE: u32 = 1000;
 pub(super) enum ContactStage {
     /// Apart.
     Apart,
-    /// In contact with a force.
+    /// In contact, with a force that pushes.
     Touching,
     /// The force has fallen to zero while the surfaces are still indented.
     Released,
-    /// Moving together after rigid impacts without rebound.
+    /// Moving together, pressed, after rigid impacts whose rebounds have died away.
     Together,
 }
 
-/// Event at a root of a watched quantity.
+/// Event at which a watched quantity, such as the gap or the contact force, falls to zero.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Mark {
     Meets,
@@ -71,10 +71,10 @@ pub struct Compliant {
     pub(super) state: State,
     pub(super) stage: ContactStage,
     pub(super) spring_acts: bool,
-    /// The present contact, with its impulse so far.
+    /// The present contact, with the impulse in N s that it has transferred so far.
     pub(super) impact: Impact,
-    /// Overlap in m, of the order of rounding, that does not yet count as contact, for masses that have just
-    /// parted from rest.
+    /// Overlap in m that does not count as contact after masses at rest against each other have parted: it
+    /// is of the order of rounding.
     pub(super) slack: f64,
 }
 
@@ -163,7 +163,7 @@ impl Compliant {
         Ok(motion)
     }
 
-    /// Whether contacts are integrated: their force is not linear.
+    /// Whether contacts are integrated, because their force is not linear.
     pub(crate) fn integrates(&self) -> bool {
         self.within.law.is_some()
     }
@@ -186,7 +186,7 @@ impl Compliant {
         &by_spring[usize::from(self.spring_acts)]
     }
 
-    /// Computes one piece; returns whether it reached `until`.
+    /// Computes one piece; returns whether the motion has reached the time `until` (s).
     fn piece(&mut self, until: f64, visit: &mut dyn FnMut(Piece<'_>)) -> Result<bool> {
         let remaining = until - self.time;
         let due = self.drive.next(remaining, until);

@@ -1,4 +1,4 @@
-//! Contacts whose force is not linear: they are integrated.
+//! Numerical integration of contacts whose force is not linear.
 
 use crate::flow::State;
 use crate::forcing::Forcing;
@@ -9,7 +9,7 @@ use crate::rig::Rig;
 use vibro_math::runge_kutta::{Dop853, Integrator, Step, Tolerance};
 use vibro_record::Result;
 
-/// Relative error of a step, of the state or of its floor, whichever is larger.
+/// Error allowed in a step, relative to the state or to its floor, whichever is larger.
 const RELATIVE: f64 = 1e-13;
 
 /// Size of the integrated state: two displacements, two velocities, and the impulse since the step's start.
@@ -25,7 +25,7 @@ pub(super) struct Within {
     reduced_mass: f64,
     /// Approach speed in m/s at the start of the contact.
     speed: f64,
-    /// Time scale of the contact in s, as of a rebound without losses.
+    /// Time scale of the contact in s, computed as for a rebound without losses.
     scale: f64,
     /// First step to try next, in s.
     next: f64,
@@ -54,10 +54,9 @@ impl Within {
         self.law.map_or((0.0, 1.0), |law| (law.numbers().0, law.numbers().1))
     }
 
-    /// Floors of the sizes that the relative error refers to: indentation and speed of the contact, and the
-    /// rounding of the displacements. An indentation is known to εX, X = |x₁| + |x₂| + |Δ|, so with the
-    /// contact's angular frequency ω a speed is known to εωX; X/50 and ωX/50, times the relative error, are
-    /// nine times these.
+    /// Smallest sizes that the relative error refers to: the indentation and the speed of the contact, but at
+    /// least X/50 and ωX/50, with X = |x₁| + |x₂| + |Δ| and the contact's angular frequency ω. An indentation
+    /// is rounded to εX and a speed to εωX; the error allowed at X/50 and ωX/50 is nine times these.
     fn floor(&self, state: &State) -> [f64; SIZE] {
         let (stiffness, exponent) = self.spring();
         let depth = (state.x1 - state.x2 - self.gap).max(self.speed * self.scale);
@@ -68,7 +67,7 @@ impl Within {
     }
 
     /// One step of at most `span` > 0 seconds from `state`; `mode` gives the accelerations without the
-    /// contact. The last component is the impulse in N s.
+    /// contact. The last component is the impulse of the contact in N s since the start of the step.
     pub fn step(&mut self, mode: &Linear, drive: &Forcing, state: &State, span: f64) -> Result<Step<SIZE>> {
         let law = self.law;
         let [inverse1, inverse2] = self.inverse;

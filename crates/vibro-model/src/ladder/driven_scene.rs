@@ -1,4 +1,4 @@
-//! A scene at one excitation, and what it states of its contact.
+//! A scene at one excitation, and the contact law that its keys state.
 
 use super::question::Question;
 use crate::excitation::Excitation;
@@ -25,18 +25,18 @@ pub struct DrivenScene<'a> {
     pub question: &'a Question,
 }
 
-/// Keys of the contact; all unknown where there is none.
+/// Keys of the contact; all are unknown where the scene has no contact.
 pub fn keys(scene: &Scene) -> ContactKeys {
     scene.contact.unwrap_or_default()
 }
 
-/// Whether the stated contact is no linear spring: its exponent is not 1.
+/// Whether the contact states an exponent other than 1: its force is then not linear.
 pub fn is_curved(scene: &Scene) -> bool {
     keys(scene).exponent.is_some_and(|n| n != 1.0)
 }
 
-/// The contact law of curved bodies that the scene states. Without a stated damping, it is that which gives
-/// the rig's restitution at the approach speed `speed` (m/s).
+/// The Hunt–Crossley law of curved bodies with the numbers of the scene. A missing damping is replaced by the
+/// one that gives the rig's restitution at the approach speed `speed` (m/s).
 ///
 /// # Errors
 /// If the stiffness is missing, or a number is impossible.

@@ -70,8 +70,8 @@ fn a_mode_is_the_matrix_exponential_at_any_damping() {
                 let expected: [f64; 4] =
                     std::array::from_fn(|i| y[i] + (0..5).map(|j| e[i][j] * y[j]).sum::<f64>());
                 let found = fly_far(&mode, start, t);
-                // In the norm max(s|x|, |v|), 0.5 + s·2 mm: some 30 squarings of the reference, each with a
-                // few roundings.
+                // The size of the motion in the norm max(s|x|, |v|), at most 0.5 m/s + s·3 mm, times the
+                // rounding of the reference: 30 squarings with a few roundings each.
                 let s = mode.rate;
                 let size = (0.5 + 3e-3 * s) * f64::max(1.0, turns);
                 let tolerance = 200.0 * f64::EPSILON * size;

@@ -1,4 +1,4 @@
-//! Conditions for orbits with one impact in a period, and the orbit of each solution.
+//! Conditions for orbits with one impact per period, and the orbit of each solution.
 
 use super::validity::Judged;
 use super::{Course, Orbit};
@@ -9,7 +9,7 @@ use crate::scales;
 use num_complex::Complex64;
 use vibro_record::{Error, Result};
 
-/// Most swings of a mass in a period; it bounds the work of searching them for contacts.
+/// Largest number of swings of a mass in a period: each is searched for contacts, so it limits the work.
 const MOST_SWINGS: f64 = 5e4;
 
 /// Conditions of an impact J, with the steady motion y of mass 1 alone: the masses meet where y = Δ + JC, and
@@ -33,21 +33,21 @@ pub struct Conditions {
 pub struct Root {
     /// Impulse J in N s.
     pub impulse: f64,
-    /// Timing: φ in rad or τ in s.
+    /// Timing of the impact: φ in rad under a sine force, τ in s under impulses or pulses.
     pub timing: f64,
     /// Phase of the excitation's cycle at the impact, in rad.
     pub force_phase: f64,
     /// |dJ/dΔ| in N s/m.
     pub sensitivity: f64,
-    /// Size of the terms of y = Δ + JC, in m.
+    /// Size in m of the terms of y = Δ + JC; rounding is relative to it.
     pub size: f64,
     /// Whether a larger impulse would take more energy than the force provides: the side of the fold.
     pub upper: bool,
 }
 
 impl Conditions {
-    /// Conditions of one impact in `cycles` cycles at `frequency` (Hz), each `delay` (s) after the first
-    /// touch: by then the rigid motions overlap by vᵣ times the delay.
+    /// Conditions of one impact in `cycles` cycles at `frequency` (Hz). The impact follows the first touch by
+    /// `delay` (s): by then the rigid motions overlap by the approach speed times the delay.
     ///
     /// # Errors
     /// If `cycles` is 0, the period has too many swings, or the period resonates with an undamped mass.
@@ -75,10 +75,10 @@ impl Conditions {
         self.greens[0].period
     }
 
-    /// The orbit of a root, with its verdicts; without an excitation it is a free motion.
+    /// The orbit of a root, with its verdicts. Without an excitation the orbit is a free motion.
     pub fn orbit(&self, root: &Root, course: Course, excitation: Option<Excitation>) -> Orbit {
         let rig = &self.rig;
-        // Rounding of the terms is passed on to the impulse by its sensitivity.
+        // Rounding of the terms changes the impulse in proportion to its sensitivity.
         let amplified = excitation.is_some().then(|| 1.0 + root.size * root.sensitivity / root.impulse);
         let (exists, own) = (root.impulse > 0.0, root.impulse.abs() / root.sensitivity);
         let courses = std::slice::from_ref(&course);

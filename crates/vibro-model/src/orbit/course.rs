@@ -4,7 +4,7 @@
 use super::turns::Signal;
 use crate::flow::{Flight, State};
 
-/// Successive flights without an impulse or a step of the force inside.
+/// Successive flights from impact to impact. An impulse or a step of the force ends a flight.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Course {
     /// Time from impact to impact in s.
@@ -31,7 +31,7 @@ impl Course {
         self.stretches[last].1.state(t)
     }
 
-    /// Rates of the state just before and just after the impact.
+    /// Rates (v₁, a₁, v₂, a₂) of the state just before and just after the impact.
     pub fn rates(&self) -> ([f64; 4], [f64; 4]) {
         let (duration, last) = &self.stretches[self.stretches.len() - 1];
         (last.rate(*duration), self.stretches[0].1.rate(0.0))
@@ -42,10 +42,10 @@ impl Course {
         self.stretches.iter().map(|(_, stretch)| stretch.noise()).fold(0.0, f64::max)
     }
 
-    /// Ranges of both masses, and the smallest gap inside the period, without the impact itself.
+    /// Ranges of both displacements, and the smallest gap between the impacts.
     pub fn survey(&self) -> Excursion {
-        // Minima nearer to the impact than this are the impact itself (without rebound the gap starts at zero
-        // rate).
+        // A minimum of the gap closer in time to the impact than this is the impact itself: without rebound
+        // the gap begins at zero rate.
         let margin = 1e-9 * self.period;
         let inside = |t: f64| t > margin && t < self.period - margin;
         let mut survey = Excursion { ranges: [(f64::INFINITY, f64::NEG_INFINITY); 2], closest: None };
@@ -53,7 +53,7 @@ impl Course {
         for (duration, stretch) in &self.stretches {
             let duration = *duration;
             let (first, last) = (stretch.series(0.0), stretch.series(duration));
-            // A corner or a smooth minimum of the gap on the border of two stretches.
+            // The gap has a minimum, smooth or a corner, where two stretches join.
             if inside(start) && before.is_some_and(|rate| rate < 0.0 && first[1][1] >= first[0][1]) {
                 survey.near(stretch.gap + first[1][0] - first[0][0]);
             }
@@ -80,7 +80,7 @@ impl Course {
 pub struct Excursion {
     /// Smallest and largest x₁ and x₂ in m.
     pub ranges: [(f64, f64); 2],
-    /// Smallest gap in m away from the impact; `None` where the masses part and return without one.
+    /// Smallest minimum of the gap in m between the impacts; `None` where the gap has no minimum there.
     pub closest: Option<f64>,
 }
 

@@ -5,8 +5,8 @@ use crate::steady::NoImpact;
 use vibro_math::Oscillator;
 use vibro_record::Result;
 
-/// The steady motion, in two pieces of free motion: during the pulse about f/k₁, after it about 0. An impulse
-/// is a pulse of no width.
+/// The steady motion as two pieces of free motion: about the displacement f/k₁ during the pulse, and about 0
+/// after it. An impulse is a pulse of no width.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PulseResponse {
     pub oscillator: Oscillator,
@@ -35,7 +35,7 @@ pub struct Piece {
 }
 
 impl PulseResponse {
-    /// Steady motion under one impulse (N s) a cycle: F times the periodic Green's function.
+    /// Steady motion under one impulse (N s) per cycle: the impulse times the periodic Green's function.
     ///
     /// # Errors
     /// As [`Green::new`].
@@ -90,7 +90,7 @@ impl PulseResponse {
         ]
     }
 
-    /// Displacement, velocity and acceleration at the time `at` (s) after the beginning of the pulse.
+    /// Displacement (m), velocity (m/s) and acceleration (m/s²) `at` seconds after the start of the pulse.
     pub fn at(&self, at: f64) -> [f64; 3] {
         let (piece, t) = self.piece(at);
         let (x, v) = self.oscillator.free(piece.free.0, piece.free.1, t);

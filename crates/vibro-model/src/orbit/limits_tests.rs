@@ -1,4 +1,4 @@
-//! Limits of orbits: a wall, no losses, contacts with a duration.
+//! Orbits in limiting cases: a wall as mass 2, no losses, contacts with a duration.
 
 use super::*;
 use crate::excitation::{Impulses, Pulses};
@@ -17,8 +17,8 @@ fn wall() -> Rig {
 
 #[test]
 fn an_impact_oscillator_without_losses_has_its_textbook_impulse() {
-    // Undamped, R = 1: x = A cos ωt at φ = 0 or π, minus J times the Green's function cot(πΩ/ω)/(2mΩ), so J =
-    // 2mΩ tan(πΩ/ω)(±|A| − Δ).
+    // Undamped, R = 1: x = A cos ωt at φ = 0 or π, minus J times the Green's function cot(πΩ/ω)/(2mΩ), so
+    // J = 2mΩ tan(πΩ/ω)(±|A| − Δ).
     let rig = Rig { c1: 0.0, restitution: 1.0, ..wall() };
     let natural = (rig.k1 / rig.m1).sqrt();
     for nu in [0.7, 1.3, 1.72, 2.4] {
@@ -97,8 +97,8 @@ fn simulations_stay_on_stable_orbits_of_every_excitation() {
                         {
                             continue;
                         }
-                        // Starts near the middle of the period with a small disturbance, which decays by
-                        // 0.97^(800/2).
+                        // Starts near the middle of the period with a small disturbance, which shrinks to
+                        // 0.97^(800/2) = 5e-6 of itself.
                         let half = orbit.period() * 0.47;
                         let mut start = orbit.state(half);
                         start.v1 += 1e-6;

@@ -45,9 +45,9 @@ impl Quadratic {
         self.a > 0.0 && self.discriminant >= 0.0
     }
 
-    /// Its roots, the larger first; beyond the fold, twice the double root at the fold.
+    /// The roots, the larger first; beyond the fold both are −ΔC/a, as for the double root at the fold.
     fn roots(&self) -> [f64; 2] {
-        // First the root without cancellation, then the other from the product.
+        // First the root that is computed without cancellation, then the other from the product of both.
         let root = self.discriminant.max(0.0).sqrt();
         let first = -(self.half + root.copysign(self.half)) / self.a;
         let second = match (first == 0.0, self.discriminant > 0.0) {
@@ -59,8 +59,7 @@ impl Quadratic {
     }
 }
 
-/// The motion after an impact J with the forced motion `forced` of mass 1: −Jχ₁ is added to it, mass 2 moves
-/// by Jχ₂.
+/// The motion after an impact J: mass 1 moves by its forced motion `forced` minus Jχ₁, mass 2 by Jχ₂.
 fn course(conditions: &Conditions, impulse: f64, forced: Waves) -> Course {
     let [one, two] = &conditions.greens;
     let free = [
@@ -98,7 +97,7 @@ pub fn orbits(conditions: &Conditions, steady: &Steady, sine: &Sine) -> Vec<Orbi
     [(larger, true), (smaller, false)].map(one).into()
 }
 
-/// Amplitudes of the orbit of the larger root, without verdicts: fast, for fits, which compute it a million
+/// Amplitudes of the orbit with the larger impulse, without verdicts. This is fast: fits compute it a million
 /// times.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ShownOrbit {
@@ -126,7 +125,7 @@ pub fn shown(rig: &Rig, sine: &Sine) -> Result<ShownOrbit> {
     let [impulse, _] = quadratic.roots();
     let [l1, l2] = rig.receptances(omega);
     let train = 2.0 * impulse * sine.frequency;
-    // A cos φ and A sin φ; beyond the fold their squares do not add up to A².
+    // A cos φ and A sin φ. Beyond the fold their squares do not add up to A², so they are scaled to A.
     let forced = Complex64::new(rig.gap + impulse * conditions.c, -impulse * conditions.p / omega);
     let forced = forced * (steady.amplitude() / forced.norm());
     Ok(ShownOrbit {
@@ -185,8 +184,8 @@ mod tests {
                 continue;
             };
             assert_eq!(shown.exists, orbit.validity.exists);
-            // The phase is converted to an angle and back, rounded to ε, and x₁ is a difference of terms that
-            // are larger by this factor.
+            // The phase is converted to an angle and back, with a rounding of ε. x₁ is a difference of terms
+            // that are larger than x₁ by the factor `parts`, which amplifies the rounding.
             for (a, x) in shown.amplitude.iter().zip(orbit.fundamental) {
                 let parts = 1.0 + all.no_impact.amplitude / x.norm();
                 assert!((a / x.norm() - 1.0).abs() < 64.0 * f64::EPSILON * parts, "{frequency}: {a} {x}");

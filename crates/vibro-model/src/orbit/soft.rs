@@ -9,7 +9,7 @@ use num_complex::Complex64;
 use serde::Serialize;
 use vibro_record::{Error, Result};
 
-/// Largest contact duration as a share of the period. The correction was checked up to here.
+/// Largest contact duration as a share of the period: the correction was checked up to this share.
 pub(crate) const LONGEST_CONTACT: f64 = 0.025;
 
 /// A contact of spring k₃ and damper c₃ (Kelvin–Voigt) that cannot pull, and how the reduced mass M of the
@@ -136,7 +136,7 @@ pub fn softened(
             return Ok(None);
         }
         let (mut at, mut restitution) = (orbit.clone(), rig.restitution);
-        // κ in 1/s, correction 3.
+        // κ in 1/s of correction 3: the rate at which the rig's dampers slow a relative speed.
         let [first, second] = rig.bodies().map(|body| body.damping / (body.mass * body.mass));
         let kappa = rig.reduced_mass() * (first + second);
         // Each iteration multiplies the remaining error by about the contact's share of the period: 0.025⁸ is
@@ -170,8 +170,9 @@ pub fn softened(
     found.orbits.iter().map(soften).collect()
 }
 
-/// Accelerations in m/s² that would press the masses together without contact: that just before the impact;
-/// and the mean of those just before and just after it, without the dampers' part −κ × relative speed.
+/// Accelerations in m/s² at which the masses would approach each other without contact: the one just before
+/// the impact, and the mean of those just before and just after it, without the dampers' part −κ × relative
+/// speed.
 fn pressing(orbit: &Orbit, kappa: f64) -> [f64; 2] {
     let (before, after) = orbit.course.rates();
     let [first, last] = [before, after].map(|rate| rate[1] - rate[3]);

@@ -1,5 +1,5 @@
-//! Orbits against their own conditions, their energy balance, other methods of computation, and reference
-//! values.
+//! Tests of orbits against their own conditions, their energy balance, other methods of computation, and
+//! reference values.
 
 use super::*;
 use crate::excitation::{Impulses, Pulses, Sines};
@@ -74,8 +74,8 @@ fn both_masses_meet_and_part_as_the_impact_law_says() {
 #[test]
 fn work_of_the_force_is_what_dampers_and_impact_take() {
     each(|rig, excitation, orbit| {
-        // Simpson's error is (hβ)⁴/180 of the whole, with β = 192/s for the square of the fastest decay and h
-        // below 0.1 ms.
+        // Simpson's rule has an error of (hβ)⁴/180 of the integral, with β = 192/s for the square of the
+        // fastest decay and a step h below 0.1 ms.
         let n = 10_000_u32;
         let omega = TAU * orbit.frequency;
         let (mut work, mut loss, mut put_in, mut before) = (0.0, 0.0, 0.0, None::<State>);
@@ -390,9 +390,9 @@ fn golden_losses_of_stability() {
     assert!((deep.validity.min_gap + 6.2e-3).abs() < 0.05e-3 && !deep.validity.admissible);
 }
 
-/// Without losses the multipliers come in pairs z, 1/z: z⁴ − az³ + bz² − az + 1, with w = z + 1/z from w² −
-/// aw + b − 2. All lie on the circle if both w are real and within ±2; otherwise one lies outside. None is
-/// ever stable.
+/// Without losses the multipliers come in pairs z, 1/z: roots of z⁴ − az³ + bz² − az + 1, with w = z + 1/z a
+/// root of w² − aw + b − 2. All z lie on the unit circle if both w are real and within ±2; otherwise one lies
+/// outside. Such a motion is never stable.
 #[test]
 fn a_rig_without_losses_is_neutral_or_unstable() {
     let rig = Rig { c1: 0.0, c2: 0.0, restitution: 1.0, ..Rig::thesis() };
@@ -445,8 +445,8 @@ fn the_clapping_peak_is_where_it_was_found() {
 
 #[test]
 fn grazing_distance_is_the_change_of_gap_that_grazes() {
-    // The positive root vanishes at Δ = A where C > 0, as at ν = 1: near there the first-order distance is A
-    // − Δ.
+    // The positive root vanishes at Δ = A where C > 0, as at ν = 1. Close to it, the first-order distance is
+    // A − Δ.
     let rig = Rig::thesis();
     let frequency = at(&rig, 1.0);
     let amplitude = orbits(&rig, 0.1, frequency).unwrap().no_impact.amplitude;
@@ -482,7 +482,7 @@ fn the_verdict_on_contacts_is_that_of_the_contact_search() {
     let (mut clear, mut pierced) = (0, 0);
     each(|rig, excitation, orbit| {
         let Excitation::Sine(sine) = excitation else { return };
-        // Without rebound the search would start at rest in contact.
+        // Without rebound the search for contacts would begin with the masses at rest against each other.
         if rig.restitution == 0.0 || orbit.impulse <= 0.0 {
             return;
         }

@@ -12,9 +12,9 @@ use vibro_math::root::bracketed;
 /// One-impact orbits, ordered by the time τ of the impact after the beginning of the pulse. `response` is the
 /// steady motion y of mass 1 alone under `excitation`.
 ///
-/// Without the impulse J, the conditions y(τ) = Δ + JC and ẏ(τ) = JP leave G(τ) = P(y − Δ) − Cẏ = 0. In each
-/// piece of the response Py − Cẏ is a free motion of mass 1, so its stationary points are known in closed
-/// form. Between two of them G has at most one root.
+/// Eliminating the impulse J from the conditions y(τ) = Δ + JC and ẏ(τ) = JP gives G(τ) = P(y − Δ) − Cẏ = 0.
+/// In each piece of the response Py − Cẏ is a free motion of mass 1 about a constant, so the stationary
+/// points of G are known in closed form. Between two of them G has at most one root.
 pub fn orbits(conditions: &Conditions, response: &PulseResponse, excitation: &Excitation) -> Vec<Orbit> {
     let mut orbits = Vec::new();
     let Conditions { c, p, rig, .. } = *conditions;
@@ -49,7 +49,7 @@ fn course(conditions: &Conditions, response: &PulseResponse, impulse: f64, delay
     let oscillators = conditions.rig.oscillators();
     let mut stretches = Vec::new();
     let (mut t, (mut piece, mut inside)) = (0.0, response.piece(delay));
-    // A remainder of a few roundings of the period is no stretch of its own.
+    // A remainder of a few roundings of the period is not made a stretch of its own.
     while t < period * (1.0 - 4.0 * f64::EPSILON) {
         let remaining = piece.duration - inside;
         let (x, v) = oscillators[0].free(piece.free.0, piece.free.1, inside);

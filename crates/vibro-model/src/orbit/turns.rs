@@ -35,11 +35,11 @@ impl Flight {
     /// Calls `visit` with every minimum and maximum of x₁, x₂ and the gap inside `0..duration`: its time, its
     /// value, and the signal's acceleration there.
     ///
-    /// Zeros of the rates are searched on a grid that is fine against the motion; the free motion is carried
-    /// from point to point by matrices. Where the rate f has |f″| ≤ M (`limit`) between two points, it has no
-    /// zero if, even bending toward zero with M from both ends, it cannot reach zero within the width. It has
-    /// exactly one if f changes sign and f′ keeps its sign. Other intervals are halved. Pairs of zeros closer
-    /// than a millionth of the duration may be missed: between them the signal changes by less than
+    /// Zeros of the rate f are searched on a grid that is fine against the motion; matrices carry the free
+    /// motion from point to point. Let |f″| ≤ M (`limit`) between two points. Then f has no zero there if it
+    /// cannot reach zero even with the curvature M towards zero from both ends. It has exactly one zero if f
+    /// changes sign and f′ keeps its sign. Other intervals are halved. Two zeros closer together than a
+    /// millionth of the duration may be missed: between them the signal changes by less than
     /// M(1e-6 duration)³.
     pub(crate) fn each_turn(&self, duration: f64, mut visit: impl FnMut(Signal, f64, f64, f64)) {
         let own = self.free.map(|part| part.oscillator.omega2().sqrt());
@@ -54,7 +54,7 @@ impl Flight {
         while n < steps {
             let right_t = (n + 1.0) * step;
             n += 1.0;
-            // Computed anew every 64 steps, since the rounding errors of the steps add up.
+            // Computed directly every 64 steps, since the rounding errors of the steps add up.
             free = if n % 64.0 == 0.0 {
                 self.free.map(|part| part.oscillator.free(part.x, part.v, right_t))
             } else {
@@ -72,7 +72,7 @@ impl Flight {
         }
     }
 
-    /// Rates and slopes of both masses, with bounds on the curvature of the rates for all later times.
+    /// Rates of both displacements, slopes of these rates, and bounds on their curvature for all later times.
     fn rates(&self, free: [(f64, f64); 2], t: f64) -> Rates {
         let [_, v, a, ..] = self.waves.at(t);
         let limit = self.waves.limits.jerk;
@@ -97,7 +97,7 @@ impl Flight {
         let Subinterval { signal, start, width, limit, duration } = *part;
         let change = left.0 * right.0 <= 0.0;
         if !change {
-            // The rate is above its chord minus M width²/8.
+            // The rate deviates from its chord by at most M width²/8.
             if left.0.abs().min(right.0.abs()) > limit * width * width / 8.0 {
                 return;
             }
@@ -117,7 +117,7 @@ impl Flight {
             if right.0 != 0.0 || start + width >= duration {
                 let t = start + cubic_zero(left, right, width);
                 let [value, rate, acceleration] = self.signal(signal, t);
-                // The rate is not exactly zero there: a step to its zero changes the value in second order.
+                // The rate is not exactly zero there: a Newton step to its zero corrects time and value.
                 let ahead = if acceleration == 0.0 { 0.0 } else { -rate / acceleration };
                 let ahead = if ahead.abs() <= width { ahead } else { 0.0 };
                 visit(signal, t + ahead, value + rate * ahead / 2.0, acceleration);
@@ -145,8 +145,8 @@ struct Subinterval {
     duration: f64,
 }
 
-/// Rates and slopes of both masses at a point of the grid, with bounds on the curvature of the rates for all
-/// later times.
+/// Rates of both displacements and slopes of these rates at a point of the grid, with bounds on the curvature
+/// of the rates for all later times.
 #[derive(Clone, Copy)]
 struct Rates {
     rate: [f64; 2],
@@ -154,7 +154,7 @@ struct Rates {
     limit: [f64; 2],
 }
 
-/// Matrix, row by row, that carries place and speed of a free oscillator over one step.
+/// Matrix, row by row, that carries displacement and velocity of a free oscillator over one step.
 #[derive(Clone, Copy)]
 struct StepMatrix([f64; 4]);
 
@@ -171,8 +171,8 @@ impl StepMatrix {
     }
 }
 
-/// Time for which a value f > 0 with this slope certainly stays above zero, if its curvature is at most
-/// `limit`.
+/// Time for which a rate with this value > 0 and this slope certainly stays above zero, if its curvature is
+/// at most `limit`.
 #[inline]
 fn reach(value: f64, slope: f64, limit: f64) -> f64 {
     let root = (slope * slope + 2.0 * limit * value).sqrt();

@@ -29,8 +29,7 @@ pub struct Validity {
     /// Smallest gap over the period in m: 0 (at the impact itself), or negative, the depth by which the
     /// masses would pass through each other.
     pub min_gap: f64,
-    /// Gap in m at the closest approach other than the impact; `None` where the masses part and return
-    /// without one.
+    /// Smallest minimum of the gap in m between the impacts; `None` where the gap has no minimum there.
     pub clearance: Option<f64>,
     /// Change of the rest gap in m, to first order, at which the impact would graze, the orbit fold, or a
     /// second contact appear; stability may be lost earlier. If this is not larger than the uncertainty of
@@ -60,7 +59,7 @@ impl Loss {
         ["fold", "flip", "Neimark–Sacker", "grazing"][self as usize]
     }
 
-    /// The loss of stability that the largest of these multipliers means.
+    /// Kind of instability by the largest of these multipliers.
     pub(super) fn of(multipliers: Option<&[Complex64; 4]>) -> Loss {
         match multipliers.map(|m| m[0]) {
             None => Loss::Grazing,
@@ -106,7 +105,8 @@ impl Validity {
 /// A periodic motion with its verdicts.
 pub struct Judged {
     pub validity: Validity,
-    /// Floquet multipliers, largest first, and the monodromy matrix, where the motion exists and is driven.
+    /// Floquet multipliers, largest modulus first, and the monodromy matrix; `None` unless the motion exists
+    /// and is driven.
     pub multipliers: Option<[Complex64; 4]>,
     pub monodromy: Option<Matrix4<f64>>,
     /// Peak-to-peak values of x₁ and x₂ in m.
@@ -116,7 +116,7 @@ pub struct Judged {
 impl Judged {
     /// Verdicts on a motion along `courses`, each from one impact to the next.
     ///
-    /// `exists`: whether all impulses are positive. `energy_rule`: the energy rule, if known.
+    /// `exists`: whether all impulses are positive. `energy_rule`: whether the energy rule holds, if known.
     /// `impact_grazing`: change of the gap in m at which an impact itself grazes. `amplified`: factor on the
     /// rounding error; `None` for a free motion.
     pub fn new(
@@ -137,8 +137,8 @@ impl Judged {
                 multipliers.as_ref().map_or(stable, |m| floquet::inside(&whole, m, amplified * rounding));
             monodromy = Some(whole);
         }
-        // For one impact the energy rule is equivalent to an even number of multipliers beyond +1. For
-        // several impacts this number replaces the rule.
+        // With one impact per period the energy rule is equivalent to an even number of multipliers beyond
+        // +1. With several impacts this condition replaces the rule.
         let even = || monodromy.is_some_and(|m| (Matrix4::identity() - m).determinant() > 0.0);
         let surveys: Vec<_> = courses.iter().map(Course::survey).collect();
         let clearance = surveys.iter().filter_map(|s| s.closest).reduce(f64::min);

@@ -41,7 +41,7 @@ struct ExcitationKeys {
     parts: Option<Vec<Part>>,
 }
 
-/// Keys of a scene; later ones replace earlier ones.
+/// Keys of a scene and their values; a value set later replaces an earlier one.
 ///
 /// ```
 /// use vibro_model::Draft;
@@ -86,7 +86,7 @@ impl Draft {
     }
 
     /// Sets one key by the text `key=value`, as it is typed; keys of a table have a dot:
-    /// `excitation.force=0.5`. Words need no quotes. [`Draft::put`] sets it to a value of a program.
+    /// `excitation.force=0.5`. Words need no quotes. [`Draft::put`] takes a TOML value and does not check it.
     ///
     /// # Errors
     /// If the key is unknown or the value of the wrong kind.
@@ -217,7 +217,7 @@ impl Draft {
         Ok(excitation)
     }
 
-    /// Adds the line of the file to an error, if the key has its value from there.
+    /// Adds the line of the file to an error, if the value of the key comes from the file.
     fn at(&self, key: &str, error: Error) -> Error {
         let (section, inner) = key.split_once('.').map_or((None, key), |(s, k)| (Some(s), k));
         let span = DeTable::parse(&self.text).ok().filter(|_| !self.later.iter().any(|k| k == key)).and_then(

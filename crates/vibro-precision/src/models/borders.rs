@@ -23,12 +23,12 @@ struct Border {
     goal: Goal,
 }
 
-/// What a method is asked at a border.
+/// The question to a method at a border.
 #[derive(Clone, Copy, PartialEq)]
 enum Goal {
     /// What are the impacts and rests of the motion?
     Motion,
-    /// The same, for methods with a soft contact.
+    /// What are the impacts and rests of the motion, for methods with a soft contact?
     Contact,
     /// Is there an impact, and when? Its time in s; `None` for no impact.
     First(Option<f64>),
@@ -38,7 +38,7 @@ enum Goal {
     Speed,
 }
 
-/// What a method can compute.
+/// The kind of motion that a method can compute.
 #[derive(Clone, Copy, PartialEq)]
 enum Ability {
     /// Periodic orbits with rigid impacts.
@@ -51,10 +51,10 @@ enum Ability {
     FollowSoft,
 }
 
-/// Cycles beyond which other methods than ours are not run: they would take minutes.
+/// Largest number of cycles for methods other than ours: with more they would take minutes.
 const MOST_RIVAL_CYCLES: f64 = 1e4;
 
-/// Methods in the order of the figure, each with its setting and what it can compute. The stiff spring
+/// Methods in the order of the figure, each with its setting and its ability. The stiff spring of 1e8 N/m
 /// counts as a rigid impact: it is in contact for 0.07 % of the period.
 const METHODS: &[(Method, f64, Ability)] = &[
     (by::CLOSED, 0.0, Ability::Orbits),
@@ -78,7 +78,7 @@ fn six_cycles(rig: Rig) -> Task {
     Task { start: [-1e-3, 0.0, 0.0, 0.0], most: 100_000, ..Task::sine(rig, 0.5, frequency, 6.0 / frequency) }
 }
 
-/// The first two chatters of scene C, with this restitution.
+/// The task of scene C over its first two chatters, with this restitution.
 fn chatter(restitution: f64) -> Task {
     let task = task_c();
     Task { rig: Rig { restitution, ..task.rig }, until: 1.2, most: 100_000, rests: false, ..task }
@@ -102,7 +102,7 @@ fn borders(quick: bool) -> Result<Vec<Border>> {
         let words = if depth > 0.0 { "reached" } else { "missed" };
         add("grazing", format!("{words} by {}", quantity(depth.abs(), "m", 1)), task, Goal::First(time));
     }
-    // The forced motion alone reaches the gap to within a factor 1 + ε.
+    // The amplitude of the forced motion alone is the gap times 1 + `excess`.
     let plain = six_cycles(thesis);
     let unit = Steady::new(&thesis, &Sine { force: 1.0, frequency: plain.frequency })?.amplitude();
     for excess in [1e-3, 1e-9, -1e-9, -1e-3] {
@@ -165,7 +165,7 @@ fn truth(border: &Border, soft: bool) -> Option<Log> {
     let task = &border.task;
     let contact = soft.then(|| task.spring());
     match border.goal {
-        // No damper in a contact prevents the rebound altogether.
+        // No damper in a contact gives R = 0: with every damper the masses rebound.
         _ if soft && task.rig.restitution == 0.0 => None,
         Goal::Motion | Goal::Contact => motion(task, contact).ok(),
         Goal::Speed => Some(Log::of([(0.0, settled(task, contact, check::SETTLED).ok()??.speed())])),
@@ -174,7 +174,7 @@ fn truth(border: &Border, soft: bool) -> Option<Log> {
     }
 }
 
-/// The result of each model at each border; with `quick` the long runs have fewer cycles.
+/// The outcome of each method at each border; with `quick` the long runs have fewer cycles.
 ///
 /// # Errors
 /// If a scene cannot be built.
@@ -267,8 +267,8 @@ mod tests {
                 for (a, b) in fast_log.iter().zip(&fast_truth) {
                     // The truth's own 2e-13 s (see its tests), enlarged tenfold by near misses.
                     assert!((a.0 - b.0).abs() < 1e-11, "{place}: {a:?} {b:?}");
-                    // In that time accelerations of up to 1e3 m/s² after a contact change a speed by 1e-8
-                    // m/s.
+                    // In 1e-11 s accelerations of up to 1e3 m/s² after a contact change a speed by up to
+                    // 1e-8 m/s.
                     assert!((a.1 - b.1).abs() < 1e-8, "{place}: {a:?} {b:?}");
                     compared[which] += 1;
                 }

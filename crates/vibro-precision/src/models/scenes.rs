@@ -10,7 +10,7 @@ use std::f64::consts::TAU;
 use vibro_model::{Compliance, Rig, Sine, Steady};
 use vibro_record::{Error, Result, median};
 
-/// The error of a method's answer, or why it failed.
+/// The error of a method's answer, or the reason why it has none.
 type Verdict = std::result::Result<f64, String>;
 /// Compares the logs of all tasks with the truth.
 type Judge = dyn Fn(&[Log]) -> Verdict;
@@ -27,7 +27,7 @@ struct Setup {
     judge: Box<Judge>,
 }
 
-/// Repetitions of an answer whose median time counts, in a full and a quick run.
+/// Repetitions of an answer in a full and in a quick run; their median time is reported.
 const REPETITIONS: [usize; 2] = [15, 3];
 
 impl Setup {
@@ -101,8 +101,8 @@ pub(super) const GOLDEN_B: [(usize, f64); 5] = [
     (1098, 99.932_500_537_538_15),
 ];
 
-/// Largest error in s of the reference impact times that are not among the values of 40 digits: ten times
-/// that found in their own test up to 2 s, after which errors decay.
+/// Largest error in s of the reference impact times that were not computed with 40 digits: ten times the
+/// error that their own test finds up to 2 s. Errors decay after that.
 const TRUTH_ERROR: f64 = 1e-11;
 
 /// The task of scene B: from rest, and no impact is slow or grazing.
@@ -122,7 +122,7 @@ fn scene_b(seconds: f64) -> Result<Setup> {
     for (number, time) in golden {
         truth[number - 1] = [*time, 0.0];
     }
-    // No time is known better than its rounding.
+    // An error is never given below the rounding of the time.
     let least = f64::EPSILON * seconds / 2.0;
     let judge = move |log: &[Log]| -> Verdict {
         let last = truth[count - 1][0] + 0.5 * task.cycle();
@@ -184,7 +184,7 @@ pub(super) fn grazing_task(depth: f64, start: usize) -> Result<(Task, Option<f64
     Ok((task, time))
 }
 
-/// Scene of grazing: whether a barely reached impact is found, and when.
+/// Scene of grazing: whether a method finds an impact that is barely reached, and its time.
 fn grazing(depth: f64) -> Result<Setup> {
     let starts =
         [depth, -depth].into_iter().flat_map(|d| (0..STARTS).map(move |start| grazing_task(d, start)));
@@ -272,7 +272,7 @@ fn scene_c() -> Setup {
 /// largest multiplier: 0.970 for the rigid orbit, so 0.970¹²⁵⁰ is below 1e-16. For the softest contact it is
 /// −0.9945, so 3000 cycles and the mean of the last sixteen impacts leave 2e-10 of it.
 const SOFT_CONTACTS: [(f64, f64); 3] = [(1e8, 1250.0), (1e6, 1250.0), (1e4, 3000.0)];
-/// Number of last impacts whose mean approach speed is compared.
+/// Number of impacts at the end whose mean approach speed is compared.
 const AVERAGED: usize = 16;
 
 /// Scene of a soft contact: the settled approach speed.

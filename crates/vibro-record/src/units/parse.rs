@@ -305,7 +305,7 @@ mod tests {
         check("rpm", Quantity::Frequency, 1.0 / 60.0);
     }
 
-    /// A turn is 2π rad, so an angular velocity is no frequency.
+    /// A turn is 2π rad, so an angular velocity is not read as a frequency.
     #[test]
     fn angles_are_not_numbers() {
         check("rad", Quantity::Angle, 1.0);

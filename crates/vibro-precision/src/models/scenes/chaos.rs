@@ -17,8 +17,8 @@ const SETTLE: f64 = 100.0;
 const CYCLES: f64 = 4000.0;
 /// Number of starts from which the truth is computed; no method starts from them.
 const TRUTH_STARTS: usize = 10;
-/// Largest error in standard errors: beyond it the statistics count as those of another motion. With a
-/// scatter known from ten starts, chance exceeds it in one of 300.
+/// Error in standard errors above which the statistics count as those of another motion. With a scatter
+/// estimated from ten starts, chance exceeds it in one of 300 cases.
 const LARGEST_ERROR: f64 = 4.0;
 
 /// The task of the scene: the motion that starts with mass 1 at `x1` (m), all else at rest, over this many
@@ -35,7 +35,7 @@ fn statistics(log: &Log) -> [f64; 2] {
     moments(log.impacts.iter().filter(|i| i.0 > SETTLE / POINT.2).map(|i| i.1))
 }
 
-/// Mean and standard deviation.
+/// Mean and sample standard deviation.
 fn moments(values: impl Iterator<Item = f64> + Clone) -> [f64; 2] {
     let n = values.clone().count() as f64;
     let mean = values.clone().sum::<f64>() / n;
@@ -56,7 +56,7 @@ fn truth_runs() -> Result<Vec<[f64; 2]>> {
 pub(super) fn scene() -> Result<Setup> {
     let runs = truth_runs()?;
     let truth = [0, 1].map(|i| moments(runs.iter().map(|run| run[i])));
-    // Relative standard error of a method's statistics, including that of the truth.
+    // Relative standard error of the difference between a method's statistics and the truth.
     let scatter = truth.map(|[mean, std]| std / mean * (1.0 + 1.0 / TRUTH_STARTS as f64).sqrt());
     let judge = move |log: &[Log]| -> Verdict {
         let found = statistics(&log[0]);
@@ -115,7 +115,7 @@ mod tests {
         assert!(last.len() > 990, "{}", last.len());
     }
 
-    /// If one start led to another motion than the others, its statistics would differ.
+    /// A start that led to another motion than the others would have different statistics.
     #[test]
     fn other_starts_scatter_alike() {
         let all = truth_runs().unwrap();
