@@ -239,8 +239,8 @@ impl<'h, 'a> Segment<'h, 'a> {
         Ok(Segment { general, head, columns, channels, comments })
     }
 
-    /// One record for each channel with values. From the second segment on, names end with its number: `a
-    /// (2)`.
+    /// One record for each channel with values. From the second segment on, names end with its number, as
+    /// `a (2)`.
     fn records(
         self,
         source: &Source,

@@ -2,8 +2,7 @@
 //!
 //! The part with at least ten times the rows of any other is read. A sheet is read as the text that a
 //! spreadsheet program would export ([`sheets`]). A hidden sheet is read only if no visible one has a
-//! table. A user names any other part by a path as in a folder: `walk.zip/Gyroscope.csv`, `walk.xlsx/Sheet
-//! 2`.
+//! table. A path as in a folder names any other part: `walk.zip/Gyroscope.csv`, `walk.xlsx/Sheet 2`.
 
 #[cfg(feature = "sheets")]
 mod sheets;

@@ -116,7 +116,7 @@ impl SweepReader {
     }
 
     /// Peak amplitudes of a response or a `force` in SI units, with metadata and window. The settings of
-    /// this reader precede the file's statements.
+    /// this reader override the file's statements.
     fn peaks(
         &self,
         recording: &Recording,

@@ -1,4 +1,4 @@
-//! Makes records of named variables, in whatever format a file stores them.
+//! Makes records of the named variables of a file, the same way for all formats.
 //!
 //! A numeric vector is a record, and so is each column of a matrix. Scalars and texts are notes on the
 //! records of their struct or group, and state abscissa and unit ([`names`], [`axes`]).
@@ -18,12 +18,12 @@ use rayon::prelude::*;
 use vibro_record::units::Unit;
 use vibro_record::{Error, Fact, Finding, Meta, Result, Values};
 
-/// Most rows of a matrix that is read by rows because a row has the length of an abscissa: with more rows,
-/// and more rows than columns, it is read by columns.
+/// Largest number of rows of a matrix that is read by rows because a row has the length of an abscissa. A
+/// matrix with more rows than this, and more rows than columns, is read by columns.
 const MOST_ROWS: u64 = 1000;
-/// Longest text that is kept, in bytes or characters.
+/// Length of the longest text that is kept, in bytes or characters.
 pub const MOST_TEXT: usize = 4096;
-/// Most notes of a record: many scalars beside many vectors would fill the memory.
+/// Largest number of notes of a record: many scalars beside many vectors would fill the memory.
 const MOST_NOTES: usize = 200;
 
 /// Hint for a file whose arrays cannot be read.
@@ -114,7 +114,7 @@ pub fn contents(
 /// Variables with their names.
 type Named<T> = Vec<(String, T)>;
 
-/// Separates vectors and matrices from scalars and texts; what is skipped gives findings.
+/// Separates vectors and matrices from scalars and texts. Skipped variables give findings.
 fn parted(variables: Named<Content>, findings: &mut Vec<Finding>) -> (Named<Array>, Named<String>) {
     let (mut arrays, mut notes) = (Vec::new(), Vec::new());
     for (name, content) in variables {
@@ -145,9 +145,9 @@ fn parted(variables: Named<Content>, findings: &mut Vec<Finding>) -> (Named<Arra
     (arrays, notes)
 }
 
-/// Splits an array into records: a vector is one, a matrix one for each column, or for each row if it is wide
-/// or only its rows have the length of an abscissa. If complex values were stated, two columns are one
-/// record.
+/// Splits an array into records: one of a vector; one for each column of a matrix, or for each row if it is
+/// wide or only its rows have the length of an abscissa. If the user states complex values, two columns are
+/// one record.
 fn split(
     name: &str,
     Array { dimensions, values, .. }: Array,

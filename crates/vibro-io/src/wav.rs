@@ -1,4 +1,4 @@
-//! Wave audio: what sound cards, recorders and laser vibrometers with an audio output write.
+//! Wave audio files of sound cards, recorders and laser vibrometers with an audio output.
 //!
 //! ```text
 //! RIFF size WAVE               or RF64/BW64 with a ds64 chunk that holds the 64-bit sizes
@@ -33,7 +33,8 @@ use vibro_record::{Axis, Error, Finding, Meta, Place, Record, Result, Stream, Tr
 /// The unit of values without a calibration.
 const FULL_SCALE: &str = "FS";
 
-/// Bytes read at a time, about: large enough for the disk, small enough for the processor's cache.
+/// Approximate number of bytes read at a time: large enough for the disk, small enough for the processor's
+/// cache.
 const BLOCK: usize = 256 * 1024;
 
 /// Reads the samples block by block; a survey keeps only their extremes.
@@ -90,10 +91,10 @@ pub(crate) struct Wave {
 }
 
 impl Wave {
-    /// Reads all chunks of a file but its samples, and goes to the first sample to read.
+    /// Reads all chunks of a file except the samples, and moves to the first sample to read.
     ///
     /// # Errors
-    /// If its samples are of a kind that is not read here, or there are none; if a base band was stated.
+    /// If its samples are of an unknown kind, or there are none; if the user states a base band.
     pub fn open(source: &Source, options: &Options) -> Result<Wave> {
         if options.base_band.is_some() {
             let found = "a base band was stated, but a wave file holds samples over time";
@@ -133,8 +134,8 @@ impl Wave {
         Ok(wave)
     }
 
-    /// A channel without its values, and the factor of these to SI: as the user states it, or as the file's
-    /// comment does.
+    /// A channel without its values, and the factor from fractions of full scale to SI that the user or the
+    /// file's comment states; else 1.
     fn describe(&self, source: &Source, options: &Options, channel: usize) -> Result<(Trace, f64)> {
         let layout = &self.layout;
         let scale = layout.scales.as_ref().and_then(|s| s.channels.get(channel));
@@ -163,7 +164,7 @@ impl Wave {
             (None, None) => return Ok((trace, 1.0)),
         };
         trace.calibrate(full_scale, &unit)?;
-        // A comment with the unit FS keeps only the level of values that never were calibrated.
+        // A comment with the unit `FS` restores only the level: the values were never calibrated.
         let calibrated = options.unit.is_some() || unit.symbol() != FULL_SCALE;
         let said = said.name("unit", unit.symbol());
         trace.meta.found(if calibrated { said } else { Finding::caution(Trace::UNCALIBRATED) });
@@ -176,8 +177,7 @@ impl Wave {
     }
 }
 
-/// The integer that means zero, and the distance of full scale from it; floats are fractions of full scale:
-/// (0, 1).
+/// The integer that means zero, and full scale counted from it. Floats are fractions of full scale: (0, 1).
 fn full_scale(sample: NumberType) -> (f64, f64) {
     match sample {
         NumberType::U8 => (128.0, 128.0),

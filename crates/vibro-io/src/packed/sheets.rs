@@ -307,8 +307,8 @@ impl DateFormat {
                 let date = ExcelDateTime::new(days as f64, ExcelDateTimeType::DateTime, since_1904);
                 date.to_ymd_hms_milli()
             };
-            // Days count from 1900 or 1904. If the year by the rule of 1900 differs by more than 2, it is
-            // 1904.
+            // Days count from 1900 or 1904. They count from 1904 if the year counted from 1900 is off by
+            // more than 2.
             let since_1904 = instant.to_ymd_hms_milli().0.abs_diff(from(false).0) > 2;
             let (year, month, day, ..) = from(since_1904);
             write!(text, "{year:04}-{month:02}-{day:02}{}", if self.timed { " " } else { "" })?;

@@ -1,4 +1,5 @@
-//! Reads numbers with a unit from header lines: with grouped digits, and marks that only the rows explain.
+//! Reads numbers with units from header lines. A mark that may be decimal or group digits (`51,200`) is
+//! read as in the rows.
 
 use crate::number;
 use crate::options::POSSIBLE;
@@ -23,8 +24,8 @@ pub const HERTZ: [(&str, f64); 9] = [
 pub const SECONDS: [(&str, f64); 7] =
     [("ns", 1e-9), ("us", 1e-6), ("µs", 1e-6), ("ms", 1e-3), ("s", 1.0), ("sec", 1.0), ("", 1.0)];
 
-/// A number times the factor of its unit, one of `units`, behind it or in the key; `None` if not a possible
-/// value.
+/// A number times the factor of its unit, which stands behind it or in the key. `None` if the unit is not
+/// one of `units` or the value lies outside [`POSSIBLE`].
 pub fn quantity(value: &str, unit_in_key: &str, units: &[(&str, f64)], mark: Option<u8>) -> Option<f64> {
     scaled(value, unit_in_key, units, mark).and_then(checked)
 }
@@ -34,8 +35,8 @@ fn printed(value: &str) -> &str {
     value.split(|c: char| !c.is_ascii_digit() && !"+-.,".contains(c)).next().unwrap_or_default()
 }
 
-/// The mark in the number at the start of a text, where the number alone does not show whether it is decimal:
-/// `51,200`.
+/// The mark of the number at the start of a text that may be decimal or group digits, as in `51,200`;
+/// `None` if the number itself shows which.
 pub fn doubtful_mark(value: &str) -> Option<u8> {
     let printed = printed(value.trim()).as_bytes();
     let mut marks = printed.iter().filter(|b| matches!(b, b'.' | b','));
@@ -43,13 +44,13 @@ pub fn doubtful_mark(value: &str) -> Option<u8> {
     number::may_be_grouped(printed).then_some(*mark)
 }
 
-/// The comma for the point, and the point for the comma.
+/// The other decimal mark: point for comma, comma for point.
 pub fn other_mark(mark: u8) -> u8 {
     if mark == b',' { b'.' } else { b',' }
 }
 
-/// The decimal mark of a printed number: the last of two different marks. Of several equal ones none is
-/// decimal.
+/// The decimal mark of a printed number: its last mark; the other mark if the last two are equal, since
+/// those group digits.
 fn decimal_mark(printed: &str) -> u8 {
     let mut marks = printed.bytes().rev().filter(|b| matches!(b, b'.' | b','));
     let last = marks.next().unwrap_or(b'.');
@@ -70,8 +71,8 @@ pub fn without_blanks(value: &str) -> String {
     whole
 }
 
-/// As [`quantity`], of any sign and unchecked. A mark that may be decimal or group digits is decimal if it is
-/// the `mark` of the rows; where that is unknown gives `None`.
+/// As [`quantity`], but of any sign and size. A mark that may be decimal or group digits is decimal if it
+/// is the decimal `mark` of the rows; if that is unknown, the result is `None`.
 pub fn scaled(value: &str, unit_in_key: &str, units: &[(&str, f64)], mark: Option<u8>) -> Option<f64> {
     let value = value.trim();
     let printed = printed(value);
@@ -91,7 +92,7 @@ pub fn scaled(value: &str, unit_in_key: &str, units: &[(&str, f64)], mark: Optio
     Some(number * factor)
 }
 
-/// The value, if it lies in the range of possible measured values.
+/// The value, if it lies within [`POSSIBLE`].
 pub fn checked(value: f64) -> Option<f64> {
     POSSIBLE.contains(&value).then_some(value)
 }

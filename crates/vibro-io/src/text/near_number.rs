@@ -1,5 +1,5 @@
-//! Cells that a person reads as numbers and a program does not: with a unit, a prefix of one, or a printed
-//! power of ten behind the digits.
+//! Cells that a person reads as numbers and a program does not: a unit, a unit prefix or a printed power of
+//! ten stands behind the digits.
 
 use crate::number;
 use vibro_record::units::Unit;
@@ -8,7 +8,7 @@ use vibro_record::units::Unit;
 const PREFIXES: [(&str, i32); 9] =
     [("p", -12), ("n", -9), ("u", -6), ("µ", -6), ("μ", -6), ("m", -3), ("k", 3), ("M", 6), ("G", 9)];
 
-/// The text behind the number at the start of a cell.
+/// The number at the start of a cell, and the text behind it.
 fn behind(cell: &str) -> Option<(&str, &str)> {
     let used =
         [b'.', b','].iter().filter_map(|mark| Some(number::prefix(cell.as_bytes(), *mark)?.1)).max()?;
@@ -21,7 +21,7 @@ pub fn unit_of(cell: &str) -> Option<&str> {
     Unit::parse(unit).filter(|_| unit.starts_with(|c: char| c.is_alphabetic() || c == '%')).map(|_| unit)
 }
 
-/// What to do about a cell with a factor behind its digits, as a prefix or as a power of ten.
+/// Hint on how to export a cell with a unit prefix or a power of ten behind its digits.
 pub fn plain_form(cell: &str) -> Option<String> {
     let (digits, text) = behind(cell)?;
     let prefix = || PREFIXES.iter().find(|(prefix, _)| *prefix == text).map(|(_, power)| power.to_string());

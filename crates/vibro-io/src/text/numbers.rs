@@ -20,12 +20,13 @@ use crate::options::Options;
 use num_complex::Complex64;
 use vibro_record::{Error, Result};
 
-/// Marks of remarks above the rows. Only the first five (`BETWEEN`) mark one between rows, where a quote
-/// begins a cell.
+/// Marks that begin a remark above the rows. Between rows only the first five (`BETWEEN`) do, since there a
+/// quote begins a cell.
 const REMARKS: [&str; 7] = ["#", "%", "!", "*", "//", "'", "\""];
 const BETWEEN: &[&str] = REMARKS.split_at(5).0;
 
-/// Number of rows that show the dialect. Where one has a comma, all rows in the head are looked at.
+/// Number of rows from which the dialect is detected. If one has a comma, which may separate or be decimal,
+/// all rows in the head of the file are used.
 const ENOUGH: usize = 24;
 
 /// Finds the dialect from the first rows.
@@ -74,7 +75,7 @@ pub fn detect(text: &Text, options: &Options) -> Result<Dialect> {
     let imaginary = |c: &str| {
         number::parse_with(c.as_bytes(), decimal).is_none() && complex(c.as_bytes(), decimal).is_some()
     };
-    // With a comma in it, the line holds two numbers and not one complex number.
+    // A line with a comma holds two numbers, not one complex number.
     let whole = !first.text.contains(',') && imaginary(first.text.trim());
     let complex = whole || cells.iter().any(|(_, c)| imaginary(c));
     // Rows above the first good one that do not parse belong to the table: reading reports them, with line
@@ -118,8 +119,8 @@ fn cells<'a>(line: &Line<'a>) -> Option<Fields<'a>> {
     marks.filter_map(cut).find(|cells| cells.len() > 1).or_else(|| cut(Separator::Blank))
 }
 
-/// Error that names the first cell that is no number, in the first of the last lines that have numbers in the
-/// same cells.
+/// Error for a file without a row of numbers: names the first cell that is no number. The row is the first
+/// of the last lines, all with numbers in the same cells.
 fn stray(lines: &[Line]) -> Option<Error> {
     let begins = |cell: &str| number::prefix(cell.as_bytes(), b'.').is_some();
     let numbers = |line: &Line| -> Vec<bool> {
@@ -178,8 +179,8 @@ fn count_and_step(rows: &[Line]) -> Option<String> {
         .then(|| format!("NPTS={count}, DT={}", step.trim()))
 }
 
-/// Whether every token of a line is a number, a piece of a complex number or a missing value, and at least
-/// one is a number.
+/// Whether a line is a row: every token is a number, a piece of a complex number, a missing value or a
+/// clock time, and at least one is a number.
 fn is_row(line: &[u8]) -> bool {
     let timed = line.contains(&b':');
     let mut numbers = 0;
@@ -218,7 +219,8 @@ fn marks(rows: &[Line], options: &Options) -> Result<(Separator, u8)> {
             .setting("decimal")
     };
     let comma = match options.decimal_comma {
-        // All rows are whole numbers, and the comma in one cannot separate two of them: it groups digits.
+        // All rows are whole numbers, and one has a comma that cannot separate two of them: it groups
+        // digits.
         Some(false) if explicit.is_none() && any(&no_integers) && !any(&|line| !is_whole(line)) => {
             return Ok((Separator::Blank, b'.'));
         }
@@ -244,7 +246,7 @@ fn marks(rows: &[Line], options: &Options) -> Result<(Separator, u8)> {
     Ok(if comma { (explicit.unwrap_or(Separator::Blank), b',') } else { (explicit.unwrap_or(COMMA), b'.') })
 }
 
-/// Whether a line is a whole number, perhaps with a mark before its last three digits.
+/// Whether a line is a whole number, with or without marks between groups of three digits.
 fn is_whole(line: &str) -> bool {
     number::may_be_grouped(line.as_bytes()) || line.bytes().all(|b| b.is_ascii_digit() || b == b'-')
 }
@@ -260,7 +262,8 @@ fn no_integers(line: &str) -> bool {
 /// `1,234.50`.
 fn grouped(rows: &[Line]) -> bool {
     let digits = |text: &str| !text.is_empty() && text.bytes().all(|b| b.is_ascii_digit());
-    // Number of groups of three digits before the decimal mark. Nobody groups `0.123`.
+    // Number of groups of three digits behind the first group; `None` if the line is no such number.
+    // `0.123` has no groups.
     let groups = |line: &str, group: char, decimal: char| {
         let (whole, decimals) = line.strip_prefix(['-', '+']).unwrap_or(line).split_once(decimal)?;
         let (first, rest) = whole.split_once(group).unwrap_or((whole, ""));

@@ -20,13 +20,15 @@ const SHAFT: f64 = 1000.0;
 
 /// Days since the year 0, as MATLAB counts them, of dates from 2001 to 2096.
 const DATENUM: std::ops::Range<f64> = 730_852.0..765_700.0;
-/// Mean step from which times without a unit are ticks of a clock, not seconds.
+/// Mean step from which times without a unit count as clock ticks and give no axis. A smaller limit refuses
+/// slow records in s; a larger one takes ticks for seconds.
 const TICKS: f64 = 1000.0;
-/// Start in s from which times are counted from their first value before they are scaled.
+/// Magnitude of a start in s from which times are counted from their first value before scaling: larger
+/// starts leave a double too few digits for the steps.
 const FAR: f64 = 1e6;
 
-/// Kind of abscissa that a vector of this name holds; its origin and its factor to s or Hz; a finding on what
-/// is assumed.
+/// Kind of abscissa that a vector of this name holds; its origin in the stored unit and its factor to s or
+/// Hz; a finding on an assumed unit. `None` if the vector is no abscissa.
 fn kind(
     dialect: &Dialect,
     name: &str,
@@ -67,12 +69,13 @@ struct Scalar {
     trust: Trust,
     /// Kind of abscissa; `None` for an increment or a start whose unit does not say it.
     kind: Option<AxisKind>,
-    /// In s or Hz; for a sampling rate, the step in s.
+    /// Value in s or Hz; for a sampling rate, the step in s.
     value: f64,
 }
 
 impl Scalar {
-    /// `scope` is the struct or vector that the scalar describes.
+    /// The statement of a scalar about the struct or vector `scope`; `None` if its name states none or its
+    /// value is impossible.
     fn of(
         dialect: &Dialect,
         (name, said): &(String, String),
@@ -127,7 +130,7 @@ impl Scalar {
     }
 }
 
-/// Abscissae as the file and the user state them.
+/// Abscissae that the file or the user states.
 pub struct Axes<'a> {
     pub dialect: &'static Dialect,
     options: &'a Options,
@@ -135,7 +138,7 @@ pub struct Axes<'a> {
     /// step.
     vectors: Scoped<(String, Axis, f64)>,
     scalars: Scoped<Scalar>,
-    /// By struct: depth of the outermost arrays in it, and the greatest length of those.
+    /// For each struct: depth of the outermost arrays in it, and the greatest dimension of those.
     outer: HashMap<String, (Reverse<usize>, Option<u64>)>,
     /// Vectors that rise evenly but are not used as abscissae: name, length and step.
     even: Vec<(String, usize, f64)>,
@@ -234,8 +237,8 @@ impl<'a> Axes<'a> {
         self.even = even.collect();
     }
 
-    /// Scalars that state the step of a vector of `n` values, most certain first; none where even that is too
-    /// uncertain.
+    /// Scalars that state the step of a vector of `n` values, the nearest first and, of those, the surest;
+    /// vague ones last. None if all are vague and the first states a rate below [`SHAFT`].
     fn chosen<'s>(&'s self, name: &'s str, n: usize, complex: bool) -> Vec<(&'s str, &'s Scalar)> {
         // A vector nested deeper than others of the struct and at most half as long was usually computed from
         // them, at another rate.
@@ -347,8 +350,8 @@ impl<'a> Axes<'a> {
     }
 }
 
-/// Units by vector, of which they are an attribute, or by struct: a struct states the unit of its only vector
-/// or, with attributes, of all its vectors.
+/// Units by the vector that has them as attribute, or by the struct that states them: for its only vector
+/// or, in formats with attributes, for all its vectors.
 pub fn units<'n>(
     dialect: &Dialect,
     notes: &'n [(String, String)],

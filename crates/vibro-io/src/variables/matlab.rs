@@ -1,9 +1,9 @@
-//! How MATLAB names what stands in structs and cell arrays, in files of every version.
+//! Names of the contents of structs and cell arrays in MATLAB files of every version.
 
 use super::names::Dialect;
 use crate::format::Format;
 
-/// The dialect of `run(2).v` and `data{1}.x`.
+/// MATLAB's dialect, with names such as `run(2).v` and `data{1}.x`.
 pub static MATLAB: Dialect = Dialect {
     format: Format::Mat,
     separator: '.',

@@ -1,4 +1,5 @@
-//! Meaning of variable names: their struct, the vectors that they describe, and what they say about these.
+//! Meaning of variable names: the struct that holds a variable, the vectors that it describes, and the
+//! property of their abscissa that it states.
 //!
 //! A scalar or text in a struct or group describes all vectors in it, however deep; an attribute describes
 //! its vector. In a struct without vectors, it describes those beside the struct:
@@ -19,14 +20,15 @@ pub struct Dialect {
     pub first: usize,
     /// Whether matrices are stored row after row.
     pub by_rows: bool,
-    /// A matrix with more columns than rows and than this is read by rows: one channel a row.
+    /// A matrix with more columns than this and than rows is read by rows: one channel a row. A larger
+    /// number keeps matrices of many channels and few samples read by columns.
     pub wide: u64,
     /// Whether groups and vectors have attributes. Then the unit of a group holds for all in it, and notes
     /// have the names that they have in the group.
     pub attributes: bool,
 }
 
-/// What a scalar says about an abscissa.
+/// Property of an abscissa that a scalar states.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Meaning {
     /// Sampling rate in Hz.
@@ -39,7 +41,7 @@ pub enum Meaning {
     Start,
 }
 
-/// How surely a name has its meaning.
+/// Certainty that a name has its meaning, the highest first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Trust {
     /// It has no other meaning.
@@ -72,10 +74,11 @@ const PARTS: &[(&[&str], Trust)] = &[
     (&["samplerate", "samplingrate", "samplefreq", "samplingfreq"], Likely),
     (&["sampl", "rate", "freq"], Offered),
 ];
-/// Names of variables that hold the unit of values, or the unit of their abscissa.
+/// Names of variables that hold the unit of values.
 pub const UNIT: &[&str] = &["unit", "units", "yunit", "yunits", "unity", "unitstring"];
+/// Names of variables that hold the unit of the abscissa of values.
 pub const X_UNIT: &[&str] = &["xunit", "xunits", "unitx"];
-/// Names such as `Data` that say nothing: the name of the struct is used instead.
+/// Names without meaning of their own: the name of the struct is used instead.
 const CONTENTS: [&str; 3] = ["data", "values", "value"];
 
 impl Dialect {
@@ -89,7 +92,8 @@ impl Dialect {
         container.strip_suffix(self.separator).unwrap_or(container)
     }
 
-    /// The last part of a name that says something: of `X(1).Data` it is `X`.
+    /// The last part of a name; if that is one of `CONTENTS`, the part before it without its index: of
+    /// `X(1).Data` it is `X`.
     pub fn key<'n>(&self, name: &'n str) -> &'n str {
         let (container, last) = name.split_at(self.container(name).len());
         match container.strip_suffix(self.separator) {
@@ -101,12 +105,12 @@ impl Dialect {
         }
     }
 
-    /// The key in lower case, letters and digits only.
+    /// The key of a name in lower case, letters and digits only.
     pub fn word(&self, name: &str) -> String {
         self.key(name).chars().filter(|c| c.is_alphanumeric()).collect::<String>().to_lowercase()
     }
 
-    /// What a scalar of this name says about an abscissa, and how sure that is.
+    /// The property of an abscissa that a scalar of this name states, and how sure that is.
     pub fn meaning(&self, name: &str) -> Option<(Meaning, Trust)> {
         let word = self.word(name);
         let named = NAMES.iter().find(|(names, ..)| names.contains(&word.as_str()));
@@ -133,7 +137,7 @@ impl Dialect {
     }
 }
 
-/// Things that describe vectors, by the struct or vector that they describe.
+/// Descriptions of vectors (scalars, notes, abscissae), by the struct or vector that they describe.
 pub struct Scoped<T> {
     dialect: &'static Dialect,
     things: HashMap<String, Vec<T>>,
@@ -150,7 +154,8 @@ impl<T> Scoped<T> {
         self.things.entry(scope.to_owned()).or_default().push(thing);
     }
 
-    /// What describes a vector, the nearest first, with its struct.
+    /// The descriptions that hold for a vector, the nearest first, each with the struct or vector that it
+    /// describes.
     pub fn over<'a>(&'a self, name: &'a str) -> impl Iterator<Item = (&'a str, &'a T)> {
         let scopes = std::iter::once(name).chain(self.dialect.structs(name));
         let all = scopes.filter_map(|scope| Some((scope, self.things.get(scope)?)));

@@ -1,4 +1,4 @@
-//! Where the samples of a wave file are, and of what kind.
+//! Finds the samples of a wave file and their kind.
 //!
 //! Sources: Microsoft, "Multiple channel audio data and WAVE files" (`WAVE_FORMAT_EXTENSIBLE`); EBU Tech 3306
 //! (RF64) and ITU-R BS.2088 (BW64) for the `ds64` chunk.
@@ -13,9 +13,9 @@ use std::io::{Read, SeekFrom};
 use vibro_record::units::notation::counted;
 use vibro_record::{Error, Finding, Place, Result};
 
-/// Most bytes of texts that are read from one chunk.
+/// Largest number of bytes of text that is read from one chunk.
 const MOST_TEXT: u64 = 64 * 1024;
-/// Stored as a size that was never filled in.
+/// Stored size that was never filled in.
 const UNSAID: u64 = 0xffff_ffff;
 /// End of the identifier of a sub-format, after its format tag: {xxxx0000-0000-0010-8000-00AA00389B71}.
 const GUID: [u8; 14] = [0, 0, 0, 0, 0x10, 0, 0x80, 0, 0, 0xaa, 0, 0x38, 0x9b, 0x71];
@@ -24,10 +24,10 @@ pub(crate) fn sniff(head: &[u8], _: &Source) -> bool {
     [b"RIFF", b"RF64", b"BW64"].iter().any(|form| head.starts_with(*form)) && head.get(8..12) == Some(b"WAVE")
 }
 
-/// Hint where there are no samples.
+/// Hint for a file without samples.
 const CUT: &str = "the recording may have been cut off before its first sample";
 
-/// What the chunks say about the samples.
+/// Kind, place and number of the samples, as the chunks state them.
 #[derive(Debug)]
 pub struct WavHeader {
     pub sample: NumberType,
@@ -92,7 +92,7 @@ fn chunks(source: &Source, reader: &mut dyn ReadSeek) -> Result<Chunks> {
     Ok(found)
 }
 
-/// Reads from the chunks of a file where its samples are, and of what kind.
+/// Reads place and kind of the samples from the chunks of a file.
 pub fn read(source: &Source, reader: &mut dyn ReadSeek) -> Result<WavHeader> {
     let fault =
         |at, found: &str, expected: &str| Error::input(Place::byte(source.path(), at), found, expected);
@@ -156,8 +156,8 @@ fn field<const N: usize>(bytes: &[u8], at: usize) -> Option<[u8; N]> {
     bytes.get(at..)?.first_chunk().copied()
 }
 
-/// Kind of sample, channels, sampling rate in Hz and bits of a `fmt ` chunk, or what was found and what is
-/// expected.
+/// Kind of sample, number of channels, sampling rate in Hz and bits of a sample from a `fmt ` chunk; else
+/// the found and the expected form.
 fn kind(format: &[u8]) -> std::result::Result<(NumberType, usize, f64, usize), (String, &'static str)> {
     let word = |at| field(format, at).map(u16::from_le_bytes);
     let (Some(mut tag), Some(channels), Some(rate), Some(frame), Some(mut bits)) =

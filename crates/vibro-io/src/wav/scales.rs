@@ -25,10 +25,10 @@ pub(crate) struct Scales {
     pub channels: Vec<Scale>,
 }
 
-/// Physical value of the stored value 1.
+/// Full scale of a channel: the physical value of a stored 1.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Scale {
-    /// Number of units, above 0.
+    /// Physical value in `unit`, above 0.
     pub factor: f64,
     /// The unit.
     pub unit: String,

@@ -241,7 +241,7 @@ fn statements_of_a_person_win_with_a_doubt() {
     assert!(error.to_string().contains("base band"));
 }
 
-/// Survey and stream must say what reading everything says, over block borders too.
+/// Survey and stream must agree with reading the whole file, across block borders, too.
 #[test]
 fn survey_and_stream_agree_with_reading() {
     let n = 60_000usize;
@@ -289,7 +289,7 @@ fn values_that_leave_the_range_of_numbers_are_refused() {
 }
 
 proptest! {
-    /// hound, written by others, is the oracle for what it can write.
+    /// The oracle is hound, an independent writer of wave files.
     #[test]
     fn agrees_with_another_writer(
         bits in prop::sample::select(vec![8u16, 16, 24, 32]), channels in 1u16..4,

@@ -56,7 +56,7 @@ fn the_comment_undoes_the_scaling_with_a_doubt() {
         "{:?}",
         traces[0].meta.findings
     );
-    // Without a calibration before there is none afterwards.
+    // Values without a calibration have none after reading back, either.
     let file = bytes(&[trace("v", "FS", Axis::time(0.0, 0.001, 1), vec![3.0])], Precision::Single);
     assert_eq!(
         (back(&file)[0].values[0], back(&file)[0].meta.findings.clone()),
@@ -136,13 +136,13 @@ proptest! {
                     prop_assert_eq!(&was.meta.name, &is.meta.name);
                 }
                 prop_assert_eq!(is.axis.start(), start);
-                // Two reciprocals, each rounded by half an ulp.
+                // Writing and reading take one reciprocal each, rounded by half an ulp.
                 let dt: f64 = is.axis.step().unwrap();
                 prop_assert!((dt * rate - 1.0).abs() < 4.0 * f64::EPSILON);
                 let factor = scale(was).factor;
                 for (a, b) in was.values.iter().zip(&is.values) {
-                    // Half an ulp of a float of the value, or half the smallest one; a double loses only what
-                    // is below the smallest double when divided by full scale.
+                    // Single: half an ulp of the value, or half the smallest float times full scale.
+                    // Double: the smallest double times full scale, as only underflow loses digits.
                     let bound = match sample {
                         Precision::Single => a.abs() * 2f64.powi(-24) + factor * 2f64.powi(-150),
                         Precision::Double if factor > 1.0 => factor * 5e-324,
