@@ -1,6 +1,7 @@
 //! Response at the excitation, step by step (the job of the thesis' sinesw3).
 
 mod result;
+mod steady;
 mod taker;
 
 use super::answered::answered;
@@ -10,6 +11,7 @@ use crate::line::deviation;
 use num_complex::Complex64;
 pub use result::{Harmonic, Receptance, Response, ResponsePoint};
 use std::cmp::Ordering;
+use steady::SteadyLine;
 use taker::Taker;
 use vibro_record::units::Quantity;
 use vibro_record::{Direction, Error, Finding, Result, Step, Sweep, SweepPoint, Window, median};
@@ -112,8 +114,19 @@ pub(crate) fn read(sweep: &Sweep, options: &ResponseOptions, excitations: &[Exci
         return Err(Error::refused(why).hint(hint).setting("integrate"));
     }
     let unit = quantity.symbol();
-    let taker = Taker { sweep, options, times, df, fmin, unit };
-    let points = sweep.points.iter().zip(excitations).map(|(p, e)| taker.point(p, e)).collect();
+    let mut taker = Taker { sweep, options, times, df, fmin, unit, steady: Vec::new() };
+    let measured: Vec<Vec<f64>> = sweep.points.iter().map(|p| taker.measured(p)).collect();
+    let positions: Vec<f64> = excitations.iter().map(|e| taker.position(e.frequency)).collect();
+    let window = sweep.points.first().and_then(|p| p.response.window);
+    taker.steady = SteadyLine::of(&measured, &positions, window);
+    let steps = sweep.points.iter().zip(excitations).zip(&measured);
+    let points = steps.map(|((p, e), measured)| taker.point(p, e, measured)).collect();
+    let passed = taker.steady.iter().map(|line| {
+        let n = positions.iter().filter(|at| line.at(**at, window) > 0.0).count();
+        Finding::caution("sweep-passes-line")
+            .count("n", n)
+            .number("frequency", taker.frequency(line.position))
+    });
     let taken: [(_, &dyn std::fmt::Display); 4] = [
         ("band", &options.band),
         ("integrate", &times),
@@ -130,7 +143,7 @@ pub(crate) fn read(sweep: &Sweep, options: &ResponseOptions, excitations: &[Exci
         points,
         resonances: Vec::new(),
         jumps: Vec::new(),
-        findings: sweep.findings.iter().cloned().chain(repeated(sweep)).collect(),
+        findings: sweep.findings.iter().cloned().chain(repeated(sweep)).chain(passed).collect(),
         history: sweep.history().iter().cloned().chain([Step::new("response", &taken)]).collect(),
     })
 }

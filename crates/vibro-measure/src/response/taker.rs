@@ -1,5 +1,6 @@
 //! Single points of a response curve.
 
+use super::steady::SteadyLine;
 use super::{Harmonic, Receptance, ResponseOptions, ResponsePoint};
 use crate::Estimate;
 use crate::excitation::{Excitation, bent};
@@ -25,14 +26,16 @@ pub(super) struct Taker<'a> {
     pub df: f64,
     pub fmin: f64,
     pub unit: &'static str,
+    /// Lines that the excitation passes on its way.
+    pub steady: Vec<SteadyLine>,
 }
 
 impl Taker<'_> {
-    fn frequency(&self, position: f64) -> f64 {
+    pub fn frequency(&self, position: f64) -> f64 {
         self.sweep.axis.start() + position * self.df
     }
 
-    fn position(&self, frequency: f64) -> f64 {
+    pub fn position(&self, frequency: f64) -> f64 {
         (frequency - self.sweep.axis.start()) / self.df
     }
 
@@ -51,11 +54,22 @@ impl Taker<'_> {
         (Estimate::new(value / divisor, std, self.unit, 3, method), limit.map(|l| l / divisor))
     }
 
-    pub fn point(&self, point: &SweepPoint, excitation: &Excitation) -> ResponsePoint {
-        let stored = point.response.values.magnitudes();
+    /// Magnitudes of the signal that was measured: the analyser's division by (2πf)ⁿ is undone.
+    pub fn measured(&self, point: &SweepPoint) -> Vec<f64> {
         let undo = i32::from(self.sweep.analyser_integrated);
-        let measured: Vec<f64> =
-            stored.iter().enumerate().map(|(k, m)| m * (TAU * self.frequency(k as f64)).powi(undo)).collect();
+        let undone = |(k, m): (usize, f64)| m * (TAU * self.frequency(k as f64)).powi(undo);
+        point.response.values.magnitudes().into_iter().enumerate().map(undone).collect()
+    }
+
+    /// Standard deviation of one component of the lines at `position`: of the noise around, and of steady
+    /// lines there.
+    fn floor(&self, measured: &[f64], position: f64, k: usize, window: Option<Window>) -> Option<f64> {
+        let noise = noise::around(measured, k, noise::REACH, window)?;
+        Some(self.steady.iter().fold(noise, |sum, line| sum.hypot(line.at(position, window))))
+    }
+
+    /// Reads one step from the magnitudes of its measured signal.
+    pub fn point(&self, point: &SweepPoint, excitation: &Excitation, measured: &[f64]) -> ResponsePoint {
         let at = self.position(excitation.frequency);
         let centre = at.round().max(0.0) as usize;
         let window = point.response.window;
@@ -64,12 +78,12 @@ impl Taker<'_> {
         let top = (low..=high)
             .filter(|&k| measured[k] >= measured[k - 1] && measured[k] >= measured[k + 1])
             .max_by(|a, b| measured[*a].total_cmp(&measured[*b]));
-        let floor = noise::around(&measured, top.unwrap_or(centre), noise::REACH, window);
+        let floor = self.floor(measured, at, top.unwrap_or(centre), window);
         // Neither a hump of noise nor another line beside the excitation, which hides it, is the response.
         let clear = |p: &SubLine| floor.is_none_or(|f| p.amplitude >= PEAK_ABOVE * f);
         let peak = top.and_then(|k| {
-            let line = interpolate(&measured, k, window, floor).filter(clear)?;
-            Some(bent(line, &measured, k, window.zip(floor)))
+            let line = interpolate(measured, k, window, floor).filter(clear)?;
+            Some(bent(line, measured, k, window.zip(floor)))
         });
         let hidden = peak.is_some_and(|p| (p.position - at).abs() > NEAR);
         let (frequency, frequency_std, amplitude, method) = if excitation.frequency < self.fmin {
@@ -84,13 +98,13 @@ impl Taker<'_> {
         } else {
             let method = "line nearest to the excitation, no peak of its own, noise not taken out".to_owned();
             let floor = floor.filter(|_| !hidden);
-            (excitation.frequency, excitation.std, faint(&measured, at, window, floor), method)
+            (excitation.frequency, excitation.std, faint(measured, at, window, floor), method)
         };
         let (amplitude, upper_limit) = self.estimate(frequency, amplitude, method);
         let (phase, receptance) = self.transfer(point, excitation.frequency).unzip();
         let harmonic =
-            |order: String, ratio: f64| self.harmonic(&measured, order, excitation.frequency * ratio, window);
-        let largest = self.largest(&stored);
+            |order: String, ratio: f64| self.harmonic(measured, order, excitation.frequency * ratio, window);
+        let largest = self.largest(&point.response.values.magnitudes());
         ResponsePoint {
             excitation: excitation.frequency,
             excitation_std: excitation.std,
@@ -137,7 +151,7 @@ impl Taker<'_> {
     fn harmonic(&self, measured: &[f64], order: String, frequency: f64, window: Option<Window>) -> Harmonic {
         let at = self.position(frequency);
         let inside = frequency >= self.fmin && at >= 1.0 && at.round() < measured.len() as f64 - 1.0;
-        let floor = noise::around(measured, at.round().max(0.0) as usize, noise::REACH, window);
+        let floor = self.floor(measured, at, at.round().max(0.0) as usize, window);
         let found = inside.then(|| amplitude_at(measured, at, window, floor)).flatten();
         let (found, method) = match (found, floor) {
             (Some((value, _)), Some(floor)) if value < PEAK_ABOVE * floor => {
