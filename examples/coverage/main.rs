@@ -12,11 +12,13 @@ mod decays;
 mod disturbance;
 mod drills;
 mod drops;
+mod handles;
 mod modes;
 mod pulses;
 mod record;
 #[path = "../../crates/vibro-measure/src/restitution/room.rs"]
 mod room;
+mod steps;
 mod sweeps;
 mod tally;
 mod tones;
@@ -86,10 +88,20 @@ Sizes are drawn evenly on a logarithmic scale. Each of the disturbances is in ha
 
 /// All kinds of records, in the order of the page.
 fn kinds() -> Vec<&'static Kind> {
-    [sweeps::KINDS, decays::KINDS, modes::KINDS, tones::KINDS, drops::KINDS, pulses::KINDS, drills::KINDS]
-        .into_iter()
-        .flatten()
-        .collect()
+    [
+        sweeps::KINDS,
+        steps::KINDS,
+        decays::KINDS,
+        modes::KINDS,
+        tones::KINDS,
+        drops::KINDS,
+        pulses::KINDS,
+        drills::KINDS,
+        handles::KINDS,
+    ]
+    .into_iter()
+    .flatten()
+    .collect()
 }
 
 /// Draws `count`/`every` records of a kind, each with its own seed. The seeds depend on the name of the
