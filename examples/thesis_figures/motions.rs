@@ -78,10 +78,10 @@ fn eleven() -> Result<Sheet> {
     let claims = vec![
         Claim::told(
             "classical impacts at 11.1 Hz (ν 2.13), F₀ 0.5 N, R 0.7",
-            "irregular",
+            "irregular, by the integration and by impacts without duration",
             format!("impacts/cycles {}, J {:.6} N s", portrait.pattern.regime, last.impulse),
             !once,
-            "its simulation had an error of integration; exact flights with located impacts repeat to rounding",
+            "exact flights with located impacts repeat to rounding, and their impacts have no duration either: the integration alone is left",
         ),
         Claim::told(
             "its impulse in the closed form",

@@ -9,7 +9,7 @@ use vibroimpact::analysis;
 use vibroimpact::analysis::figures;
 use vibroimpact::measure::drill::{AngleOrigin, Beam};
 use vibroimpact::measure::pulse::{KelvinVoigt, LowPass, PulseOptions, two_times};
-use vibroimpact::measure::response::ResponseOptions;
+use vibroimpact::measure::response::{ResponseOptions, ResponsePoint};
 use vibroimpact::measure::restitution::Drop;
 use vibroimpact::measure::waterfall::waterfall;
 use vibroimpact::model::Rig;
@@ -22,7 +22,7 @@ pub fn spectra() -> Result<Sheet> {
     let points = |name: &str| -> Result<_> {
         Ok(analysis::named(&campaign, Some(name))?.sweep_and_response(&options)?.1.points)
     };
-    let (up, down) = (points("mass 1, up")?, points("mass 1, down")?);
+    let (up, down, passive) = (points("mass 1, up")?, points("mass 1, down")?, points("mass 2, up")?);
     let above = up.iter().filter(|p| p.excitation > 8.0);
     let top = above.max_by(|a, b| a.amplitude.value.total_cmp(&b.amplitude.value));
     let (at, high) = top.map_or((f64::NAN, f64::NAN), |p| (p.excitation, p.amplitude.value));
@@ -40,6 +40,27 @@ pub fn spectra() -> Result<Sheet> {
         low < 0.2 * high,
         "as in the sweeps of chapter 4",
     )];
+    let of = |points: &[ResponsePoint], hz: (f64, f64)| {
+        let inside = points.iter().filter(|p| (hz.0..hz.1).contains(&p.excitation));
+        inside.map(|p| (p.amplitude.value, p.excitation)).collect::<Vec<_>>()
+    };
+    let first = of(&up, (4.0, 7.0)).into_iter().map(|p| p.0).fold(0.0, f64::max);
+    let least = of(&up, (6.0, 9.0)).into_iter().min_by(|a, b| a.0.total_cmp(&b.0));
+    let (small, place) = least.unwrap_or((f64::NAN, f64::NAN));
+    let other = of(&passive, (place - 0.01, place + 0.01)).first().map_or(f64::NAN, |p| p.0);
+    claims.push(Claim::told(
+        "5.5 and 5.7: peaks, and the antiresonance between them",
+        "first peak the larger; between, x₂ the larger",
+        format!(
+            "{:.1} and {:.1} mm; x₁ {:.2} mm, x₂ {:.2} mm at {place:.2} Hz",
+            1e3 * first,
+            1e3 * high,
+            1e3 * small,
+            1e3 * other
+        ),
+        first > high && other > small,
+        "",
+    ));
     for (what, thesis) in [("at most", "11.5"), ("in the repeat", "9.5")] {
         let why = "the force of the rig is not known, and the peak moves with it";
         claims.push(Claim::number(format!("5.1.1: clapping resonance, {what}"), thesis, at, (2, "Hz"), why));
@@ -57,9 +78,24 @@ pub fn rig() -> Sheet {
     let [first, second] = Rig::thesis().natural_frequencies();
     let fall = Drop { height: 0.57, ..Drop::default() };
     let why = "it holds where the struck mass does not move";
+    let stiffness = |mass: f64, hz: f64| mass * (TAU * hz).powi(2);
     let claims = vec![
         Claim::number("5.13: natural frequency of the excited mass", "5.23", first, (3, "Hz"), ""),
         Claim::number("5.15: natural frequency of the passive mass", "5.87", second, (3, "Hz"), ""),
+        Claim::number(
+            "5.1.3: stiffness of 0.125 kg at 5.23 Hz",
+            "135",
+            stiffness(0.125, 5.23),
+            (2, "N/m"),
+            "",
+        ),
+        Claim::number(
+            "5.1.3: stiffness of 0.094 kg at 5.87 Hz",
+            "128",
+            stiffness(0.094, 5.87),
+            (2, "N/m"),
+            "",
+        ),
         Claim::number(
             "5.18 and 5.2: restitution, drop from 0.57 m, 0.144 s",
             "0.2",
