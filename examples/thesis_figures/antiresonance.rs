@@ -183,7 +183,7 @@ fn of_peaks() -> Claim {
     )
 }
 
-/// Claims: where the program jidnew, as printed in appendix A.2 but for its `/`, has the least x₁ between the resonances.
+/// Claims: where jidnew, as printed but for its `/`, has the least x₁ between the resonances.
 fn printed_program_claims() -> Vec<Claim> {
     let between = || grid(0.7501, 2.9901, 113).into_iter().filter(|nu| (BETWEEN.0..=BETWEEN.1).contains(nu));
     let of = |(figure, restitution, c2)| {

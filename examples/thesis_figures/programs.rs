@@ -265,44 +265,24 @@ fn lists() -> [Vec<f64>; 2] {
 /// Claims: peaks of x₁ by jsdnew, with its slips and without.
 fn of_displacements() -> Vec<Claim> {
     let [printed, all] = lists();
-    let cases: [(&str, &[f64], &'static [Slip], &str, &str); 4] = [
-        (
-            "3.7, jsdnew as printed",
-            &printed,
-            JSDNEW,
-            "one, about 1.05",
-            "its list of ν leaves the peaks out, but not their flank at 1.03",
-        ),
-        (
-            "3.6, jsdnew with all ν of its comment",
-            &all,
-            JSDNEW,
-            "1, and another towards 1.123",
-            "the motions have no peak there: sin φ has Ω₁² − ω² in the place of (Ω₁² − ω²)²/ω², and a parenthesis is missing",
-        ),
-        (
-            "3.6, sin φ put right",
-            &all,
-            &[Threshold, Exchange],
-            "–",
-            "J is computed with M, sin φ with M(1 + R)",
-        ),
-        (
-            "3.6, M(1 + R) put right, too",
-            &all,
-            JSNEW,
-            "–",
-            "the grazing resonance alone: the peaks are slips, and not masses that pass through each other; the miss is above ν 1.9, where the threshold acts or the root is complex",
-        ),
-    ];
-    let claim = |(what, nu, slips, thesis, why): (&str, &[f64], &'static [Slip], &str, &str)| {
+    let claim = |what: &str, nu: &[f64], slips, thesis: &str, why: &str| {
         let program = sine(0.7, 0.1, 0.5, slips);
         let found = peaks(nu, |nu| largest(&program, nu));
         let low: Vec<f64> = found.into_iter().filter(|nu| *nu < 1.2).collect();
         let here = format!("{}; contact missed by {:.2} mm at most", told(&low), 1e3 * missed(&program, nu));
         Claim::told(format!("{what}: peaks of x₁ below ν 1.2"), thesis, here, thesis == "–", why)
     };
-    cases.map(claim).into()
+    let flank = "its list of ν leaves the peaks out, but not their flank at 1.03";
+    let slip = "the motions have no peak there: sin φ has Ω₁² − ω² in the place of (Ω₁² − ω²)²/ω², and a parenthesis is missing";
+    let masses = "J is computed with M, sin φ with M(1 + R)";
+    let alone = "the grazing resonance alone: the peaks are slips, and not masses that pass through each other; the miss is above ν 1.9, where the threshold acts or the root is complex";
+    let towards = "1, and another towards 1.123";
+    vec![
+        claim("3.7, jsdnew as printed", &printed, JSDNEW, "one, about 1.05", flank),
+        claim("3.6, jsdnew with all ν of its comment", &all, JSDNEW, towards, slip),
+        claim("3.6, sin φ put right", &all, &[Threshold, Exchange], "–", masses),
+        claim("3.6, M(1 + R) put right, too", &all, JSNEW, "–", alone),
+    ]
 }
 
 /// Largest |x₁ − x₂ − Δ| at the impact in m over these ratios.
