@@ -175,7 +175,7 @@ fn of_peaks() -> Claim {
         all
     });
     Claim::told(
-        "3.13 to 3.15: peaks of x₁ for ν 0.85 to 1.15",
+        "3.13 to 3.15: peaks of x₁ for ν 0.85 to 1.15 in steps of 0.02",
         "1, and the grazing resonance",
         format!("{} in each by jidnew with `./`; {} with its slips put right", told(&printed), told(&right)),
         printed.iter().chain(&right).any(|nu| *nu < 1.03),
