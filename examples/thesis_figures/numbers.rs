@@ -22,7 +22,7 @@ pub fn spectra() -> Result<Sheet> {
     let points = |name: &str| -> Result<_> {
         Ok(analysis::named(&campaign, Some(name))?.sweep_and_response(&options)?.1.points)
     };
-    let (up, down) = (points("mass 1, up")?, points("mass 1, down")?);
+    let (up, down, passive) = (points("mass 1, up")?, points("mass 1, down")?, points("mass 2, up")?);
     let above = up.iter().filter(|p| p.excitation > 8.0);
     let top = above.max_by(|a, b| a.amplitude.value.total_cmp(&b.amplitude.value));
     let (at, high) = top.map_or((f64::NAN, f64::NAN), |p| (p.excitation, p.amplitude.value));
@@ -40,6 +40,18 @@ pub fn spectra() -> Result<Sheet> {
         low < 0.2 * high,
         "as in the sweeps of chapter 4",
     )];
+    let first = up.iter().filter(|p| p.excitation < 8.0).map(|p| p.amplitude.value).fold(0.0, f64::max);
+    let between = up.iter().zip(&passive).filter(|(p, _)| (6.0..9.0).contains(&p.excitation));
+    let least = between.min_by(|a, b| a.0.amplitude.value.total_cmp(&b.0.amplitude.value));
+    let [x1, x2] = least.map_or([f64::NAN; 2], |(a, b)| [a.amplitude.value, b.amplitude.value]);
+    let [peak, other, small, large] = [first, high, x1, x2].map(|x| 1e3 * x);
+    claims.push(Claim::told(
+        "5.5 and 5.7: peaks, and the antiresonance between them",
+        "first peak the larger; between, x₂ the larger",
+        format!("{peak:.1} and {other:.1} mm; x₁ {small:.2} mm, x₂ {large:.2} mm"),
+        first > high && x2 > x1,
+        "",
+    ));
     for (what, thesis) in [("at most", "11.5"), ("in the repeat", "9.5")] {
         let why = "the force of the rig is not known, and the peak moves with it";
         claims.push(Claim::number(format!("5.1.1: clapping resonance, {what}"), thesis, at, (2, "Hz"), why));
@@ -57,9 +69,15 @@ pub fn rig() -> Sheet {
     let [first, second] = Rig::thesis().natural_frequencies();
     let fall = Drop { height: 0.57, ..Drop::default() };
     let why = "it holds where the struck mass does not move";
+    let stiffness = |mass: f64, hz: f64, printed| {
+        let what = format!("5.1.3: stiffness of {mass} kg at {hz} Hz");
+        Claim::number(what, printed, mass * (TAU * hz).powi(2), (2, "N/m"), "")
+    };
     let claims = vec![
         Claim::number("5.13: natural frequency of the excited mass", "5.23", first, (3, "Hz"), ""),
         Claim::number("5.15: natural frequency of the passive mass", "5.87", second, (3, "Hz"), ""),
+        stiffness(0.125, 5.23, "135"),
+        stiffness(0.094, 5.87, "128"),
         Claim::number(
             "5.18 and 5.2: restitution, drop from 0.57 m, 0.144 s",
             "0.2",

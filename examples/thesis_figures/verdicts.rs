@@ -89,10 +89,10 @@ fn inadmissible() -> Result<Sheet> {
     let orbit = one(0.7, 0.5, 0.8)?;
     let figure = figures::orbit("Inadmissible orbit", &rig, &orbit).height(70.0);
     let depth = -1e3 * orbit.validity.min_gap;
-    let why = "the masses would pass through each other by so much within the period";
+    let why = "the masses would pass through each other here, too, not in the two peaks of 3.6 alone";
     let claims = vec![Claim::told(
-        "F₀ 0.5 N, R 0.7, ν 0.8: the positive root",
-        "a motion",
+        "3.7, F₀ 0.5 N, R 0.7, ν 0.8: the positive root",
+        "drawn as possible",
         format!("impossible, by {depth:.1} mm"),
         orbit.validity.admissible,
         why,
@@ -223,7 +223,8 @@ fn regions() -> Result<Sheet> {
     let all = || over_r.iter().chain(&over_f);
     let accepted = all().filter(|c| **c != 0.0).count();
     let real = all().filter(|c| **c == 4.0).count();
-    let share = 100.0 * real as f64 / accepted as f64;
+    let passing = all().filter(|c| **c == 1.0).count();
+    let [share, through] = [real, passing].map(|n| 100.0 * n as f64 / accepted as f64);
     let plot = |title: &str, label: &str, unit: &str| {
         Plot::new(ratio(0.6, 2.4), AxisSpec::new(label, unit)).title(title)
     };
@@ -237,9 +238,11 @@ fn regions() -> Result<Sheet> {
              there is no root with J > 0; masses pass: they would pass through each other; two beyond +1: two real multipliers are.",
         );
     let claims = vec![Claim::told(
-        "part of the roots accepted, in both maps, that are motions",
-        "all",
-        format!("{share:.0} %"),
+        "the positive roots of both maps",
+        "stable",
+        format!(
+            "{share:.0} % possible and stable; in {through:.0} % the masses would pass through each other"
+        ),
         real == accepted,
         "the rule is necessary, not sufficient",
     )];

@@ -27,6 +27,15 @@ fn commands(text: &str) -> Vec<(String, String)> {
 #[cfg(unix)]
 const ELSEWHERE: [&str; 2] = ["vibro drill", "vibro precision"];
 
+/// Runs a line of the shell in a folder, with `vibro` on its path.
+#[cfg(unix)]
+fn shell(line: &str, folder: &Path) -> std::process::Output {
+    let program = Path::new(env!("CARGO_BIN_EXE_vibro")).parent().unwrap();
+    let path = format!("{}:{}", program.display(), std::env::var("PATH").unwrap());
+    let mut command = Command::new("sh");
+    command.args(["-c", line]).current_dir(folder).env("PATH", path).output().expect("a shell")
+}
+
 /// Runs the commands of a document in their order, in a folder that has the repository's examples; gives the
 /// number of each section's.
 #[cfg(unix)]
@@ -35,19 +44,12 @@ fn run(document: &str) -> BTreeMap<String, usize> {
     let folder = tempfile::tempdir().unwrap();
     std::os::unix::fs::symlink(root.join("examples"), folder.path().join("examples")).unwrap();
     let text = std::fs::read_to_string(root.join(document)).unwrap();
-    let program = Path::new(env!("CARGO_BIN_EXE_vibro")).parent().unwrap();
-    let path = format!("{}:{}", program.display(), std::env::var("PATH").unwrap());
     let mut ran: BTreeMap<String, usize> = BTreeMap::new();
     for (section, line) in commands(&text) {
         if ELSEWHERE.contains(&section.as_str()) {
             continue;
         }
-        let output = Command::new("sh")
-            .args(["-c", &line])
-            .current_dir(folder.path())
-            .env("PATH", &path)
-            .output()
-            .expect("a shell");
+        let output = shell(&line, folder.path());
         assert!(output.status.success(), "{line}\n{}", String::from_utf8_lossy(&output.stderr));
         if document == TUTORIAL {
             shown(&text, &line, &output);
@@ -89,6 +91,27 @@ fn every_section_has_an_example_that_runs() {
 fn the_tutorial_and_the_recipes_run() {
     assert_eq!(run(TUTORIAL).values().sum::<usize>(), 10);
     assert_eq!(run("docs/recipes.md").len(), 9);
+}
+
+/// The commands of the tables of the thesis name options and values that are taken, and files that are here.
+/// Behind all options `--help` keeps them from running, which would take half a minute.
+#[cfg(unix)]
+#[test]
+fn the_commands_of_the_thesis_are_taken() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let text = std::fs::read_to_string(root.join("docs/thesis.md")).unwrap();
+    let spans = text.split('`').skip(1).step_by(2);
+    let lines: Vec<&str> = spans.filter(|span| span.starts_with("vibro ") && span.contains(" --")).collect();
+    assert!(lines.len() > 40, "{lines:?}");
+    for line in lines {
+        let output = shell(&format!("{line} --help"), root);
+        assert!(output.status.success(), "{line}\n{}", String::from_utf8_lossy(&output.stderr));
+        let files = line.split([' ', '#']).filter(|word| word.starts_with("examples/"));
+        // `vibro demo hammer_drill` makes its recordings.
+        for file in files.filter(|file| !file.starts_with("examples/hammer_drill")) {
+            assert!(root.join(file).is_file(), "{line}: {file}");
+        }
+    }
 }
 
 /// The help of every command, as a page: `VIBRO_DOCS=1 cargo test --release --test product
