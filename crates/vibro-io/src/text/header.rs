@@ -231,8 +231,8 @@ fn is_decimated(line: &str) -> bool {
     })
 }
 
-/// Splits a unit off a `key`, in brackets or as its last word: `sample_rate_hz`. Punctuation in the key becomes
-/// blanks.
+/// Splits a unit off a `key`, in brackets or as its last word: `sample_rate_hz`. Punctuation in the key
+/// becomes blanks.
 fn split_unit(key: &str) -> (String, String) {
     let (key, unit) = match key.find(['[', '(']) {
         Some(at) => (key[..at].trim(), key[at + 1..].trim_end_matches([']', ')'])),

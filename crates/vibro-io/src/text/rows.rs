@@ -104,7 +104,8 @@ struct Cells<'a> {
     clock: Stopwatch,
     columns: Vec<Vec<Complex64>>,
     missing: Missing,
-    /// Missing values with one for each blank line: only the end shows whether blank lines are missing values.
+    /// Missing values with one for each blank line: only the end shows whether blank lines are missing
+    /// values.
     with_blanks: Missing,
     blanks: Vec<Blank>,
 }
