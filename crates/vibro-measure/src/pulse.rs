@@ -183,8 +183,8 @@ fn samples_of(located: &Located) -> Result<f64> {
     Ok(seen)
 }
 
-/// Estimates of a spring and damper fitted to `n` samples. `widened` is the factor on their uncertainties, NaN
-/// where these are not known.
+/// Estimates of a spring and damper fitted to `n` samples. `widened` is the factor on their uncertainties,
+/// NaN where these are not known.
 fn spring_and_damper(
     main: &FittedPulse,
     (scale, n): (&Normalised, usize),

@@ -148,8 +148,8 @@ pub fn restitution(measured: &Measured) -> Result<Restitution> {
     Ok(Restitution { restitution, by, agree, bootstrap_std, intervals, findings })
 }
 
-/// Adds the uncertainty of the contact time in s to that of each method. `bias` is the relative change of R by
-/// 1 ms of contact.
+/// Adds the uncertainty of the contact time in s to that of each method. `bias` is the relative change of R
+/// by 1 ms of contact.
 fn widen_by_contact(
     by: &mut [MethodAnswer],
     bias: &[f64],

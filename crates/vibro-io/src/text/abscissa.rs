@@ -1,5 +1,5 @@
-//! Finds the abscissa among the columns of a text: by its name, or since it rises. Its unit is
-//! from its name, the head or its first value.
+//! Finds the abscissa among the columns of a text: by its name, or since it rises. Its unit is from its name,
+//! the head or its first value.
 
 use super::axis::{PrintedAbscissa, choose};
 use super::column::Column;

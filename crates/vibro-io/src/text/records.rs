@@ -1,4 +1,4 @@
-//! Makes records from columns: finds the abscissa, applies units, joins complex parts.
+//! Makes records from columns: applies units, joins complex parts.
 
 use super::abscissa::CommonAxis;
 use super::cautions;

@@ -162,7 +162,7 @@ fn turned_upright(values: &mut [f64], bursts: &[Range<usize>]) -> Option<Finding
 }
 
 /// Findings on bursts whose number depends on their ringing, or that noise may hide. `stable` is the factor
-/// by which the pause may change without another number of bursts.
+/// by which the assumed decay may change without another number of bursts.
 fn in_doubt(
     values: &[f64],
     bursts: &[Range<usize>],
