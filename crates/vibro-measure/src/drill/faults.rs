@@ -340,9 +340,3 @@ mod tests {
         assert!(values.is_empty());
     }
 }
-
-#[cfg(test)]
-mod surveys {
-    use super::*;
-    use vibro_math::Noise;
-}
