@@ -12,7 +12,9 @@ use super::kind::{Analysis, no_file};
 use super::source::Source;
 use crate::campaign::{Channel, Entry, LowPass, channel, channels};
 use crate::error::{Error, Result};
-use crate::measure::drill::{AngleOrigin, Beam, Cycle, DrillOptions, Edge, Slices, Smoothing, drill_each};
+use crate::measure::drill::{
+    AngleOrigin, Beam, Cycle, Drill, DrillOptions, Edge, Slices, Smoothing, drill_each,
+};
 use crate::read::Header;
 use crate::report::Cell;
 use crate::report::files::Names;
@@ -256,24 +258,29 @@ impl Keys {
         let options = DrillOptions { clock: channels.clock(), ..options };
         let mut found = drill_each(&record, &options, noise.as_deref(), each)?;
         found.findings.splice(..0, channels.findings);
-        let mut answer = Answer::of(&found)?;
-        answer.add("", &found.findings);
-        answer.headlines.push(headline(
-            "Hammer drill",
-            [&found],
-            &[
-                ("speed", "Hz", &|f| Cell::from(&f.speed)),
-                ("velocity before impact", "m/s", &|f| f.before.as_ref().into()),
-                ("restitution", "", &|f| f.restitution.as_ref().into()),
-                ("impacts", "", &|f| Some(f.impacts.len()).filter(|n| *n > 0).into()),
-            ],
-        ));
-        answer.tables.push(tables::drill(source.name, &found));
-        answer.figures = figures::drill(source.name, &found);
-        answer.csv("average", &tables::drill_average(&found));
-        answer.csv("impacts", &tables::drill_impacts(&found));
-        Ok(answer)
+        answer(source.name, &found)
     }
+}
+
+/// The answer of a measured drill, with figures and tables.
+fn answer(name: &str, found: &Drill) -> Result<Answer> {
+    let mut answer = Answer::of(found)?;
+    answer.add("", &found.findings);
+    answer.headlines.push(headline(
+        "Hammer drill",
+        [found],
+        &[
+            ("speed", "Hz", &|f| Cell::from(&f.speed)),
+            ("velocity before impact", "m/s", &|f| f.before.as_ref().into()),
+            ("restitution", "", &|f| f.restitution.as_ref().into()),
+            ("impacts", "", &|f| Some(f.impacts.len()).filter(|n| *n > 0).into()),
+        ],
+    ));
+    answer.tables.push(tables::drill(name, found));
+    answer.figures = figures::drill(name, found);
+    answer.csv("average", &tables::drill_average(found));
+    answer.csv("impacts", &tables::drill_impacts(found));
+    Ok(answer)
 }
 
 impl Analysis for Keys {

@@ -19,7 +19,7 @@ use crate::campaign::{Campaign, Entry, channel};
 use crate::error::{Error, Result};
 use crate::measure::modal::{Measured, ModalOptions, ModalResult, modal};
 use crate::record::code;
-use crate::record::{Axis, Meta, Record, Trace, Window, shown};
+use crate::record::{Axis, Meta, Record, Trace, Traces, Window, shown};
 use crate::report::Cell;
 use crate::report::files;
 use crate::report::files::Names;
@@ -161,8 +161,10 @@ impl Keys {
 
     fn functions(&self, source: &Source<'_>, of_file: &mut Answer) -> Result<Vec<Function>> {
         if self.reference.is_some() {
-            self.refuse_sine(source)?;
-            let found = self.spectral_keys().lines(source)?;
+            let keys = self.spectral_keys();
+            let mut traces = keys.traces(source)?;
+            refuse_sine(&mut traces, source)?;
+            let found = keys.lines_of(traces, source)?;
             of_file.add("", &found.findings);
             let records = found.records();
             let Some(Record::Frf(frf)) = records.first() else { return Ok(Vec::new()) };
@@ -192,36 +194,6 @@ impl Keys {
             Ok(Function::new(meta, measured))
         };
         all.into_iter().map(function).collect()
-    }
-
-    /// Refuses a reference that is a single sine: the function would be known at one line, and be noise
-    /// over noise at all others.
-    fn refuse_sine(&self, source: &Source<'_>) -> Result<()> {
-        let mut traces = self.spectral_keys().traces(source)?;
-        let names: Vec<String> = traces.channels().iter().map(|meta| meta.name.clone()).collect();
-        traces.keep(&[0]);
-        let mut block = vec![Vec::new()];
-        let mut alone = None;
-        // Most references that are no sine show it at their beginning.
-        for enough in [HEAD, usize::MAX] {
-            while block[0].len() < enough && traces.append(&mut block)? > 0 {}
-            let (meta, values) = (traces.channels()[0].clone(), block[0].clone());
-            let axis = Axis::time(traces.start(), 1.0 / traces.rate(), values.len());
-            alone = Strongest::of(&Trace { meta, axis, values }).filter(|tone| tone.share >= ALONE);
-            if alone.is_none() {
-                return Ok(());
-            }
-        }
-        let Some((tone, [name, response])) = alone.zip(names.first_chunk()) else { return Ok(()) };
-        let folder = source.path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
-        let frequency = significant(tone.frequency, 5);
-        let why =
-            format!("{name} is a sine of {frequency} Hz alone, and a function needs power at all lines");
-        let (folder, file) = (shown(folder), shown(source.path));
-        Err(Error::refused(format!(
-            "{why}; `vibro response` takes the folder {folder}, where it holds the steps of a sweep"
-        ))
-        .hint(format!("vibro spectrum {file:?} --channel {response:?} --tones 1")))
     }
 
     /// The modes of a function, with figures, tables and files.
@@ -273,6 +245,32 @@ impl Keys {
         }
         Ok(answer)
     }
+}
+
+/// Refuses a reference that is a single sine: the function would be known at one line, and be noise
+/// over noise at all others.
+fn refuse_sine(traces: &mut Traces, source: &Source<'_>) -> Result<()> {
+    let names: Vec<String> = traces.channels().iter().map(|meta| meta.name.clone()).collect();
+    let mut alone = None;
+    // Most references that are no sine show it at their beginning.
+    for enough in [HEAD, usize::MAX] {
+        let Some(values) = traces.peek(enough)?.first().cloned() else { return Ok(()) };
+        let meta = traces.channels()[0].clone();
+        let axis = Axis::time(traces.start(), 1.0 / traces.rate(), values.len());
+        alone = Strongest::of(&Trace { meta, axis, values }).filter(|tone| tone.share >= ALONE);
+        if alone.is_none() {
+            return Ok(());
+        }
+    }
+    let Some((tone, [name, response])) = alone.zip(names.first_chunk()) else { return Ok(()) };
+    let folder = source.path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let frequency = significant(tone.frequency, 5);
+    let why = format!("{name} is a sine of {frequency} Hz alone, and a function needs power at all lines");
+    let (folder, file) = (shown(folder), shown(source.path));
+    Err(Error::refused(format!(
+        "{why}; `vibro response` takes the folder {folder}, where it holds the steps of a sweep"
+    ))
+    .hint(format!("vibro spectrum {file:?} --channel {response:?} --tones 1")))
 }
 
 /// Why the modes of a sweep differ from its resonances.

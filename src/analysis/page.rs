@@ -8,7 +8,7 @@ use crate::model::Parameter;
 use crate::record::{Severity, Step};
 use crate::report::Page;
 use crate::report::Picture;
-use crate::report::words::{Voice, foremost, graded};
+use crate::report::words::{About, Voice, graded};
 use crate::units::notation::{counted, shortest};
 use serde_json::json;
 use std::fmt::Write as _;
@@ -30,16 +30,23 @@ pub fn page(
 ) -> Page {
     let mut page = Page::new(job.title.as_str()).heading("Answers");
     page = page.answers(&shortened(&all.headlines));
-    let mut worst = graded(&all.findings, Voice::Campaign);
-    worst.retain(|(severity, _)| *severity > Severity::Note);
-    let shown = foremost(&worst).min(MOST_FINDINGS);
-    page = page.findings(&worst[..shown]);
-    if worst.len() > shown {
-        let more = counted(worst.len() - shown, "more caution");
-        page = page.paragraph(&format!("{more} below, at the records."));
+    // Each finding is listed once: doubts beside the answers, all others at the records.
+    let mut doubts = graded(&all.findings, Voice::Campaign);
+    doubts.retain(|(severity, _)| *severity > Severity::Note);
+    let others = doubts
+        .split_off(doubts.iter().take_while(|found| found.0 == Severity::Doubt).count().min(MOST_DOUBTS));
+    page = page.findings(&doubts);
+    if !others.is_empty() {
+        let name = if doubts.is_empty() { "caution" } else { "more caution" };
+        page = page.paragraph(&format!("{} below, at the records.", counted(others.len(), name)));
     }
+    let at_records = |findings: &[About]| {
+        let mut found = graded(findings, Voice::Campaign);
+        found.retain(|found| !doubts.contains(found));
+        found
+    };
     for (title, [tables, figures, details, findings]) in parts.iter().cloned() {
-        let findings = graded(&all.findings[findings], Voice::Campaign);
+        let findings = at_records(&all.findings[findings]);
         let (tables, details) = (&all.tables[tables], &all.details[details]);
         if tables.is_empty() && figures.is_empty() && details.is_empty() && findings.is_empty() {
             continue;
@@ -57,9 +64,16 @@ pub fn page(
     }
     // Findings after those of the parts are about the campaign.
     let rest = parts.last().map_or(0, |(_, [.., findings])| findings.end);
-    page =
-        page.heading("Where the numbers come from").findings(&graded(&all.findings[rest..], Voice::Campaign));
-    if let Some(ComparedRig { rig, .. }) = compared {
+    page = page.heading("Where the numbers come from").findings(&at_records(&all.findings[rest..]));
+    let page = origin(page, job, inputs, all);
+    page.paragraph(&format!(
+        "Made by vibroimpact {version}. All numbers are in results.json beside this page."
+    ))
+}
+
+/// Adds the origin of the numbers: the rig, the files, the campaign, and the steps from file to result.
+fn origin(mut page: Page, job: &Job<'_>, inputs: &str, all: &Answer) -> Page {
+    if let Some(ComparedRig { rig, .. }) = &all.compared {
         let mut rig = *rig;
         let values: Vec<(&str, String)> =
             Parameter::of_rig().filter_map(|p| Some((p.name(), with_unit(p, *p.place(&mut rig)?)))).collect();
@@ -81,9 +95,7 @@ pub fn page(
             steps.iter().map(|(name, text)| (name.as_str(), text.as_str())),
         );
     }
-    page.paragraph(&format!(
-        "Made by vibroimpact {version}. All numbers are in results.json beside this page."
-    ))
+    page
 }
 
 /// A value of a rig with its unit.
@@ -95,8 +107,8 @@ fn with_unit(parameter: Parameter, value: f64) -> String {
 const WHAT_IF: &str = "Curves: motions with one impact a cycle and without impacts, as the model has them for these values. A contact stiffness is taken into account to first \
     order, and curves end where the contact lasts longer than 2.5 % of a cycle.";
 
-/// Largest number of findings at the head of the page.
-const MOST_FINDINGS: usize = 8;
+/// Largest number of doubts at the head of the page.
+const MOST_DOUBTS: usize = 8;
 
 /// Processing steps as text, one a line.
 fn history(steps: &[Step]) -> String {

@@ -57,6 +57,27 @@ pub struct CampaignOutcome {
     pub again: usize,
 }
 
+/// Adds the findings on a campaign as a whole.
+///
+/// # Errors
+/// If no record was answered and one of them could not be read.
+fn whole(job: &mut Job<'_>) -> Result<()> {
+    let campaign = job.campaign;
+    job.found.add("", campaign.commented());
+    job.found.add("", beside(campaign)?);
+    job.found.add("", double_use(campaign)?);
+    if job.answers == 0 {
+        let of_tables = faults(campaign)?.into_iter().map(|fault| fault.error);
+        of_tables.chain(job.failed.take()).next().map_or(Ok(()), Err)?;
+    }
+    if campaign.is_empty() {
+        job.found.add("", [Finding::caution("campaign-without-record")]);
+    } else if job.answers == 0 {
+        job.found.add("", [Finding::caution("no-record-answers")]);
+    }
+    Ok(())
+}
+
 /// Measures all records of a campaign and writes results and report to `output`.
 ///
 /// # Errors
@@ -91,18 +112,7 @@ pub fn run(
         let to = counts(&job.found);
         parts.push((kind.title, [0, 1, 2, 3].map(|i| from[i]..to[i])));
     }
-    job.found.add("", campaign.commented());
-    job.found.add("", beside(campaign)?);
-    job.found.add("", double_use(campaign)?);
-    if job.answers == 0 {
-        let of_tables = faults(campaign)?.into_iter().map(|fault| fault.error);
-        of_tables.chain(job.failed.take()).next().map_or(Ok(()), Err)?;
-    }
-    if campaign.is_empty() {
-        job.found.add("", [Finding::caution("campaign-without-record")]);
-    } else if job.answers == 0 {
-        job.found.add("", [Finding::caution("no-record-answers")]);
-    }
+    whole(&mut job)?;
     let mut all = std::mem::take(&mut job.found);
     progress.start("drawing figures", all.figures.len());
     let medium = output.medium;

@@ -121,7 +121,7 @@ impl Keys {
     /// If the file cannot be read, or the record allows no answer.
     pub fn lines(&self, source: &Source<'_>) -> Result<SpectralResult> {
         let options = self.options()?;
-        let mut traces = match self.traces(source) {
+        let traces = match self.traces(source) {
             Ok(traces) => traces,
             // A stated base band is then that of the stored lines, and gives no sampling rate.
             Err(why) => match source.reader()?.survey(source.path) {
@@ -132,9 +132,16 @@ impl Keys {
                 _ => return Err(why),
             },
         };
+        self.lines_of(traces, source)
+    }
+
+    /// Spectral lines of traces.
+    ///
+    /// # Errors
+    /// If the traces allow no answer.
+    pub fn lines_of(&self, mut traces: Traces, source: &Source<'_>) -> Result<SpectralResult> {
         let all = traces.frames();
-        let found = spectral(&mut traces, &options, |done| source.progress.at(done, all))?;
-        Ok(found)
+        Ok(spectral(&mut traces, &self.options()?, |done| source.progress.at(done, all))?)
     }
 }
 

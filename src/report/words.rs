@@ -119,7 +119,7 @@ pub fn graded(findings: &[About], voice: Voice) -> Vec<(Severity, String)> {
     all
 }
 
-/// Number of findings shown first, at the command line and at the head of a report.
+/// Number of findings shown first at the command line.
 const FOREMOST: usize = 3;
 
 /// Number of findings, sorted by [`graded`], to show first: three, or all doubts if more. A single further

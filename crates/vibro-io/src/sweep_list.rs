@@ -152,15 +152,7 @@ fn parse(path: &Path, text: &str) -> Result<SweepList> {
         let found = format!("found {given} excitation frequencies for {points} points");
         return Err(fault(2 + given, found, format!("{points} frequencies")));
     }
-    let mut names: Vec<(u64, String)> = match &lines[3 + given..] {
-        all if given == 0 => all.iter().map(|(line, name)| (*line, (*name).to_owned())).collect(),
-        // The script writes names of 11 characters without a separator.
-        [(line, one)] if one.chars().count() == NAME * points => {
-            let characters: Vec<char> = one.chars().collect();
-            characters.chunks(NAME).map(|name| (*line, name.iter().collect())).collect()
-        }
-        all => all.iter().flat_map(|(n, l)| l.split_whitespace().map(|name| (*n, name.to_owned()))).collect(),
-    };
+    let mut names = names_of(&lines[3 + given..], points, given == 0);
     let (force, kind) = if given == 0 { (points, "file") } else { (0, "response") };
     let wanted = force + points;
     if names.len() != wanted {
@@ -173,10 +165,6 @@ fn parse(path: &Path, text: &str) -> Result<SweepList> {
             format!("{wanted} names, of {force} force and {points} response files"),
         ));
     }
-    let is_name = |name: &str| {
-        let bytes = name.as_bytes();
-        name.contains(char::is_alphabetic) && number::parse(bytes).is_none() && !number::is_missing(bytes)
-    };
     if let Some((line, name)) = names.iter().find(|(_, name)| !is_name(name)) {
         let place = Place::line(path, *line);
         return Err(Error::input(place, format!("found {name:?}"), "the name of a file"));
@@ -185,6 +173,25 @@ fn parse(path: &Path, text: &str) -> Result<SweepList> {
     let files = |names: Vec<(u64, String)>| names.into_iter().map(|(_, name)| PathBuf::from(name)).collect();
     let response = files(names.split_off(force));
     Ok(SweepList { lines: spectral, base_band, force: files(names), excitation, response, places })
+}
+
+/// Names of files with their lines: one a line, or all of a hand-over to the script for `points` points.
+fn names_of(lines: &[(u64, &str)], points: usize, one_a_line: bool) -> Vec<(u64, String)> {
+    match lines {
+        all if one_a_line => all.iter().map(|(line, name)| (*line, (*name).to_owned())).collect(),
+        // The script writes names of 11 characters without a separator.
+        [(line, one)] if one.chars().count() == NAME * points => {
+            let characters: Vec<char> = one.chars().collect();
+            characters.chunks(NAME).map(|name| (*line, name.iter().collect())).collect()
+        }
+        all => all.iter().flat_map(|(n, l)| l.split_whitespace().map(|name| (*n, name.to_owned()))).collect(),
+    }
+}
+
+/// Whether a text may be the name of a file: it is no number and has a letter.
+fn is_name(name: &str) -> bool {
+    let bytes = name.as_bytes();
+    name.contains(char::is_alphabetic) && number::parse(bytes).is_none() && !number::is_missing(bytes)
 }
 
 #[cfg(test)]

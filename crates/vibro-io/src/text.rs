@@ -6,6 +6,7 @@
 //! more function beside these two. Clean rows are read in parallel ([`fast`]), all others one by one
 //! ([`rows`]), so that an error names line and column. Columns become records in [`records`].
 
+mod abscissa;
 mod axis;
 mod cautions;
 mod clock;
@@ -48,6 +49,7 @@ use dialect::Dialect;
 use fast::RowShape;
 use header::Stated;
 use names::Name;
+use records::RecordContext;
 use rows::Rows;
 pub(crate) use tables::{LONGER, rows as count_rows};
 pub(crate) use tail::Digits;
@@ -226,7 +228,8 @@ fn read_rows(text: &Text, dialect: &Dialect, options: &Options, survey: bool) ->
         let values = wrapped::flat(text, dialect)?;
         if let Some(values) = values.filter(|v| options.wrapped.is_some() || declared == Some(v.len())) {
             let rows = Rows { columns: vec![Values::Real(values).into()], ..Rows::default() };
-            return records_of(text, &tail, &Dialect { columns: 1, ..dialect.clone() }, rows, options);
+            let dialect = Dialect { columns: 1, ..dialect.clone() };
+            return records_of(RecordContext::new(text, &tail, &dialect, options, stated), rows);
         }
     }
     let shape = RowShape::of(dialect, text.source.head());
@@ -256,7 +259,7 @@ fn read_rows(text: &Text, dialect: &Dialect, options: &Options, survey: bool) ->
     {
         return Err(wrapped::question(dialect.columns));
     }
-    let read = records_of(text, &tail, dialect, rows, options)?;
+    let read = records_of(RecordContext::new(text, &tail, dialect, options, stated), rows)?;
     Ok(Read { clean, ..read })
 }
 
@@ -277,7 +280,8 @@ fn kept(dialect: &Dialect, options: &Options, stated: &Stated, survey: bool) -> 
     (0..dialect.columns).map(|i| all || abscissa(i)).collect()
 }
 
-fn records_of(text: &Text, tail: &[u8], dialect: &Dialect, rows: Rows, options: &Options) -> Result<Read> {
+fn records_of(context: RecordContext, rows: Rows) -> Result<Read> {
+    let RecordContext { text, tail, dialect, .. } = context;
     let mut findings: Vec<Finding> =
         tail::cut_off(tail, dialect.separator, dialect.decimal).into_iter().collect();
     findings.extend(missing::kept(rows.missing));
@@ -289,7 +293,7 @@ fn records_of(text: &Text, tail: &[u8], dialect: &Dialect, rows: Rows, options: 
         findings.push(Finding::caution("decimal-comma-assumed"));
     }
     findings.extend(table::grouped(text, dialect)?);
-    let columns = records::build(text, tail, dialect, rows, options, &mut findings)?;
+    let columns = context.records(rows, &mut findings)?;
     Ok(Read { columns, findings, clean: None })
 }
 

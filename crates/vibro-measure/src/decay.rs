@@ -84,35 +84,7 @@ impl Sines {
         mut findings: Vec<Finding>,
     ) -> Result<DecayResult> {
         let unit = trace.meta.unit.quantity().symbol();
-        let (mut modes, mut largest) = (Vec::new(), None);
-        let strongest = self.strongest();
-        let is_strongest =
-            |group, m| strongest.is_some_and(|(other, k)| std::ptr::eq(other, group) && k == m);
-        let size = strongest.map_or(0.0, |(group, m)| group.sines[m].amplitude.norm());
-        for (group, m) in self.asked() {
-            let mut mode = mode(group, m, self.n, self.rate, unit);
-            mode.amplitude = mode.amplitude.with_relative(trace.meta.lost(mode.frequency.value));
-            mode.frequency = mode.frequency.with_relative(trace.meta.clock);
-            if decays(group, m) {
-                let doubted = self
-                    .odd
-                    .iter()
-                    .any(|k| (group.sines[m].periods - *k as f64).abs() < group.sines[m].reach());
-                largest = largest.or(is_strongest(group, m).then_some(modes.len()));
-                modes.push(if doubted { mode.without_uncertainty() } else { mode });
-                if doubted {
-                    findings.push(
-                        Finding::doubt(code::DECAY_UNEXPLAINED)
-                            .number("frequency", modes[modes.len() - 1].frequency.value),
-                    );
-                }
-            } else if is_strongest(group, m) {
-                return Err(self.steady(group, m));
-            } else if mode.amplitude.value > SEEN * size && group.sines[m].periods > 3.0 {
-                let steady = Finding::note("decay-steady-line").number("frequency", mode.frequency.value);
-                findings.push(steady.number("amplitude", mode.amplitude.value).name("unit", unit));
-            }
-        }
+        let (mut modes, largest) = self.modes(trace, unit, &mut findings)?;
         if let Some(count) = options.modes.filter(|count| *count > modes.len()) {
             findings.push(Finding::caution("decay-fewer").count("n", modes.len()).count("count", count));
         }
@@ -143,6 +115,45 @@ impl Sines {
             findings,
             curves,
         })
+    }
+
+    /// The modes that were asked for, and the place of the strongest. Lines that do not decay are no modes.
+    fn modes(
+        &self,
+        trace: &Trace,
+        unit: &'static str,
+        findings: &mut Vec<Finding>,
+    ) -> Result<(Vec<DecayMode>, Option<usize>)> {
+        let (mut modes, mut largest) = (Vec::new(), None);
+        let strongest = self.strongest();
+        let is_strongest =
+            |group, m| strongest.is_some_and(|(other, k)| std::ptr::eq(other, group) && k == m);
+        let size = strongest.map_or(0.0, |(group, m)| group.sines[m].amplitude.norm());
+        for (group, m) in self.asked() {
+            let mut mode = mode(group, m, self.n, self.rate, unit);
+            mode.amplitude = mode.amplitude.with_relative(trace.meta.lost(mode.frequency.value));
+            mode.frequency = mode.frequency.with_relative(trace.meta.clock);
+            if decays(group, m) {
+                let doubted = self
+                    .odd
+                    .iter()
+                    .any(|k| (group.sines[m].periods - *k as f64).abs() < group.sines[m].reach());
+                largest = largest.or(is_strongest(group, m).then_some(modes.len()));
+                modes.push(if doubted { mode.without_uncertainty() } else { mode });
+                if doubted {
+                    findings.push(
+                        Finding::doubt(code::DECAY_UNEXPLAINED)
+                            .number("frequency", modes[modes.len() - 1].frequency.value),
+                    );
+                }
+            } else if is_strongest(group, m) {
+                return Err(self.steady(group, m));
+            } else if mode.amplitude.value > SEEN * size && group.sines[m].periods > 3.0 {
+                let steady = Finding::note("decay-steady-line").number("frequency", mode.frequency.value);
+                findings.push(steady.number("amplitude", mode.amplitude.value).name("unit", unit));
+            }
+        }
+        Ok((modes, largest))
     }
 
     /// The refusal where the strongest line does not decay.

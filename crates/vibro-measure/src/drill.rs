@@ -22,6 +22,7 @@
 //! ```
 
 mod cycles;
+mod faults;
 mod floor;
 mod groups;
 mod jumps;
@@ -33,12 +34,12 @@ mod train;
 mod turns;
 
 pub use cycles::{Bandwidth, Cycle, Phases};
+pub use faults::FaultCount;
 pub use floor::NoiseFloor;
 use groups::Offset;
 pub use groups::{Group, Impact};
 pub use options::{AngleOrigin, Beam, Corner, DrillOptions, Smoothing, TurnsFrom};
 pub use result::{Displacement, Drill, Pulses};
-pub use survey::FaultCount;
 pub(crate) use survey::levels;
 pub use turns::Edge;
 pub(crate) use turns::{Edges, Numbered};
@@ -48,8 +49,9 @@ use crate::converter::{analogue_step, rounding};
 use crate::exposure::exposure;
 use crate::mean::{Mean, scatter};
 use cycles::Cycles;
+use faults::State;
 use jumps::Jumps;
-use survey::{ChannelStatistics, State};
+use survey::ChannelStatistics;
 use train::TurnImpacts;
 use turns::{Turn, Turns};
 use vibro_record::{Error, Finding, Result, median};
@@ -96,11 +98,8 @@ pub fn drill_each(
     let scaled = |volts: &[f64]| volts.iter().map(|v| v * factor).collect::<Vec<f64>>();
     let mut velocity = scaled(record.channels[0]);
     let survey = ChannelStatistics::of(&velocity);
-    if survey.low >= survey.high {
-        let error = Error::refused("the velocity is constant, or missing");
-        return Err(error.hint("check that the laser sees the target").setting("velocity"));
-    }
-    let (states, faults) = survey::repair(&mut velocity, &survey, (options.longest_dropout * rate) as usize);
+    moves(&survey)?;
+    let (states, faults) = faults::repair(&mut velocity, &survey, (options.longest_dropout * rate) as usize);
     let marks = match reference {
         Some(reference) => Marks::of_reference(reference, record.channels[0], options, options.delay * rate)?,
         None => Marks::of_impacts(&velocity, &states, options, rate)?,
@@ -143,13 +142,12 @@ pub fn drill_each(
         Estimate::new(mean.value, known, "m", mean.n, method).with_relative(options.clock)
     };
     let noise_floor = still.and_then(|still| NoiseFloor::new(velocity, scaled(still), rate, options.margin));
-    let slow = [
+    let slow = slow_changes([
         ("speed", speed_wanders),
         ("stroke", stroke.wanders),
         ("drift", drift.wanders),
         ("impacts", strongest.is_some_and(|g| g.wanders)),
-    ];
-    let slow: Vec<&str> = slow.into_iter().filter(|(_, wanders)| *wanders).map(|(name, _)| name).collect();
+    ]);
     let mut result = Drill {
         speed: speed.with_relative(options.clock),
         speed_variation: scatter(&speeds),
@@ -188,9 +186,25 @@ pub fn drill_each(
         findings: Vec::new(),
     };
     result.findings = result::findings(&result, options, marks.sharp, &survey, still.is_some());
-    let changes = Finding::caution("drill-slow-changes").name("quantities", slow.join(", "));
-    result.findings.extend((!slow.is_empty()).then_some(changes));
+    result.findings.extend(slow);
     Ok(result)
+}
+
+/// Refuses a velocity that is constant or missing.
+fn moves(velocity: &ChannelStatistics) -> Result<()> {
+    if velocity.low < velocity.high {
+        return Ok(());
+    }
+    let error = Error::refused("the velocity is constant, or missing");
+    Err(error.hint("check that the laser sees the target").setting("velocity"))
+}
+
+/// Finding on the quantities, of which each is said to wander, that change slowly.
+fn slow_changes(quantities: [(&str, bool); 4]) -> Option<Finding> {
+    let slow = quantities.into_iter().filter(|(_, wanders)| *wanders).map(|(name, _)| name);
+    let slow: Vec<&str> = slow.collect();
+    let changes = || Finding::caution("drill-slow-changes").name("quantities", slow.join(", "));
+    (!slow.is_empty()).then(changes)
 }
 
 /// Standard uncertainty in m of a stroke from its two losses: the smoothing, and the travel between an

@@ -179,19 +179,12 @@ fn of_detected(trace: &Trace, options: &ImpactsOptions, detected: Detected) -> R
             .setting("threshold")
     })?;
     findings.extend(fitted.wanders.then(|| Finding::caution("intervals-drift")));
-    // First and last onset each lie anywhere within a sample. If the interval is near a whole number of
-    // samples, all onsets lie alike between samples: the scatter of the intervals does not show this error,
-    // and no number of impacts averages it out.
-    let intervals = counted.index.last().copied().unwrap_or(0) as f64;
-    let sampled = resolution.map_or(0.0, |step| step / (6f64.sqrt() * intervals));
-    // The shift of each place of a pattern is fitted too, and costs a degree of freedom.
-    let free = |parameters: usize| even.len().saturating_sub(parameters) as f64;
-    let widened = (free(2) / free(1 + pattern.unwrap_or(1))).sqrt();
     let mostly_missed = counted.missed > times.len();
     let missed = Finding::doubt("impacts-mostly-missed").count("n", times.len());
     findings.extend(mostly_missed.then(|| missed.count("missed", counted.missed)));
     let doubted = findings.iter().any(|f| f.severity == Severity::Doubt);
-    let std = (widened * fitted.std).hypot(sampled);
+    let intervals = counted.index.last().copied().unwrap_or(0);
+    let std = widened(fitted.std, even.len(), pattern).hypot(within_sample(resolution, intervals));
     let std = Some(std).filter(|s| s.is_finite() && !doubted);
     let interval_by = if kept.len() < 3 {
         "difference of two onsets"
@@ -228,6 +221,21 @@ fn of_detected(trace: &Trace, options: &ImpactsOptions, detected: Detected) -> R
     let of_train = of_train(&answer);
     answer.findings.extend(of_train);
     Ok(answer)
+}
+
+/// Standard uncertainty of an interval from `n` onsets, widened for the fit of a pattern.
+fn widened(std: f64, n: usize, pattern: Option<usize>) -> f64 {
+    // The shift of each place of a pattern is fitted too, and costs a degree of freedom.
+    let free = |parameters: usize| n.saturating_sub(parameters) as f64;
+    (free(2) / free(1 + pattern.unwrap_or(1))).sqrt() * std
+}
+
+/// Standard uncertainty in s of the mean of `intervals` whose onsets are known to a sample.
+fn within_sample(resolution: Option<f64>, intervals: usize) -> f64 {
+    // First and last onset each lie anywhere within a sample. If the interval is near a whole number of
+    // samples, all onsets lie alike between samples: the scatter of the intervals does not show this error,
+    // and no number of impacts averages it out.
+    resolution.map_or(0.0, |step| step / (6f64.sqrt() * intervals as f64))
 }
 
 /// Removes bursts that follow impacts at fixed delays, as echoes do. Where that is not sure, they stay with a

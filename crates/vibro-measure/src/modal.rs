@@ -20,6 +20,7 @@ mod selection;
 pub use response::Measured;
 pub use result::{ByMethod, ModalOptions, ModalResult, Mode, Pole};
 
+use peak::Peak;
 use rational::{Rational, rational};
 use report::Candidate;
 use selection::{PeakGroup, averaging, chosen, complete, groups, together};
@@ -79,13 +80,26 @@ pub fn modal(measured: &Measured, options: &ModalOptions) -> Result<ModalResult>
         }
     }
     if modes.is_empty() {
-        let refused = Error::refused("no peak of the function is supported as a mode");
-        return Err(match options.band {
-            None => refused.hint("a band around one peak, or check the sign of the phase").setting("band"),
-            Some(_) => refused
-                .hint("longer records, for five lines or more in the peak; check the sign of the phase"),
-        });
+        return Err(without_modes(options));
     }
+    gather_noise(&lines, &unsupported, &mut findings);
+    modes.sort_by(|a, b| a.frequency.value.total_cmp(&b.frequency.value));
+    Ok(ModalResult { modes, findings })
+}
+
+/// The refusal of a function without modes.
+fn without_modes(options: &ModalOptions) -> Error {
+    let refused = Error::refused("no peak of the function is supported as a mode");
+    match options.band {
+        None => refused.hint("a band around one peak, or check the sign of the phase").setting("band"),
+        Some(_) => {
+            refused.hint("longer records, for five lines or more in the peak; check the sign of the phase")
+        }
+    }
+}
+
+/// Gathers `unsupported` peaks, and findings on further peaks without a mode, in one finding.
+fn gather_noise(lines: &Measured, unsupported: &[Peak], findings: &mut Vec<Finding>) {
     // The highest peaks without a mode keep a finding each. Further ones are noise, and share one finding.
     let odd = |found: &Finding| found.get("frequency").filter(|_| found.code == "modal-peak-unsupported");
     let height = |f: &f64| lines.values[lines.frequency.partition_point(|line| line < f)].norm();
@@ -100,8 +114,6 @@ pub fn modal(measured: &Measured, options: &ModalOptions) -> Result<ModalResult>
         at.truncate(NAMED);
         findings.push(finding.numbers("lines", at));
     }
-    modes.sort_by(|a, b| a.frequency.value.total_cmp(&b.frequency.value));
-    Ok(ModalResult { modes, findings })
 }
 
 /// Most peaks without a mode that are named.

@@ -22,7 +22,7 @@ use super::residuals::NO_SUPPORT;
 
 use contact::Rebound;
 use fit::{FittedPulse, Samples};
-use normalised::{Normalised, locate};
+use normalised::{Located, Normalised, locate};
 use result::{UNKNOWN, contact_estimates, undamped};
 use vibro_record::units::Quantity;
 use vibro_record::units::notation::shortest;
@@ -110,13 +110,7 @@ pub fn pulse(trace: &Trace, options: &PulseOptions) -> Result<PulseResult> {
     let rate = trace.sampling_rate()?;
     check(trace, options)?;
     let located = locate(&trace.values)?;
-    let seen = located.flanks.1 - located.flanks.0;
-    if seen < FEWEST {
-        let why = format!(
-            "the pulse has {seen:.1} samples above half its height, and at least {FEWEST:.1} are needed"
-        );
-        return Err(Error::refused(why).hint("sample faster"));
-    }
+    let seen = samples_of(&located)?;
     let filter = options.instrument.low_pass();
     let mut found = options.instrument.doubts(rate);
     let known = found.is_empty();
@@ -130,26 +124,9 @@ pub fn pulse(trace: &Trace, options: &PulseOptions) -> Result<PulseResult> {
     let (samples, level) = scale.window(&mut found, unlike)?;
     let known = known && level;
     let main = samples.fit(ContactModel::KelvinVoigt).map_err(unlike)?;
-
-    let n = samples.times.len();
-    let through = |f: &LowPass| {
-        format!(" through a Butterworth low-pass of order {} at {} Hz", f.order, shortest(f.corner))
-    };
-    let method = format!("least squares, spring and damper{}", filter.map_or_else(String::new, through));
-    let unit = [1.0, 1.0 / scale.length];
-    let shape = [main.fit.parameters[3], main.fit.parameters[4] * unit[1]];
     let (widening, whiteness) = (main.widening, main.whiteness);
     let widened = widening.filter(|_| known).unwrap_or(f64::NAN);
-    let covariance =
-        |i: usize, j: usize| widened.powi(2) * unit[i] * unit[j] * main.fit.covariance(3 + i, 3 + j);
-    let contact = |p: &[f64]| KelvinVoigt::new(p[0], p[1]);
-    let border = || Error::refused("the fitted contact lies at the border of what is possible (ξ near 1)");
-    let mut result = contact_estimates((&shape, &unit), covariance, contact, options.mass, n, &method)
-        .ok_or_else(border)?;
-    result.initial_velocity = scale.to_velocity(options.mass).map(|factor| {
-        let std = factor * main.fit.std(2) * widened;
-        Estimate::new(factor * main.fit.parameters[2].abs(), Some(std), "m/s", n, method)
-    });
+    let mut result = spring_and_damper(&main, (&scale, samples.times.len()), widened, options)?;
     // A contact cannot return more energy than it took: ξ may be below 0 only by its uncertainty.
     let gains = result.xi.value + 2.0 * result.xi.std.unwrap_or(UNKNOWN) < 0.0;
     let onset = if filter.is_none() { "pulse-low-pass-missing" } else { "pulse-onset-unlike" };
@@ -188,6 +165,49 @@ pub fn pulse(trace: &Trace, options: &PulseOptions) -> Result<PulseResult> {
     result = result.by_clock(trace.meta.clock);
     result.findings = found;
     result.picture = Some(scale.picture(&samples, &fits));
+    Ok(result)
+}
+
+/// Samples of a pulse above half its height.
+///
+/// # Errors
+/// If there are too few for a fit.
+fn samples_of(located: &Located) -> Result<f64> {
+    let seen = located.flanks.1 - located.flanks.0;
+    if seen < FEWEST {
+        let why = format!(
+            "the pulse has {seen:.1} samples above half its height, and at least {FEWEST:.1} are needed"
+        );
+        return Err(Error::refused(why).hint("sample faster"));
+    }
+    Ok(seen)
+}
+
+/// Estimates of a spring and damper fitted to `n` samples. `widened` is the factor on their uncertainties,
+/// NaN where these are not known.
+fn spring_and_damper(
+    main: &FittedPulse,
+    (scale, n): (&Normalised, usize),
+    widened: f64,
+    options: &PulseOptions,
+) -> Result<PulseResult> {
+    let filter = options.instrument.low_pass();
+    let through = |f: &LowPass| {
+        format!(" through a Butterworth low-pass of order {} at {} Hz", f.order, shortest(f.corner))
+    };
+    let method = format!("least squares, spring and damper{}", filter.map_or_else(String::new, through));
+    let unit = [1.0, 1.0 / scale.length];
+    let shape = [main.fit.parameters[3], main.fit.parameters[4] * unit[1]];
+    let covariance =
+        |i: usize, j: usize| widened.powi(2) * unit[i] * unit[j] * main.fit.covariance(3 + i, 3 + j);
+    let contact = |p: &[f64]| KelvinVoigt::new(p[0], p[1]);
+    let border = || Error::refused("the fitted contact lies at the border of what is possible (ξ near 1)");
+    let mut result = contact_estimates((&shape, &unit), covariance, contact, options.mass, n, &method)
+        .ok_or_else(border)?;
+    result.initial_velocity = scale.to_velocity(options.mass).map(|factor| {
+        let std = factor * main.fit.std(2) * widened;
+        Estimate::new(factor * main.fit.parameters[2].abs(), Some(std), "m/s", n, method)
+    });
     Ok(result)
 }
 

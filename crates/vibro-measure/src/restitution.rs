@@ -126,37 +126,14 @@ pub fn restitution(measured: &Measured) -> Result<Restitution> {
         Err(error) => return Err(error),
     }
     if contact_std > 0.0 {
-        let by_contact =
-            |(way, part): (&MethodAnswer, &f64)| 1e3 * contact_std * part * way.restitution.value;
-        let matters = |at: (&MethodAnswer, &f64)| {
-            at.0.restitution.std.is_some_and(|s| LONG_CONTACT * by_contact(at) > s)
-        };
-        let moved: Vec<f64> = by.iter().zip(&bias).map(by_contact).collect();
-        if contact > 0.0 {
-            let seen = Finding::note("contact-time-seen").number("duration", contact);
-            findings.push(seen.number("std", contact_std));
-        } else if by.iter().zip(&bias).any(matters) {
-            let methods: Vec<&str> = by.iter().map(|way| way.method).collect();
-            let found = Finding::caution("contact-time-unsaid").numbers("parts", bias);
-            findings.push(found.name("methods", methods.join(", ")));
-        }
-        for (way, moved) in by.iter_mut().zip(moved) {
-            way.restitution.std = way.restitution.std.map(|std| std.hypot(moved));
-        }
+        widen_by_contact(&mut by, &bias, (contact, contact_std), &mut findings);
     }
     if let Some(velocities) = &measured.velocities {
         by.extend(velocities.answers()?);
     }
     let uncertainty = |way: &MethodAnswer| way.restitution.std.unwrap_or(f64::INFINITY);
     let Some(surest) = by.iter().min_by(|a, b| uncertainty(a).total_cmp(&uncertainty(b))) else {
-        let none = if measured.trains.is_empty() {
-            Error::usage("nothing from which restitution follows", "what was measured of an impact")
-        } else {
-            Error::refused("one flight time has no ratio, from which restitution follows")
-        };
-        let settings = ["intervals", "height", "interval", "before"];
-        let hint = "state two flight times or more, a height and an interval, or velocities before and after";
-        return Err(settings.into_iter().fold(none.hint(hint), Error::setting));
+        return Err(without_answer(measured));
     };
     let agree = agreement(&by, &mut findings);
     if agree == Some(false) {
@@ -169,6 +146,43 @@ pub fn restitution(measured: &Measured) -> Result<Restitution> {
     };
     let bootstrap_std = measured.drop.as_ref().and_then(Drop::bootstrap);
     Ok(Restitution { restitution, by, agree, bootstrap_std, intervals, findings })
+}
+
+/// Adds the uncertainty of the contact time in s to that of each method. `bias` is the relative change of R
+/// by 1 ms of contact.
+fn widen_by_contact(
+    by: &mut [MethodAnswer],
+    bias: &[f64],
+    (contact, contact_std): (f64, f64),
+    findings: &mut Vec<Finding>,
+) {
+    let by_contact = |(way, part): (&MethodAnswer, &f64)| 1e3 * contact_std * part * way.restitution.value;
+    let matters =
+        |at: (&MethodAnswer, &f64)| at.0.restitution.std.is_some_and(|s| LONG_CONTACT * by_contact(at) > s);
+    let moved: Vec<f64> = by.iter().zip(bias).map(by_contact).collect();
+    if contact > 0.0 {
+        let seen = Finding::note("contact-time-seen").number("duration", contact);
+        findings.push(seen.number("std", contact_std));
+    } else if by.iter().zip(bias).any(matters) {
+        let methods: Vec<&str> = by.iter().map(|way| way.method).collect();
+        let found = Finding::caution("contact-time-unsaid").numbers("parts", bias.to_vec());
+        findings.push(found.name("methods", methods.join(", ")));
+    }
+    for (way, moved) in by.iter_mut().zip(moved) {
+        way.restitution.std = way.restitution.std.map(|std| std.hypot(moved));
+    }
+}
+
+/// The refusal where nothing that was measured gives restitution.
+fn without_answer(measured: &Measured) -> Error {
+    let none = if measured.trains.is_empty() {
+        Error::usage("nothing from which restitution follows", "what was measured of an impact")
+    } else {
+        Error::refused("one flight time has no ratio, from which restitution follows")
+    };
+    let settings = ["intervals", "height", "interval", "before"];
+    let hint = "state two flight times or more, a height and an interval, or velocities before and after";
+    settings.into_iter().fold(none.hint(hint), Error::setting)
 }
 
 /// Longest contact in s for which uncertainties allow where none is stated or seen: longer than steel and

@@ -142,25 +142,34 @@ fn rate_of(force: &Trace, response: &Trace) -> Result<f64> {
     Ok(rate)
 }
 
+/// Frequency of the sine of a force in Hz, and its number of periods.
+///
+/// # Errors
+/// If there is no sine, or fewer periods than a response needs.
+fn excitation(force: &Trace, rate: f64) -> Result<(Estimate, f64)> {
+    let found = sine(force, None).map_err(|error| error.hint(SHAKER))?;
+    let Some(tone) = found.tones.into_iter().next() else {
+        return Err(Error::refused("the force holds no sine").hint(SHAKER));
+    };
+    let frequency = tone.frequency;
+    let periods = force.values.len() as f64 / rate * frequency.value;
+    if periods < PERIODS {
+        let why = format!(
+            "the step holds {periods:.1} periods of {:.4} Hz, and at least {PERIODS} are needed",
+            frequency.value
+        );
+        return Err(Error::refused(why).hint("record longer"));
+    }
+    Ok((frequency, periods))
+}
+
 impl StepReading {
     fn of(step: &StepTraces) -> Result<StepReading> {
         let StepTraces { force, response, .. } = step;
         let metas = [&force.meta, &response.meta];
         let rate = rate_of(force, response)?;
         let samples = force.values.len();
-        let found = sine(force, None).map_err(|error| error.hint(SHAKER))?;
-        let Some(tone) = found.tones.into_iter().next() else {
-            return Err(Error::refused("the force holds no sine").hint(SHAKER));
-        };
-        let frequency = tone.frequency;
-        let periods = samples as f64 / rate * frequency.value;
-        if periods < PERIODS {
-            let why = format!(
-                "the step holds {periods:.1} periods of {:.4} Hz, and at least {PERIODS} are needed",
-                frequency.value
-            );
-            return Err(Error::refused(why).hint("record longer"));
-        }
+        let (frequency, periods) = excitation(force, rate)?;
         let about = |code: fn(&'static str) -> Finding, name| code(name).number("frequency", frequency.value);
         let mut findings = Vec::new();
         let cut = clipped(&response.values, rate / frequency.value).len();

@@ -208,6 +208,54 @@ fn time(i: usize, n: usize) -> f64 {
     (2 * i + 1) as f64 / n as f64 - 1.0
 }
 
+/// Normal equations of a step of the fit: of the cosine, the sine and the frequency of each sine, and of the
+/// level.
+struct NormalEquations {
+    normal: DMatrix<f64>,
+    right: DVector<f64>,
+    /// Sum of the weighted squares of the values.
+    all: f64,
+    /// Sum of the squares of the residuals, and the degrees of freedom that they have.
+    squares: f64,
+    known: f64,
+}
+
+impl NormalEquations {
+    /// At the frequencies `omega` and the amplitudes `linear`. `cut`: sides of clipped samples and the noise;
+    /// `None` in the first step, when no amplitude is known.
+    fn of(trace: &Trace, (omega, linear): (&[f64], &[f64]), cut: Option<(&[f64], f64)>) -> NormalEquations {
+        let (n, count) = (trace.values.len(), omega.len());
+        let size = 3 * count + 1;
+        let mut row = DVector::<f64>::zeros(size);
+        let (mut normal, mut right) = (DMatrix::<f64>::zeros(size, size), DVector::<f64>::zeros(size));
+        let (mut all, mut squares, mut known) = (0.0, 0.0, -(size as f64));
+        for (i, v) in trace.values.iter().enumerate() {
+            let (t, mut model) = (time(i, n), linear[2 * count]);
+            for (k, w) in omega.iter().enumerate() {
+                let (sin, cos) = (w * t).sin_cos();
+                let (a, b) = (linear[2 * k], linear[2 * k + 1]);
+                let slope = if cut.is_none() { 0.0 } else { t * (b * cos - a * sin) / a.hypot(b) };
+                row.as_mut_slice()[3 * k..3 * k + 3].copy_from_slice(&[cos, sin, slope]);
+                model += a * cos + b * sin;
+            }
+            row[size - 1] = 1.0;
+            let (side, noise) = cut.map_or((0.0, 0.0), |(sides, noise)| (sides[i], noise));
+            let residual = Left::of(v - model, side, noise);
+            squares += residual.square;
+            known += residual.known;
+            if residual.weight < LEAST {
+                continue;
+            }
+            let v = model + residual.mean / residual.weight;
+            all += residual.weight * v * v;
+            normal.syger(residual.weight, &row, &row, 1.0);
+            right.axpy(residual.weight * v, &row, 1.0);
+        }
+        normal.fill_upper_triangle_with_lower_triangle();
+        NormalEquations { normal, right, all, squares, known }
+    }
+}
+
 impl SineFit {
     /// Fit by Gauss–Newton from first guesses of the frequencies in Hz, each within half a line. Clipped
     /// samples are found first.
@@ -249,33 +297,14 @@ impl SineFit {
         }
         let mut omega: Vec<f64> = start.iter().map(|f| TAU * f * half).collect();
         let mut linear = vec![0.0; 2 * count + 1];
-        let mut row = DVector::<f64>::zeros(size);
         let mut noise = 0.0;
         for step in 0..STEPS {
-            let (mut normal, mut right) = (DMatrix::<f64>::zeros(size, size), DVector::<f64>::zeros(size));
-            let (mut all, mut squares, mut known) = (0.0, 0.0, -(size as f64));
-            for (i, v) in trace.values.iter().enumerate() {
-                let (t, mut model) = (time(i, n), linear[2 * count]);
-                for (k, w) in omega.iter().enumerate() {
-                    let (sin, cos) = (w * t).sin_cos();
-                    let (a, b) = (linear[2 * k], linear[2 * k + 1]);
-                    let slope = if step == 0 { 0.0 } else { t * (b * cos - a * sin) / a.hypot(b) };
-                    row.as_mut_slice()[3 * k..3 * k + 3].copy_from_slice(&[cos, sin, slope]);
-                    model += a * cos + b * sin;
-                }
-                row[size - 1] = 1.0;
-                let residual = Left::of(v - model, if step == 0 { 0.0 } else { cut[i] }, noise);
-                squares += residual.square;
-                known += residual.known;
-                if residual.weight < LEAST {
-                    continue;
-                }
-                let v = model + residual.mean / residual.weight;
-                all += residual.weight * v * v;
-                normal.syger(residual.weight, &row, &row, 1.0);
-                right.axpy(residual.weight * v, &row, 1.0);
-            }
-            normal.fill_upper_triangle_with_lower_triangle();
+            let equations = NormalEquations::of(
+                trace,
+                (&omega[..], &linear[..]),
+                (step > 0).then_some((&cut[..], noise)),
+            );
+            let NormalEquations { mut normal, right, all, squares, known } = equations;
             if step == 0 {
                 // No amplitudes are known yet: the first step keeps the frequencies.
                 (0..count).for_each(|k| normal[(3 * k + 2, 3 * k + 2)] = 1.0);

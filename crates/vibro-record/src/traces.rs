@@ -53,6 +53,8 @@ pub struct Traces {
     /// Calibration factor of each channel; values from the stream are multiplied by it.
     factors: Vec<f64>,
     stream: Box<dyn Stream>,
+    /// Samples that were looked at and are still to be handed out.
+    ahead: Vec<Vec<f64>>,
 }
 
 /// Traces that are in memory already.
@@ -124,7 +126,7 @@ impl Traces {
         let (rate, start) = clock(&path, traces, frames)?;
         let channels: Vec<Meta> = traces.iter().map(|t| t.meta.clone()).collect();
         let factors = vec![1.0; channels.len()];
-        Ok(Traces { path, channels, findings, rate, start, frames, factors, stream })
+        Ok(Traces { path, channels, findings, rate, start, frames, factors, stream, ahead: Vec::new() })
     }
 
     /// The file; an empty path for traces that were not read from a file.
@@ -187,6 +189,29 @@ impl Traces {
     /// # Errors
     /// As [`Traces::next_block`].
     pub fn append(&mut self, block: &mut Vec<Vec<f64>>) -> Result<usize> {
+        let ahead = std::mem::take(&mut self.ahead);
+        let Some(frames) = ahead.first().map(Vec::len).filter(|frames| *frames > 0) else {
+            return self.read(block);
+        };
+        block.resize_with(ahead.len(), Vec::new);
+        block.iter_mut().zip(&ahead).for_each(|(column, ahead)| column.extend_from_slice(ahead));
+        Ok(frames)
+    }
+
+    /// The next samples of each channel, at least `frames` or all: [`Traces::append`] still hands them out.
+    /// Channels are chosen and calibrated before.
+    ///
+    /// # Errors
+    /// As [`Traces::next_block`].
+    pub fn peek(&mut self, frames: usize) -> Result<&[Vec<f64>]> {
+        let mut ahead = std::mem::take(&mut self.ahead);
+        while ahead.first().map_or(0, Vec::len) < frames && self.read(&mut ahead)? > 0 {}
+        self.ahead = ahead;
+        Ok(&self.ahead)
+    }
+
+    /// Appends the next samples of the stream to `block`.
+    fn read(&mut self, block: &mut Vec<Vec<f64>>) -> Result<usize> {
         let frames = self.stream.append(block)?;
         if frames == 0 {
             self.stream.finish(&mut self.channels);

@@ -146,21 +146,12 @@ pub fn transfer(
     metas: &[Meta],
     estimator: Estimator,
 ) -> Result<Transfer> {
-    // Sums of squares may take two segments that do not overlap a hair below.
     let alone = averages.count == 1;
-    if !alone && averages.effective < LEAST - 1e-9 {
-        let (n, effective) = (averages.count, averages.effective);
-        let why = format!("{n} segments count as {effective:.2}; coherence needs two or more");
-        let hint = "take a longer record or shorter segments, for ten averages or more";
-        return Err(Error::refused(why).hint(hint).setting("segment"));
-    }
+    enough(averages)?;
     let (Some(reference), Some(response)) = (metas.first(), metas.get(channel)) else {
         return Err(Error::usage(format!("channel {}", channel + 1), "a channel of the record"));
     };
-    let products = channel.checked_sub(1).and_then(|i| averages.cross.get(i));
-    let (Some(xx), Some(yy), Some(xy)) = (averages.auto.first(), averages.auto.get(channel), products) else {
-        return Err(Error::usage("averages without products", "products with the first channel"));
-    };
+    let (xx, yy, xy) = products(averages, channel)?;
     let (most, loudest) = (largest(xx), largest(yy));
     if most == 0.0 {
         return Err(Error::refused(format!("the excitation {:?} is empty", reference.name)));
@@ -207,6 +198,27 @@ pub fn transfer(
         frf: Frf { meta, axis, values },
         coherence: if alone { Vec::new() } else { coherence },
     })
+}
+
+/// Refuses fewer than two independent averages of segments that overlap.
+fn enough(averages: &Averages) -> Result<()> {
+    // Sums of squares may take two segments that do not overlap a hair below.
+    if averages.count == 1 || averages.effective >= LEAST - 1e-9 {
+        return Ok(());
+    }
+    let (n, effective) = (averages.count, averages.effective);
+    let why = format!("{n} segments count as {effective:.2}; coherence needs two or more");
+    let hint = "take a longer record or shorter segments, for ten averages or more";
+    Err(Error::refused(why).hint(hint).setting("segment"))
+}
+
+/// Power of the first channel and of another, and their cross power, line by line.
+fn products(averages: &Averages, channel: usize) -> Result<(&[f64], &[f64], &[Complex64])> {
+    let cross = channel.checked_sub(1).and_then(|i| averages.cross.get(i));
+    let (Some(xx), Some(yy), Some(xy)) = (averages.auto.first(), averages.auto.get(channel), cross) else {
+        return Err(Error::usage("averages without products", "products with the first channel"));
+    };
+    Ok((xx, yy, xy))
 }
 
 fn largest(values: &[f64]) -> f64 {

@@ -14,7 +14,7 @@ pub fn modes(name: &str, result: &ModalResult) -> Table {
             ("record", "", &|_| Cell::from(name)),
             ("frequency", "Hz", &|m| Cell::from(&m.frequency)),
             ("damping ratio", "1", &|m| Cell::from(&m.zeta)),
-            ("modal constant", "1/kg", &|m| Cell::from(&m.modal_constant)),
+            ("modal constant", unit_of_constants(result), &|m| Cell::from(&m.modal_constant)),
             ("phase", "°", &|m| m.phase.as_ref().into()),
             ("stiffness", "N/m", &|m| m.stiffness.as_ref().into()),
             ("from", "Hz", &|m| Cell::Number(m.lines.0)),
@@ -23,6 +23,11 @@ pub fn modes(name: &str, result: &ModalResult) -> Table {
             ("method", "", &|m| Cell::from(m.method.as_str())),
         ],
     )
+}
+
+/// Unit of the modal constants.
+fn unit_of_constants(result: &ModalResult) -> &'static str {
+    result.modes.first().map_or("1/kg", |mode| mode.modal_constant.unit)
 }
 
 /// What each method gives for each mode.
@@ -35,7 +40,7 @@ pub(crate) fn modal_methods(result: &ModalResult) -> Table {
             ("method", "", &|by| Cell::from(by.method)),
             ("frequency", "Hz", &|by| Cell::from(&by.frequency)),
             ("damping ratio", "1", &|by| by.zeta.as_ref().into()),
-            ("modal constant", "1/kg", &|by| by.modal_constant.as_ref().into()),
+            ("modal constant", unit_of_constants(result), &|by| by.modal_constant.as_ref().into()),
             ("note", "", &|by| Cell::from(note(&by.note))),
         ],
     )

@@ -107,8 +107,6 @@ pub fn chart(scene: &BenchmarkScene) -> Figure {
         let (x, y) = stairs(scene, power(view.edge), last);
         plot = plot.with(Series::line("Pareto front", x, y).ink(Ink::Grey).stroke(Stroke::Dotted));
     }
-    // Methods of this library are black, others coloured, other programs dashed. After six colours the
-    // marker changes.
     let (mut ours_count, mut others) = (0, RECURRING.len());
     let (mut crosses, mut named) = (Vec::new(), Vec::new());
     let mut last_group = None;
@@ -124,13 +122,7 @@ pub fn chart(scene: &BenchmarkScene) -> Figure {
         let count = if line[0].ours { &mut ours_count } else { &mut others };
         let number = recurring.unwrap_or(*count);
         *count += usize::from(recurring.is_none());
-        let round = number / 6;
-        let (ink, marker, cross, stroke) = if line[0].ours {
-            (Ink::Black, number, number, Stroke::Solid)
-        } else {
-            let stroke = if line[0].other_program { Stroke::Dashed } else { Stroke::Thin };
-            (Ink::Nth(number % 6), number + 1 + round, round, stroke)
-        };
+        let LineStyle { ink, marker, cross, stroke } = LineStyle::of(&line[0], number);
         let row = power(view.top + view.row * (crosses.len() as f64 + 0.5));
         let place = |m: &MeasuredMethod| (seconds(m), error(m).unwrap_or(row));
         let points = |name: String, failed: bool| {
@@ -139,10 +131,10 @@ pub fn chart(scene: &BenchmarkScene) -> Figure {
             (!x.is_empty()).then(|| Series::points(name, x, y).ink(ink))
         };
         if let Some(reached) = points(name.to_owned(), false) {
-            plot = plot.with(reached.marker(MARKERS[marker % MARKERS.len()]).stroke(stroke));
+            plot = plot.with(reached.marker(marker).stroke(stroke));
         }
         let failed = points(format!("{name}: failed"), true);
-        crosses.extend(failed.map(|f| f.marker(CROSSES[cross % CROSSES.len()])));
+        crosses.extend(failed.map(|f| f.marker(cross)));
         named.push(line.iter().map(|m| (place(m), m)).collect());
     }
     if !crosses.is_empty() {
@@ -151,31 +143,60 @@ pub fn chart(scene: &BenchmarkScene) -> Figure {
     }
     // The legend lists the rows of crosses from the top.
     plot = crosses.into_iter().rev().fold(plot, Plot::with);
-    let (points, front) = match scene.family {
-        Family::Models => {
-            plot = with_tolerances(plot, named);
-            (
-                "a model, each point one of its settings",
-                "Dotted: nothing lies below and left of it. Numbers: tolerances of other programs.",
-            )
-        }
-        Family::Estimators => {
-            plot = with_letters(plot, scene, &view, named);
-            (
-                "an estimator, each point a kind of record, named by its letter",
-                "Capital letters: no other is both faster and more accurate on the same records.",
-            )
-        }
+    let plot = match scene.family {
+        Family::Models => with_tolerances(plot, named),
+        Family::Estimators => with_letters(plot, scene, &view, named),
     };
-    let bound = if scene.bound.is_some() { " Level line: Cramér–Rao bound." } else { "" };
     // Room for all names beside the frame.
     let names = plot.series.iter().filter(|s| s.shape != Shape::Horizontal).count();
     let height = (3.9 * names as f64 + 8.0).max(95.0);
-    Figure::double(format!("Speed against accuracy: {}", typeset(&scene.name))).height(height).panel(plot).caption(format!(
+    let figure = Figure::double(format!("Speed against accuracy: {}", typeset(&scene.name)));
+    figure.height(height).panel(plot).caption(caption(scene))
+}
+
+/// How the points and the line of a method are drawn.
+struct LineStyle {
+    ink: Ink,
+    marker: Marker,
+    /// Marker of failed answers.
+    cross: Marker,
+    stroke: Stroke,
+}
+
+impl LineStyle {
+    /// Methods of this library are black, others coloured, other programs dashed. After six colours the
+    /// marker changes.
+    fn of(method: &MeasuredMethod, number: usize) -> LineStyle {
+        let round = number / 6;
+        let (ink, marker, cross, stroke) = if method.ours {
+            (Ink::Black, number, number, Stroke::Solid)
+        } else {
+            let stroke = if method.other_program { Stroke::Dashed } else { Stroke::Thin };
+            (Ink::Nth(number % 6), number + 1 + round, round, stroke)
+        };
+        let (marker, cross) = (MARKERS[marker % MARKERS.len()], CROSSES[cross % CROSSES.len()]);
+        LineStyle { ink, marker, cross, stroke }
+    }
+}
+
+/// What the lines, the letters and the crosses of a chart are.
+fn caption(scene: &BenchmarkScene) -> String {
+    let (points, front) = match scene.family {
+        Family::Models => (
+            "a model, each point one of its settings",
+            "Dotted: nothing lies below and left of it. Numbers: tolerances of other programs.",
+        ),
+        Family::Estimators => (
+            "an estimator, each point a kind of record, named by its letter",
+            "Capital letters: no other is both faster and more accurate on the same records.",
+        ),
+    };
+    let bound = if scene.bound.is_some() { " Level line: Cramér–Rao bound." } else { "" };
+    format!(
         "{} Each line is {points}. Black: methods of this library. Thin: common methods, coded in this project. Dashed: other programs. Lower is \
          more accurate, further left is faster. {front} Crosses at the upper edge have failed, each method in a row of its own, from above as in the list. Truth: {}.{bound}",
         scene.says, scene.truth
-    ))
+    )
 }
 
 /// Tolerance of another program, if it has one and gave an answer.

@@ -45,6 +45,27 @@ fn modes_of_a_file() {
     complaint(&["modal", text(&path), "--complex", "--band", "120"], 2);
 }
 
+/// A ratio of two voltages is fitted as A/(ωᵣ² − ω² + 2iζωᵣω): A is the ratio times (rad/s)².
+#[test]
+fn the_modal_constant_of_a_ratio_is_no_inverse_mass() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("gain.csv");
+    let (own, constant) = (TAU * 80.3, 1e4);
+    let mut rows = String::from("frequency [Hz],gain real [V/V],gain imaginary [V/V]\n");
+    for i in 0..400 {
+        let omega = TAU * f64::from(i) * 0.5;
+        let (re, im) = (own * own - omega * omega, 0.02 * own * omega);
+        let size = constant / (re * re + im * im);
+        let _ = writeln!(rows, "{},{:.8e},{:.8e}", f64::from(i) * 0.5, size * re, -size * im);
+    }
+    fs::write(&path, rows).unwrap();
+    let answer = json(&["modal", text(&path), "--complex"]);
+    let found = &answer["modes"][0]["modal_constant"];
+    // Printed to nine digits.
+    assert!((found["value"].as_f64().unwrap() / constant - 1.0).abs() < 1e-5, "{answer}");
+    assert_eq!(found["unit"], "1/s²");
+}
+
 /// Lines without frequencies have no answer in Hz, and a spectrum of one signal has no modal constants: what
 /// the message says to state helps.
 #[test]

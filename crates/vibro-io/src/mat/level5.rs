@@ -184,22 +184,7 @@ fn variable(
             Content::Other("struct or cell array too deep in others")
         }
         1 | 2 => {
-            let fields = if class == 1 { vec![String::new()] } else { fields(elements)? };
-            for i in 1..=if fields.is_empty() { 0 } else { count } {
-                for field in &fields {
-                    let member = match (class, count) {
-                        (1, _) => format!("{name}{{{i}}}"),
-                        (_, 1) => format!("{name}.{field}"),
-                        _ => format!("{name}({i}).{field}"),
-                    };
-                    let (kind, content) = elements.part(&member)?;
-                    if kind != 14 {
-                        return Err(elements.fault(format!("{member:?} of kind {kind}"), "an array"));
-                    } else if !content.is_empty() {
-                        variable(&mut elements.within(content), Some((member, depth + 1)), variables)?;
-                    }
-                }
-            }
+            members(elements, (&name, depth), (class == 1, count), variables)?;
             return Ok(());
         }
         4 if count == 0 => Content::Text(String::new()),
@@ -219,6 +204,32 @@ fn variable(
         other => return Err(elements.fault(format!("{name:?} of class {other}"), "a class from 1 to 17")),
     };
     variables.push((name, content));
+    Ok(())
+}
+
+/// Adds the members of a cell array (`cells`) or struct of `count` elements, `depth` deep in others.
+fn members(
+    elements: &mut Elements,
+    (name, depth): (&str, usize),
+    (cells, count): (bool, u64),
+    variables: &mut Vec<(String, Content)>,
+) -> Result<()> {
+    let fields = if cells { vec![String::new()] } else { fields(elements)? };
+    for i in 1..=if fields.is_empty() { 0 } else { count } {
+        for field in &fields {
+            let member = match (cells, count) {
+                (true, _) => format!("{name}{{{i}}}"),
+                (_, 1) => format!("{name}.{field}"),
+                _ => format!("{name}({i}).{field}"),
+            };
+            let (kind, content) = elements.part(&member)?;
+            if kind != 14 {
+                return Err(elements.fault(format!("{member:?} of kind {kind}"), "an array"));
+            } else if !content.is_empty() {
+                variable(&mut elements.within(content), Some((member, depth + 1)), variables)?;
+            }
+        }
+    }
     Ok(())
 }
 

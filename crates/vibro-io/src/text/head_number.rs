@@ -30,6 +30,32 @@ pub fn quantity(value: &str, unit_in_key: &str, units: &[(&str, f64)], mark: Opt
     scaled(value, unit_in_key, units, mark).and_then(checked)
 }
 
+/// Whether neither the number nor its key has a unit.
+pub fn is_bare(value: &str, unit_in_key: &str) -> bool {
+    unit_in_key.is_empty() && value.ends_with(|c: char| c.is_ascii_digit())
+}
+
+/// A frequency or a rate in Hz, where a doubtful mark is that of the rows or harmless.
+pub fn hertz(value: &str, unit_in_key: &str, mark: Option<u8>) -> Option<f64> {
+    // Digits of kHz are not grouped, so their mark must be the one of the rows. In Hz, a comma above decimal
+    // commas is in doubt: heads in English group digits with it.
+    let said = format!("{value} {unit_in_key}").to_lowercase();
+    let kilohertz = ["khz", "mhz", "ks/s"].iter().any(|unit| said.contains(unit));
+    let told = |own: u8| if kilohertz { mark == Some(own) } else { own == b'.' || mark != Some(own) };
+    hertz_with(value, unit_in_key, mark).filter(|_| doubtful_mark(value).is_none_or(told))
+}
+
+/// A frequency or a rate in Hz, with the `mark` where it is doubtful.
+pub fn hertz_with(value: &str, unit_in_key: &str, mark: Option<u8>) -> Option<f64> {
+    let value = value.replace("mHz", MILLIHERTZ);
+    quantity(&samples_a_second(&value), &samples_a_second(unit_in_key), &HERTZ, mark)
+}
+
+/// The rate in Hz of a step in s.
+pub fn step_rate(value: &str, unit_in_key: &str, mark: Option<u8>) -> Option<f64> {
+    quantity(value, unit_in_key, &SECONDS, mark).and_then(|dt| checked(1.0 / dt))
+}
+
 /// The characters of the number at the start of a text.
 fn printed(value: &str) -> &str {
     value.split(|c: char| !c.is_ascii_digit() && !"+-.,".contains(c)).next().unwrap_or_default()
@@ -98,7 +124,7 @@ pub fn checked(value: f64) -> Option<f64> {
 }
 
 /// Replaces the spellings of samples per second by `hz`: `2 kS/s`, `100 samples/s`.
-pub fn samples_a_second(text: &str) -> String {
+fn samples_a_second(text: &str) -> String {
     let words = ["samples per second", "samples/second", "samples/sec", "samples/s", "sa/s", "sps", "s/s"];
     words.iter().fold(text.to_lowercase(), |text, word| text.replace(word, "hz"))
 }

@@ -1,8 +1,8 @@
 //! Reads what header lines state: spectral lines, base band, sampling rate, unit, window and others.
 
 use super::head_number::{
-    HERTZ, MILLIHERTZ, SECONDS, checked, doubtful_mark, other_mark, quantity, samples_a_second, scaled,
-    without_blanks,
+    HERTZ, MILLIHERTZ, SECONDS, checked, doubtful_mark, hertz, hertz_with, is_bare, other_mark, quantity,
+    scaled, step_rate, without_blanks,
 };
 use super::names::Name;
 use super::stated_scale::StatedScale;
@@ -27,7 +27,7 @@ pub struct Stated {
     /// Header line that says that fewer values were kept than were sampled, as written.
     pub decimation: Option<String>,
     /// The decimal mark of the rows, where they show it.
-    mark: Option<u8>,
+    pub mark: Option<u8>,
     /// Number of values that the header states.
     pub values: Option<usize>,
     /// Whether a step of the abscissa is stated, as files of one series do.
@@ -130,6 +130,30 @@ impl Stated {
         stated
     }
 
+    /// Takes the value of a sampling rate, in Hz or as a step in s.
+    fn take_rate(&mut self, value: &str, unit_in_key: &str) {
+        let (mark, before) = (self.mark, self.rate);
+        let step = || step_rate(value, unit_in_key, mark).filter(|_| !is_bare(value, unit_in_key));
+        self.rate = hertz(value, unit_in_key, mark).or_else(step).or(self.rate);
+        let with = |mark| hertz_with(value, unit_in_key, mark);
+        self.perhaps_rate = if self.rate.is_none() { perhaps(value, &with) } else { None };
+        self.keeps_other(before);
+    }
+
+    /// Takes the value of a time step under a `key`.
+    fn take_step(&mut self, key: &str, value: &str, unit_in_key: &str) {
+        let rate = step_rate(value, unit_in_key, self.mark);
+        let with = |mark| step_rate(value, unit_in_key, mark);
+        self.perhaps_rate = self.perhaps_rate.take().or_else(|| perhaps(value, &with));
+        self.of_one_series |= rate.is_some();
+        self.step = rate.map(|rate| 1.0 / rate).or(self.step);
+        // A step of many seconds is more likely one in ms or µs.
+        let unlikely = is_bare(value, unit_in_key) && rate.is_some_and(|rate| rate < 1.0);
+        self.assumed = self.assumed.take().or(unlikely.then(|| key.to_owned()));
+        self.rate = self.rate.or(rate);
+        self.keeps_other(rate);
+    }
+
     /// Remembers a `rate` that differs from the used one by more than rounding explains.
     fn keeps_other(&mut self, rate: Option<f64>) {
         let differs = |rate: &f64| self.rate.is_some_and(|used| (rate / used - 1.0).abs() > ROUNDED_RATE);
@@ -207,43 +231,40 @@ fn is_decimated(line: &str) -> bool {
     })
 }
 
-/// Stores the value of a known `key` in `stated`, if the value is possible.
-fn keyed(key: &str, value: &str, stated: &mut Stated) {
-    let (key, unit_in_key) = match key.find(['[', '(']) {
+/// Splits a unit off a `key`, in brackets or as its last word: `sample_rate_hz`. Punctuation in the key
+/// becomes blanks.
+fn split_unit(key: &str) -> (String, String) {
+    let (key, unit) = match key.find(['[', '(']) {
         Some(at) => (key[..at].trim(), key[at + 1..].trim_end_matches([']', ')'])),
         None => (key, ""),
     };
     let key: String = key.chars().map(|c| if matches!(c, '_' | '-' | '.') { ' ' } else { c }).collect();
-    // `sample_rate_hz`: a unit as the last word of the key.
-    let behind = key.rsplit_once(' ').filter(|(key, unit)| {
+    let behind = key.rsplit_once(' ').filter(|(key, last)| {
         let of = |keys: &str, units: &[(&str, f64)]| {
-            keys.split('|').any(|known| known == *key) && units.iter().any(|(known, _)| known == unit)
+            keys.split('|').any(|known| known == *key) && units.iter().any(|(known, _)| known == last)
         };
-        unit_in_key.is_empty() && (of(RATE, &HERTZ) || of(STEP, &SECONDS))
+        unit.is_empty() && (of(RATE, &HERTZ) || of(STEP, &SECONDS))
     });
-    let (key, unit_in_key) = behind.unwrap_or((key.as_str(), unit_in_key));
-    let value = without_blanks(value);
+    let (key, unit) = behind.unwrap_or((key.as_str(), unit));
+    (key.to_owned(), unit.to_owned())
+}
+
+/// The rate with either meaning of the mark, where the rows do not show which.
+fn perhaps(value: &str, rate_with: &dyn Fn(Option<u8>) -> Option<f64>) -> Option<PerhapsRate> {
+    let own = doubtful_mark(value)?;
+    let (decimal, grouped) = (rate_with(Some(own))?, rate_with(Some(other_mark(own)))?);
+    Some(PerhapsRate { said: value.to_owned(), decimal, grouped })
+}
+
+/// Stores the value of a known `key` in `stated`, if the value is possible.
+fn keyed(key: &str, value: &str, stated: &mut Stated) {
+    let (key, unit_in_key) = split_unit(key);
+    let (value, unit_in_key) = (without_blanks(value), unit_in_key.as_str());
     let value = value.as_str();
     let mark = stated.mark;
-    let hertz_with = |mark| {
-        let value = value.replace("mHz", MILLIHERTZ);
-        quantity(&samples_a_second(&value), &samples_a_second(unit_in_key), &HERTZ, mark)
-    };
-    // Digits of kHz are not grouped, so their mark must be the one of the rows. In Hz, a comma above decimal
-    // commas is in doubt: heads in English group digits with it.
-    let said = format!("{value} {unit_in_key}").to_lowercase();
-    let kilohertz = ["khz", "mhz", "ks/s"].iter().any(|unit| said.contains(unit));
-    let told = |own: u8| if kilohertz { mark == Some(own) } else { own == b'.' || mark != Some(own) };
-    let hertz = || hertz_with(mark).filter(|_| doubtful_mark(value).is_none_or(told));
-    let seconds_with = |mark| quantity(value, unit_in_key, &SECONDS, mark).and_then(|dt| checked(1.0 / dt));
-    // The rate with either meaning of the mark, where the rows do not show which.
-    let perhaps = |rate_with: &dyn Fn(Option<u8>) -> Option<f64>| {
-        let own = doubtful_mark(value)?;
-        let (decimal, grouped) = (rate_with(Some(own))?, rate_with(Some(other_mark(own)))?);
-        Some(PerhapsRate { said: value.to_owned(), decimal, grouped })
-    };
+    let hertz = || hertz(value, unit_in_key, mark);
     let plain = || quantity(value, "", &[("", 1.0)], mark);
-    let bare = unit_in_key.is_empty() && value.ends_with(|c: char| c.is_ascii_digit());
+    let bare = is_bare(value, unit_in_key);
     // `bandwidth`, `span` and `resolution` are no keys: headers of time traces use them, too, and for other
     // quantities.
     match key.trim() {
@@ -267,23 +288,8 @@ fn keyed(key: &str, value: &str, stated: &mut Stated) {
         "base band" | "baseband" | "frequency range" | "frequency span" | "fmax" | "f max" => {
             stated.base_band = hertz();
         }
-        key if RATE.split('|').any(|known| known == key) => {
-            let before = stated.rate;
-            stated.rate = hertz().or_else(|| seconds_with(mark).filter(|_| !bare)).or(stated.rate);
-            stated.perhaps_rate = if stated.rate.is_none() { perhaps(&hertz_with) } else { None };
-            stated.keeps_other(before);
-        }
-        key if STEP.split('|').any(|known| known == key) => {
-            let rate = seconds_with(mark);
-            stated.perhaps_rate = stated.perhaps_rate.take().or_else(|| perhaps(&seconds_with));
-            stated.of_one_series |= rate.is_some();
-            stated.step = rate.map(|rate| 1.0 / rate).or(stated.step);
-            // A step of many seconds is more likely one in ms or µs.
-            let unlikely = bare && rate.is_some_and(|rate| rate < 1.0);
-            stated.assumed = stated.assumed.take().or(unlikely.then(|| key.to_owned()));
-            stated.rate = stated.rate.or(rate);
-            stated.keeps_other(rate);
-        }
+        key if RATE.split('|').any(|known| known == key) => stated.take_rate(value, unit_in_key),
+        key if STEP.split('|').any(|known| known == key) => stated.take_step(key, value, unit_in_key),
         "npts" | "number of points" | "number of samples" | "record length" | "memory length"
         | "blocksize" | "total data points" => {
             stated.values = plain().and_then(line_count).map(|n| n as usize);

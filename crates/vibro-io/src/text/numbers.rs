@@ -11,9 +11,10 @@
 use super::decoded::{Text, in_line, shorten};
 use super::dialect::Dialect;
 use super::lines::{Fields, Line, Lines, Separator, fields, is_torn};
+use super::names::Name;
 use super::near_number::{plain_form, unit_of};
 use super::table::beginning;
-use super::{clock, name_line, names};
+use super::{clock, name_line};
 use crate::format::Format;
 use crate::number;
 use crate::options::Options;
@@ -34,38 +35,14 @@ const ENOUGH: usize = 24;
 /// # Errors
 /// If there is no row of numbers, or if it cannot be told whether commas are decimal marks.
 pub fn detect(text: &Text, options: &Options) -> Result<Dialect> {
-    let mut above: Vec<Line> = Vec::new();
-    let mut rows: Vec<Line> = Vec::new();
-    let mut comma = false;
-    let begin = beginning(&text.head);
-    for line in Lines::new(&text.head, 0, 1, &REMARKS).filter(|l| !l.is_blank()) {
-        if rows.len() >= ENOUGH && !comma {
-            break;
-        }
-        if line.remark.is_none() && line.number > begin && is_row(line.text.as_bytes()) {
-            comma |= line.text.contains(',');
-            rows.push(line);
-        } else if rows.is_empty() {
-            above.push(line);
-        } else if line.remark.is_none() {
-            break; // reading the rows will complain, with the place
-        }
-    }
+    let (above, mut rows) = first_rows(text);
     let said = |l: &Line| l.remark.unwrap_or(l.text.trim()).to_owned();
     let mut header: Vec<String> = above.iter().map(said).collect();
     let stated = count_and_step(&rows);
     rows.drain(..usize::from(stated.is_some()));
     header.extend(stated);
     let Some(mut first) = rows.first() else {
-        if let Some(error) = stray(&above) {
-            return Err(error);
-        }
-        let found = match header.first() {
-            Some(line) => format!("no table of numbers; the first line is {:?}", shorten(line)),
-            None => "no table of numbers".to_owned(),
-        };
-        return Err(Error::usage(found, "one or more numbers a line")
-            .hint("export it again as a table: names in the first line, then rows of numbers between commas or tabs"));
+        return Err(stray(&above).unwrap_or_else(|| without_rows(header.first())));
     };
     let (separator, decimal) = marks(&rows, options)?;
     let mut cells = fields(first.text, separator).unwrap_or_default();
@@ -89,12 +66,6 @@ pub fn detect(text: &Text, options: &Options) -> Result<Dialect> {
     let clock = clock::columns(&cells);
     let joined = clock.as_ref().map_or(0, |cells| cells.len() - 1);
     let columns = if whole && separator == Separator::Blank { 1 } else { cells.len() - joined };
-    // A first column that numbers the rows often has no name.
-    let number = |line: &Line| number::parse(fields(line.text, separator).ok()?.first()?.1.as_bytes());
-    let counted = || rows.windows(2).all(|w| number(&w[0]).map(|n| n + 1.0) == number(&w[1]));
-    let named = |columns| name_line::above(&header, columns, separator);
-    let unnumbered = || named(columns.checked_sub(1).filter(|n| *n > 0 && counted())?);
-    let behind = |names: Vec<names::Name>| [vec![names::Name::default()], names].concat();
     Ok(Dialect {
         format: Format::Ascii,
         separator,
@@ -104,12 +75,55 @@ pub fn detect(text: &Text, options: &Options) -> Result<Dialect> {
         columns,
         skipped: 0,
         clock,
-        names: named(columns).or_else(|| unnumbered().map(behind)),
+        names: names_above(&header, &rows, columns, separator),
         remarks: BETWEEN,
         columns_from: first.number,
         first_line: first.number,
         header,
     })
+}
+
+/// The lines above the rows of numbers, and the first rows.
+fn first_rows<'a>(text: &'a Text) -> (Vec<Line<'a>>, Vec<Line<'a>>) {
+    let (mut above, mut rows) = (Vec::new(), Vec::new());
+    let mut comma = false;
+    let begin = beginning(&text.head);
+    for line in Lines::new(&text.head, 0, 1, &REMARKS).filter(|l| !l.is_blank()) {
+        if rows.len() >= ENOUGH && !comma {
+            break;
+        }
+        if line.remark.is_none() && line.number > begin && is_row(line.text.as_bytes()) {
+            comma |= line.text.contains(',');
+            rows.push(line);
+        } else if rows.is_empty() {
+            above.push(line);
+        } else if line.remark.is_none() {
+            break; // reading the rows will complain, with the place
+        }
+    }
+    (above, rows)
+}
+
+/// Error on a text without rows of numbers that begins with the line `first`.
+fn without_rows(first: Option<&String>) -> Error {
+    let found = match first {
+        Some(line) => format!("no table of numbers; the first line is {:?}", shorten(line)),
+        None => "no table of numbers".to_owned(),
+    };
+    Error::usage(found, "one or more numbers a line").hint(
+        "export it again as a table: names in the first line, then rows of numbers between commas or tabs",
+    )
+}
+
+/// Names of the columns in the last line of the header.
+fn names_above(header: &[String], rows: &[Line], columns: usize, separator: Separator) -> Option<Vec<Name>> {
+    // A first column that numbers the rows often has no name.
+    let number = |line: &Line| number::parse(fields(line.text, separator).ok()?.first()?.1.as_bytes());
+    let counted = || rows.windows(2).all(|w| number(&w[0]).map(|n| n + 1.0) == number(&w[1]));
+    let named = |columns| name_line::above(header, columns, separator);
+    let unnumbered = || named(columns.checked_sub(1).filter(|n| *n > 0 && counted())?);
+    let behind = |names: Vec<Name>| [vec![Name::default()], names].concat();
+    named(columns).or_else(|| unnumbered().map(behind))
 }
 
 /// Cuts a line at tabs, semicolons or commas, else at blanks.

@@ -55,14 +55,11 @@ pub fn read(text: &str, dialect: &Dialect, allow_missing: bool) -> Result<Rows> 
 /// As [`read`], with no missing values in `unused` columns. Where others have no value at all, gives no
 /// columns, only which these are.
 fn read_but(text: &str, dialect: &Dialect, allow_missing: bool, unused: &[bool]) -> Result<Rows> {
-    let (n, abscissa) = (dialect.columns, dialect.named_abscissa());
-    let reader = FieldParser { text, dialect };
+    let abscissa = dialect.named_abscissa();
+    let parser = FieldParser { text, dialect };
     let mut rows = Rows::default();
-    let mut columns: Vec<Vec<Complex64>> = vec![Vec::new(); n];
-    let (mut missing, mut blank_since, mut blanks) = (Missing::default(), None, Vec::new());
-    // Missing values with one for each blank line: only the end shows whether blank lines are missing values.
-    let mut with_blanks = Missing::default();
-    let (mut clock, clock_at) = (Stopwatch::default(), dialect.clock_at());
+    let mut cells = Cells::new(dialect, unused);
+    let mut blank_since = None;
     for line in dialect.rows(text) {
         if line.is_blank() {
             blank_since.get_or_insert(line.number);
@@ -76,84 +73,138 @@ fn read_but(text: &str, dialect: &Dialect, allow_missing: bool, unused: &[bool])
             fault(&line, at, "text behind a closing quote", "a separator or the end of the line")
         })?;
         let mark = line.text.trim();
-        if ENDS.iter().any(|end| mark.eq_ignore_ascii_case(end)) && !reader.rows_behind(&line) {
+        if ENDS.iter().any(|end| mark.eq_ignore_ascii_case(end)) && !parser.rows_behind(&line) {
             rows.remarks.push(mark.to_owned());
             continue;
         }
-        if fields.len() != n {
-            return Err(reader.ragged(&line, &fields));
+        if fields.len() != dialect.columns {
+            return Err(parser.ragged(&line, &fields));
         }
-        if abscissa.is_some() && fields.iter().all(|(_, field)| field.is_empty() || reader.is_missing(field))
+        if abscissa.is_some() && fields.iter().all(|(_, field)| field.is_empty() || parser.is_missing(field))
         {
             rows.empty += 1;
             continue;
         }
         if let Some(since) = blank_since.take().filter(|_| dialect.format == Format::Ascii) {
-            if n > 1 {
-                let expected = "rows of numbers, one behind the other";
-                return Err(Error::input(in_line(since), "a blank line between rows", expected)
-                    .hint("remove it, or write NaN for the values that are missing there"));
-            }
-            (since..line.number).for_each(|blank| with_blanks.take(&in_line(blank), blank.to_string()));
-            blanks.push((columns[0].len(), since..line.number));
+            cells.blank_lines(since..line.number)?;
         }
-        for (i, ((at, field), values)) in fields.iter().zip(&mut columns).enumerate() {
-            let timed = clock_at == Some(i);
-            if let Some(value) =
-                if timed { clock.seconds(field).map(Into::into) } else { reader.value(field) }
-            {
-                values.push(value);
-                continue;
-            }
-            if timed || !reader.is_missing(field) {
-                return Err(reader.not_a_number(&line, *at, field));
-            }
-            if abscissa == Some(i) {
-                let expected = "a number in every row of the abscissa";
-                let fault = fault(&line, *at, &format!("found {field:?}"), expected);
-                return Err(fault.hint("remove the row"));
-            }
-            if unused.get(i) == Some(&true) {
-                values.push(MISSING);
-                continue;
-            }
-            let name = dialect.names.as_ref().map_or("", |names| &names[i].name);
+        for (i, (at, field)) in fields.iter().enumerate() {
+            cells.take(&parser, &line, i, (*at, field))?;
+        }
+    }
+    cells.into_rows(rows, allow_missing)
+}
+
+/// The cells of all rows so far, column by column.
+struct Cells<'a> {
+    dialect: &'a Dialect,
+    /// Columns in which nothing is missing, since they have no value.
+    unused: &'a [bool],
+    abscissa: Option<usize>,
+    clock: Stopwatch,
+    columns: Vec<Vec<Complex64>>,
+    missing: Missing,
+    /// Missing values with one for each blank line: only the end shows whether blank lines are missing
+    /// values.
+    with_blanks: Missing,
+    blanks: Vec<Blank>,
+}
+
+impl<'a> Cells<'a> {
+    fn new(dialect: &'a Dialect, unused: &'a [bool]) -> Cells<'a> {
+        Cells {
+            dialect,
+            unused,
+            abscissa: dialect.named_abscissa(),
+            clock: Stopwatch::default(),
+            columns: vec![Vec::new(); dialect.columns],
+            missing: Missing::default(),
+            with_blanks: Missing::default(),
+            blanks: Vec::new(),
+        }
+    }
+
+    /// Blank lines between rows: missing values of one column, and refused between rows of several.
+    fn blank_lines(&mut self, lines: Range<u64>) -> Result<()> {
+        if self.columns.len() > 1 {
+            let expected = "rows of numbers, one behind the other";
+            return Err(Error::input(in_line(lines.start), "a blank line between rows", expected)
+                .hint("remove it, or write NaN for the values that are missing there"));
+        }
+        lines.clone().for_each(|blank| self.with_blanks.take(&in_line(blank), blank.to_string()));
+        self.blanks.push((self.columns[0].len(), lines));
+        Ok(())
+    }
+
+    /// The cell of column `i` in a line: its byte offset and text.
+    fn take(
+        &mut self,
+        parser: &FieldParser,
+        line: &Line,
+        i: usize,
+        (at, field): (usize, &str),
+    ) -> Result<()> {
+        let timed = self.dialect.clock_at() == Some(i);
+        let value = if timed { self.clock.seconds(field).map(Into::into) } else { parser.value(field) };
+        if let Some(value) = value {
+            self.columns[i].push(value);
+            return Ok(());
+        }
+        if timed || !parser.is_missing(field) {
+            return Err(parser.not_a_number(line, at, field));
+        }
+        if self.abscissa == Some(i) {
+            let expected = "a number in every row of the abscissa";
+            let fault = fault(line, at, &format!("found {field:?}"), expected);
+            return Err(fault.hint("remove the row"));
+        }
+        self.columns[i].push(MISSING);
+        if self.unused.get(i) != Some(&true) {
+            let name = self.dialect.names.as_ref().map_or("", |names| &names[i].name);
             let listed = if name.is_empty() { String::new() } else { format!(" ({name:?})") };
-            for missing in [&mut missing, &mut with_blanks] {
+            for missing in [&mut self.missing, &mut self.with_blanks] {
                 missing.take(&in_line(line.number), format!("{}{listed}", line.number));
             }
-            values.push(MISSING);
         }
+        Ok(())
     }
-    if separate(&blanks) {
-        rows.separators = blanks.len();
-    } else {
-        columns[0] = with_missing(&columns[0], blanks);
-        missing = with_blanks;
-    }
-    let named = dialect.names.is_some() && !dialect.complex;
-    let without = |values: &Vec<Complex64>| named && values.iter().all(|v| v.re.is_nan());
-    rows.without_values = columns.iter().map(without).collect();
-    if unused.is_empty() && rows.without_values.iter().any(|w| *w) && rows.without_values.contains(&false) {
-        return Ok(rows);
-    }
-    rows.sparse = columns.iter().map(|values| sparse(values).filter(|_| named)).collect();
-    let mut gaps = 0;
-    for (values, sparse) in columns.iter_mut().zip(&rows.sparse) {
-        match sparse {
-            Some((first, every)) => *values = values.iter().skip(*first).step_by(*every).copied().collect(),
-            None if without(values) && !unused.is_empty() => {}
-            None => gaps += values.iter().filter(|v| v.re.is_nan()).count(),
+
+    /// The columns of the `rows`, without gaps in those of a lower rate.
+    fn into_rows(self, mut rows: Rows, allow_missing: bool) -> Result<Rows> {
+        let Cells { dialect, unused, mut columns, mut missing, with_blanks, blanks, .. } = self;
+        if separate(&blanks) {
+            rows.separators = blanks.len();
+        } else {
+            columns[0] = with_missing(&columns[0], blanks);
+            missing = with_blanks;
         }
+        let named = dialect.names.is_some() && !dialect.complex;
+        let without = |values: &Vec<Complex64>| named && values.iter().all(|v| v.re.is_nan());
+        rows.without_values = columns.iter().map(without).collect();
+        if unused.is_empty() && rows.without_values.iter().any(|w| *w) && rows.without_values.contains(&false)
+        {
+            return Ok(rows);
+        }
+        rows.sparse = columns.iter().map(|values| sparse(values).filter(|_| named)).collect();
+        let mut gaps = 0;
+        for (values, sparse) in columns.iter_mut().zip(&rows.sparse) {
+            match sparse {
+                Some((first, every)) => {
+                    *values = values.iter().skip(*first).step_by(*every).copied().collect()
+                }
+                None if without(values) && !unused.is_empty() => {}
+                None => gaps += values.iter().filter(|v| v.re.is_nan()).count(),
+            }
+        }
+        if gaps > 0 {
+            checked(missing, &columns, allow_missing)?;
+        }
+        rows.missing = gaps;
+        let real = |values: Vec<Complex64>| Values::Real(values.iter().map(|v| v.re).collect());
+        let held = |c| if dialect.complex { Values::Complex(c).into() } else { real(c).into() };
+        rows.columns = columns.into_iter().map(held).collect();
+        Ok(rows)
     }
-    if gaps > 0 {
-        checked(missing, &columns, allow_missing)?;
-    }
-    rows.missing = gaps;
-    let real = |values: Vec<Complex64>| Values::Real(values.iter().map(|v| v.re).collect());
-    let held = |c| if dialect.complex { Values::Complex(c).into() } else { real(c).into() };
-    rows.columns = columns.into_iter().map(held).collect();
-    Ok(rows)
 }
 
 /// Refuses missing values, unless they are allowed. Where columns only end early, the error says what to do.

@@ -22,6 +22,7 @@ use crate::format::Format;
 use crate::number;
 use crate::options::Options;
 use std::borrow::Cow;
+use std::ops::Range;
 use vibro_record::units::Unit;
 use vibro_record::{AxisKind, Error, Finding, Result};
 
@@ -200,12 +201,7 @@ fn fit(
     let mut block: Vec<Fields> = deepest.map_while(|l| headings(l, separator, skipped, values)).collect();
     let (lower, uppers) = block.split_first_mut()?;
     let stated = beside(uppers.first_mut(), lower, width);
-    let clock = clock::columns(values).map(|cells| {
-        let ms = block.iter().any(|line| line.get(cells.end).is_some_and(|(_, cell)| cell == "ms"));
-        // A clock that prints parts of a second has its milliseconds already.
-        let whole = !clock::printed_seconds(&clock::joined(&values[cells.clone()])).contains('.');
-        cells.start..cells.end + usize::from(ms && whole)
-    });
+    let clock = clock_cells(&block, values);
     let preamble = Preamble::of(&spoken, separator);
     let fits = |columns: usize| count - skipped == columns || width == columns;
     let title = is_title(&block[0], width, &preamble);
@@ -223,17 +219,10 @@ fn fit(
     if used.is_empty() && columns > 1 && rises() {
         names[0].unit = preamble.axis_unit();
     }
-    // `min,CH1`: some files name the time column by its unit. `s` is time only where all other names are
-    // units, too.
-    let units = names.iter().skip(1).all(|name| Unit::parse(&name.name).is_some());
-    if let Some(first) = names.first_mut().filter(|first| first.unit.is_none() && columns > 1) {
-        let timed = Name::with_unit_row("", &first.name);
-        let extremes = first.name == "min" && spoken[0].text.to_lowercase().contains("max");
-        if let Some(kind) = timed.axis(true).filter(|_| (first.name != "s" || units) && !extremes && rises())
-        {
-            let name = if kind == AxisKind::Time { "time" } else { "frequency" };
-            *first = Name { name: name.to_owned(), ..timed };
-        }
+    let extremes = names.first().is_some_and(|first| first.name == "min")
+        && spoken[0].text.to_lowercase().contains("max");
+    if columns > 1 && !extremes && rises() {
+        name_by_unit(&mut names);
     }
     let whole = |(_, cell): &(usize, Cow<str>)| cell.bytes().all(|b| b.is_ascii_digit() || b == b'-');
     let keyed = preamble.name(&mut names, rows.iter().flatten().all(whole));
@@ -244,15 +233,7 @@ fn fit(
     }
     let last = spoken.get(used.end.max(1) - 1)?.number;
     let used: Vec<u64> = spoken.get(used)?.iter().map(|line| line.number).collect();
-    let head = || above.iter().filter(|l| !used.contains(&l.number));
-    // A rate behind its key takes precedence over a row with one rate a column, which may be those of a
-    // filter.
-    let keyed: Vec<String> = head().map(|l| key_and_value(l, separator)).collect();
-    let is_stated = Stated::of(keyed.iter().map(String::as_str), None).states_rate();
-    let header = head().zip(&keyed).map(|(l, keyed)| {
-        let rate = rate_of_columns(l, separator).filter(|_| l.remark.is_none() && !is_stated);
-        rate.unwrap_or_else(|| keyed.clone())
-    });
+    let head: Vec<&Line> = above.iter().filter(|l| !used.contains(&l.number)).collect();
     let dialect = Dialect {
         format: Format::Csv,
         separator,
@@ -264,11 +245,48 @@ fn fit(
         clock,
         names: Some(names),
         remarks: REMARKS,
-        header: header.chain(stated).collect(),
+        header: statements(&head, separator).into_iter().chain(stated).collect(),
         columns_from: last,
         first_line: first.number,
     };
     Some((dialect, fits(columns)))
+}
+
+/// The cells of date and time in the first row of `values` below a `block` of names, with their milliseconds.
+fn clock_cells(block: &[Fields], values: &[(usize, Cow<str>)]) -> Option<Range<usize>> {
+    clock::columns(values).map(|cells| {
+        let ms = block.iter().any(|line| line.get(cells.end).is_some_and(|(_, cell)| cell == "ms"));
+        // A clock that prints parts of a second has its milliseconds already.
+        let whole = !clock::printed_seconds(&clock::joined(&values[cells.clone()])).contains('.');
+        cells.start..cells.end + usize::from(ms && whole)
+    })
+}
+
+/// Names a first column time or frequency whose name is only the unit of one: `min,CH1`.
+fn name_by_unit(names: &mut [Name]) {
+    // `s` is time only where all other names are units, too.
+    let units = names.iter().skip(1).all(|name| Unit::parse(&name.name).is_some());
+    let Some(first) = names.first_mut().filter(|first| first.unit.is_none()) else { return };
+    let timed = Name::with_unit_row("", &first.name);
+    if let Some(kind) = timed.axis(true).filter(|_| first.name != "s" || units) {
+        let name = if kind == AxisKind::Time { "time" } else { "frequency" };
+        *first = Name { name: name.to_owned(), ..timed };
+    }
+}
+
+/// What the lines of a head state, each as `key: value` where it has a key.
+fn statements(head: &[&Line], separator: Separator) -> Vec<String> {
+    // A rate behind its key takes precedence over a row with one rate a column, which may be those of a
+    // filter.
+    let mut keyed: Vec<String> = head.iter().map(|l| key_and_value(l, separator)).collect();
+    if !Stated::of(keyed.iter().map(String::as_str), None).states_rate() {
+        for (line, keyed) in head.iter().zip(&mut keyed).filter(|(line, _)| line.remark.is_none()) {
+            if let Some(rate) = rate_of_columns(line, separator) {
+                *keyed = rate;
+            }
+        }
+    }
+    keyed
 }
 
 /// Number of the line `data:` that announces the rows; 0 where there is none.

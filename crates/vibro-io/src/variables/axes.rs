@@ -144,6 +144,22 @@ pub struct Axes<'a> {
     even: Vec<(String, usize, f64)>,
 }
 
+/// By struct: depth of the outermost arrays in it, and the greatest length of those.
+fn outermost(
+    dialect: &Dialect,
+    arrays: &[(String, Array)],
+) -> HashMap<String, (Reverse<usize>, Option<u64>)> {
+    let mut all = HashMap::new();
+    for (name, array) in arrays {
+        let at = (Reverse(dialect.structs(name).count()), array.dimensions.iter().copied().max());
+        for scope in dialect.structs(name) {
+            let outer = all.entry(scope.to_owned()).or_insert(at);
+            *outer = at.max(*outer);
+        }
+    }
+    all
+}
+
 impl<'a> Axes<'a> {
     /// Takes the rising vectors named as abscissae out of `arrays` where another array has their length.
     /// `notes` are the scalars and texts.
@@ -169,14 +185,8 @@ impl<'a> Axes<'a> {
         };
         let scalars = Scoped::of(dialect, notes.iter().filter_map(scalar));
         let vectors = Scoped::of(dialect, std::iter::empty());
-        let mut axes = Axes { dialect, options, vectors, scalars, outer: HashMap::new(), even: Vec::new() };
-        for (name, array) in arrays.iter() {
-            let at = (Reverse(dialect.structs(name).count()), array.dimensions.iter().copied().max());
-            for scope in dialect.structs(name) {
-                let outer = axes.outer.entry(scope.to_owned()).or_insert(at);
-                *outer = at.max(*outer);
-            }
-        }
+        let outer = outermost(dialect, arrays);
+        let mut axes = Axes { dialect, options, vectors, scalars, outer, even: Vec::new() };
         let mut taken = vec![false; arrays.len()];
         let kinds = kinds.into_iter().enumerate().filter_map(|(at, kind)| Some((at, kind?)));
         let mut kinds: Vec<_> = kinds.collect();
@@ -208,22 +218,27 @@ impl<'a> Axes<'a> {
                 Grid::Uneven(values) => values.iter_mut().for_each(|v| *v += (first - from) * factor),
             }
             findings.extend(assumed.map(|found| found.name("column", label)).into_iter().chain(found));
-            let said = axes.chosen(name, axis.len(), false).into_iter();
-            let mut said = said.filter(|(of, s)| s.kind == Some(AxisKind::Time) && *of == scope);
-            let said = options.rate.or_else(|| Some(1.0 / said.next()?.1.value));
-            if let Some(rate) = said.filter(|_| axis.kind == AxisKind::Time)
-                && axis.step().is_none_or(|dt| (dt * rate - 1.0).abs() > 1e-6)
-            {
-                let used = if options.rate.is_some() { "rate" } else { "vector" };
-                let found = Finding::caution("vector-against-rate").name("variable", name.as_str());
-                findings.push(found.name("used", used).number("rate", rate));
-            }
+            findings.extend(axes.against_rate(name, scope, &axis));
             taken[at] = true;
             axes.vectors.add(scope, (name.clone(), axis, clock));
         }
         let mut taken = taken.into_iter();
         arrays.retain(|_| !taken.next().unwrap_or(false));
         axes
+    }
+
+    /// Finding that times in the vector `name` have another rate than the user or its struct states.
+    fn against_rate(&self, name: &str, scope: &str, axis: &Axis) -> Option<Finding> {
+        let said = self.chosen(name, axis.len(), false).into_iter();
+        let mut said = said.filter(|(of, s)| s.kind == Some(AxisKind::Time) && *of == scope);
+        let said = self.options.rate.or_else(|| Some(1.0 / said.next()?.1.value));
+        let differs = |rate: &f64| {
+            axis.kind == AxisKind::Time && axis.step().is_none_or(|dt| (dt * rate - 1.0).abs() > 1e-6)
+        };
+        let rate = said.filter(differs)?;
+        let used = if self.options.rate.is_some() { "rate" } else { "vector" };
+        let found = Finding::caution("vector-against-rate").name("variable", name);
+        Some(found.name("used", used).number("rate", rate))
     }
 
     /// Remembers records that rise evenly: a finding may suggest one as abscissa.
@@ -271,20 +286,9 @@ impl<'a> Axes<'a> {
         let nearest = said.first().map_or(0, |(scope, _)| scope.len().min(beside));
         let first = fitting.next().filter(|(scope, _)| scope.len() >= nearest);
         let vector = first.map(|(_, (_, axis, _))| axis);
-        match (self.options.rate, self.options.base_band) {
-            (Some(rate), _) if !complex => {
-                let step = said.first().map_or(1.0 / rate, |(_, scalar)| scalar.value);
-                if vector.is_none() && (step * rate - 1.0).abs() > 1e-5 {
-                    let found = Finding::caution("rate-overrides-step").number("step", step);
-                    meta.found(found.number("rate", rate));
-                }
-                let time = vector.filter(|axis| axis.kind == AxisKind::Time);
-                return Ok(Axis::time(time.map_or(0.0, Axis::start), 1.0 / rate, n));
-            }
-            (None, Some(band)) => {
-                return Ok(Axis::frequency(0.0, band / n.saturating_sub(1).max(1) as f64, n));
-            }
-            _ => {}
+        let step = said.first().map(|(_, scalar)| scalar.value);
+        if let Some(axis) = self.stated(values, vector, step, meta) {
+            return Ok(axis);
         }
         if let Some((scope, (used, axis, clock))) = first {
             if let Some((_, (other, ..))) = fitting.find(|(of, (_, other, _))| *of == scope && other != axis)
@@ -295,12 +299,50 @@ impl<'a> Axes<'a> {
             meta.clock = *clock;
             return Ok(axis.clone());
         }
-        let Some((scope, scalar)) = said.first() else {
+        if said.is_empty() {
             meta.found(self.unsaid(name, values, &meta.name));
             return Ok(Axis::index(n));
-        };
+        }
+        self.by_scalar(name, values, &said, meta)
+    }
+
+    /// The axis that the user states, by a sampling rate or a base band. A `step` of the file that differs is
+    /// named, where there is no `vector` beside it.
+    fn stated(
+        &self,
+        values: &Held,
+        vector: Option<&Axis>,
+        step: Option<f64>,
+        meta: &mut Meta,
+    ) -> Option<Axis> {
+        let (n, complex) = (values.len(), values.is_complex());
+        match (self.options.rate, self.options.base_band) {
+            (Some(rate), _) if !complex => {
+                let step = step.unwrap_or(1.0 / rate);
+                if vector.is_none() && (step * rate - 1.0).abs() > 1e-5 {
+                    let found = Finding::caution("rate-overrides-step").number("step", step);
+                    meta.found(found.number("rate", rate));
+                }
+                let time = vector.filter(|axis| axis.kind == AxisKind::Time);
+                Some(Axis::time(time.map_or(0.0, Axis::start), 1.0 / rate, n))
+            }
+            (None, Some(band)) => Some(Axis::frequency(0.0, band / n.saturating_sub(1).max(1) as f64, n)),
+            _ => None,
+        }
+    }
+
+    /// The axis by the most certain of the scalars that state a step, `said`.
+    fn by_scalar(
+        &self,
+        name: &str,
+        values: &Held,
+        said: &[(&str, &Scalar)],
+        meta: &mut Meta,
+    ) -> Result<Axis> {
+        let (n, complex) = (values.len(), values.is_complex());
+        let (scope, scalar) = said[0];
         let differs = |other: &&Scalar| (other.value / scalar.value - 1.0).abs() > 1e-6;
-        let rival = said.iter().filter(|(of, _)| of == scope).map(|(_, other)| *other).find(differs);
+        let rival = said.iter().filter(|(of, _)| *of == scope).map(|(_, other)| *other).find(differs);
         if let Some(other) = rival.filter(|other| other.trust == scalar.trust) {
             let hertz = |of: &Scalar| format!("{} Hz", short(1.0 / of.value));
             let (a, b) = (hertz(scalar), hertz(other));

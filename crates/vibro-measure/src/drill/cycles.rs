@@ -1,6 +1,6 @@
 //! Turns over their phase: time-synchronous average, displacement, and bandwidth of the motion.
 
-use super::survey::State;
+use super::faults::State;
 use super::turns;
 use super::turns::Turn;
 use crate::mean::average;

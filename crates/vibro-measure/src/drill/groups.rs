@@ -262,18 +262,15 @@ impl Group {
             let found = Finding::doubt("drill-impacts-over-range");
             findings.push(found.count("n", clipped).count("all", members.len()));
         }
-        let mut bias = |side: usize, name, mean: &Mean| {
-            let fits: Vec<&[f64]> = residuals.iter().map(|r| r[side].as_slice()).collect();
-            // A bias well below the standard uncertainty of the mean leaves that uncertainty as it is.
-            let lack = LackOfFit::of(&fits, gap);
-            let moved = lack.filter(|l| mean.std.is_some_and(|std| l.bias > BIAS * std));
-            findings.extend(moved.map(|LackOfFit { residual, bias }| {
+        let sides = [("before", &before), ("after", &after)];
+        let lacks = [0, 1].map(|side| lack_of_fit(&residuals, side, sides[side].1, gap));
+        for (lack, (name, _)) in lacks.iter().zip(sides) {
+            findings.extend(lack.map(|LackOfFit { residual, bias }| {
                 let found = Finding::doubt("drill-lack-of-fit").name("side", name);
                 found.number("residual", residual).number("bias", bias)
             }));
-            moved.map_or(0.0, |lack| lack.bias)
-        };
-        let bias = [bias(0, "before", &before), bias(1, "after", &after)];
+        }
+        let bias = lacks.map(|lack| lack.map_or(0.0, |lack| lack.bias));
         let rings = followed(&own);
         let open = clipped > 0 || rings > 0;
         if rings > 0 {
@@ -288,20 +285,15 @@ impl Group {
         let energy = |squares: &dyn Fn(&Impact) -> f64, parts: [f64; 2], method| {
             options.mass.map(|m| estimate(mean(&|i| 0.5 * m * squares(i)), parts.map(|v| m * v), "J", method))
         };
-        // Count phases from the point opposite to the mean direction, so that the mean does not wrap.
-        let vectors = own.iter().map(|i| (TAU * i.phase).sin_cos());
-        let (sin, cos) = vectors.fold((0.0, 0.0), |a, b| (a.0 + b.0, a.1 + b.1));
-        let from = f64::atan2(sin, cos) / TAU - 0.5;
-        let along = mean(&|i| (i.phase - from).rem_euclid(1.0));
-        let undirected = along.n > 3 && sin * sin + cos * cos < DIRECTED * along.n as f64;
-        findings.extend(undirected.then(|| Finding::doubt("drill-phase-undirected")));
-        let certain = !undirected && bias == [0.0; 2] && rings == 0;
-        let std = along.std.filter(|_| certain);
-        let phase = (from + along.value).rem_euclid(1.0);
+        let (phase, directed) = mean_phase(&own);
+        findings.extend((!directed).then(|| Finding::doubt("drill-phase-undirected")));
+        let wanders = before.wanders || after.wanders || phase.wanders;
+        let certain = directed && bias == [0.0; 2] && rings == 0;
+        let std = phase.std.filter(|_| certain);
         let phase = if options.turns_from == TurnsFrom::Impacts && own.iter().all(|i| i.phase < ROUNDING) {
             Estimate::new(0.0, None, "1", own.len(), "turns begin at these impacts")
         } else {
-            Estimate::new(phase, std, "1", along.n, "part of the turn, mean over impacts on the circle")
+            Estimate::new(phase.value, std, "1", phase.n, "part of the turn, mean over impacts on the circle")
         };
         let restitution =
             restitution(&own, front, options, &moved).map_err(|found| findings.push(found)).ok();
@@ -336,9 +328,28 @@ impl Group {
             ),
             restitution: restitution.map(|r| Estimate { std: r.std.filter(|_| !open), ..r }),
             findings,
-            wanders: before.wanders || after.wanders || along.wanders,
+            wanders,
         }
     }
+}
+
+/// Lack of fit of the parabolas on one side of impacts; `None` where its bias is well below the standard
+/// uncertainty of their mean.
+fn lack_of_fit(residuals: &[&[Vec<f64>; 2]], side: usize, mean: &Mean, gap: usize) -> Option<LackOfFit> {
+    let fits: Vec<&[f64]> = residuals.iter().map(|r| r[side].as_slice()).collect();
+    let lack = LackOfFit::of(&fits, gap);
+    lack.filter(|l| mean.std.is_some_and(|std| l.bias > BIAS * std))
+}
+
+/// Mean phase of impacts on the circle, and whether they have a direction there.
+fn mean_phase(own: &[&Impact]) -> (Mean, bool) {
+    // Count phases from the point opposite to the mean direction, so that the mean does not wrap.
+    let vectors = own.iter().map(|i| (TAU * i.phase).sin_cos());
+    let (sin, cos) = vectors.fold((0.0, 0.0), |a, b| (a.0 + b.0, a.1 + b.1));
+    let from = f64::atan2(sin, cos) / TAU - 0.5;
+    let along = Mean::of(&own.iter().map(|i| (i.phase - from).rem_euclid(1.0)).collect::<Vec<f64>>());
+    let undirected = along.n > 3 && sin * sin + cos * cos < DIRECTED * along.n as f64;
+    (Mean { value: (from + along.value).rem_euclid(1.0), ..along }, !undirected)
 }
 
 /// Number of impacts that follow another one closely; 0 where accidents explain them. A velocity that rings

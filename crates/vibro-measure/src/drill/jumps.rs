@@ -6,8 +6,8 @@
 //! noise but wrong where the drive accelerates the striker: over 0.5 ms of a 7.5 m/s stroke at 50 Hz by 0.04
 //! m/s.
 
+use super::faults::State;
 use super::parabola::{FEWEST, Parabola};
-use super::survey::State;
 use super::turns::Turn;
 use super::{Impact, TurnsFrom, turns};
 use crate::residuals::Whiteness;

@@ -1,6 +1,6 @@
 //! Parabolas fitted before and after an impact, and the lack of fit that they have in common.
 
-use super::survey::State;
+use super::faults::State;
 use crate::residuals::Whiteness;
 use nalgebra::{Matrix3, Vector3};
 use std::ops::RangeInclusive;

@@ -1,7 +1,7 @@
 //! Crossings of a level in a sampled signal; edges of a reference signal; the turns between them: which are
 //! whole, how fast, how evenly.
 
-use super::survey::State;
+use super::faults::State;
 use crate::Estimate;
 use crate::mean::Mean;
 use vibro_math::border;

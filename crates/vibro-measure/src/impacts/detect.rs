@@ -90,12 +90,7 @@ pub(crate) fn detect_among(
         Some(_) => (rises(&values, quiet.reach, rate), None),
         None => bursts(&values, quiet.reach, pause),
     };
-    if median(heights(&values, &bursts, -1.0)) > INVERTED * median(heights(&values, &bursts, 1.0)) {
-        findings.push(Finding::note("pulses-inverted"));
-        for v in &mut values {
-            *v = -*v;
-        }
-    }
+    findings.extend(turned_upright(&mut values, &bursts));
     let all = match choose {
         Some(_) => bursts.iter().map(|b| largest(&values[b.clone()])).collect(),
         None => heights(&values, &bursts, 1.0),
@@ -121,11 +116,7 @@ pub(crate) fn detect_among(
         bursts = chosen.into_iter().map(|i| bursts[i].clone()).collect();
         findings.extend(said);
     }
-    let ringing = stable.filter(|s| *s < STABLE && bursts.len() > 1);
-    findings.extend(ringing.map(|s| Finding::caution("count-depends-on-ringing").number("factor", s)));
-    let above = (median(heights(&values, &bursts, 1.0)) - quiet.reach) / quiet.sigma;
-    let lost = Finding::doubt("impacts-lost-in-noise").number("sigmas", above);
-    findings.extend((above < LOST).then_some(lost));
+    findings.extend(in_doubt(&values, &bursts, &quiet, stable));
     let shape = options.shape.as_ref().map(|pulse| recorded(pulse, rate)).transpose()?;
     let Onsets { each, method, sharp } = onsets(&values, &bursts, quiet.sigma, shape.as_ref());
     if each.len() < 2 {
@@ -157,6 +148,32 @@ pub(crate) fn detect_among(
         method,
         resolution: sharp.then_some(1.0 / rate),
     })
+}
+
+/// Turns values upright whose pulses point down.
+fn turned_upright(values: &mut [f64], bursts: &[Range<usize>]) -> Option<Finding> {
+    if median(heights(values, bursts, -1.0)) <= INVERTED * median(heights(values, bursts, 1.0)) {
+        return None;
+    }
+    for v in values {
+        *v = -*v;
+    }
+    Some(Finding::note("pulses-inverted"))
+}
+
+/// Findings on bursts whose number depends on their ringing, or that noise may hide. `stable` is the factor
+/// by which the assumed decay may change without another number of bursts.
+fn in_doubt(
+    values: &[f64],
+    bursts: &[Range<usize>],
+    quiet: &Background,
+    stable: Option<f64>,
+) -> impl Iterator<Item = Finding> {
+    let ringing = stable.filter(|s| *s < STABLE && bursts.len() > 1);
+    let ringing = ringing.map(|s| Finding::caution("count-depends-on-ringing").number("factor", s));
+    let above = (median(heights(values, bursts, 1.0)) - quiet.reach) / quiet.sigma;
+    let lost = Finding::doubt("impacts-lost-in-noise").number("sigmas", above);
+    ringing.into_iter().chain((above < LOST).then_some(lost))
 }
 
 /// The values without mains hum and level, or their envelope; their background, and the removed hum.

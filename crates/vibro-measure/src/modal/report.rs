@@ -108,7 +108,7 @@ impl Candidate<'_> {
         let frequency = estimate(own.frequency, std[0], "Hz").with_relative(options.clock);
         let zeta = estimate(own.zeta, std[1], "1");
         let constant = if phases { signed(own.constant) } else { own.constant.norm() };
-        let modal_constant = estimate(constant, std[2], "1/kg");
+        let modal_constant = estimate(constant, std[2], measured.unit_of_constants());
         let angle = own.constant.arg().to_degrees();
         let phase = phases.then(|| estimate(angle, std[3].map(f64::to_degrees), "°"));
         let stiffness = options.mass.map(|mass| {
@@ -148,7 +148,7 @@ impl Candidate<'_> {
             method: "circle fit",
             frequency: plain(pole.map_or(f64::NAN, |p| p.frequency), "Hz"),
             zeta: pole.map(|p| plain(p.zeta, "1")),
-            modal_constant: pole.map(|p| plain(signed(p.constant), "1/kg")),
+            modal_constant: pole.map(|p| plain(signed(p.constant), self.measured.unit_of_constants())),
             note,
         }
     }

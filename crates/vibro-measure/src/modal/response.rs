@@ -172,6 +172,16 @@ impl Measured {
         }
     }
 
+    /// Unit of a modal constant, that of a receptance over s²: 1/kg for a response over a force, empty where
+    /// the unit of the function is not known.
+    pub fn unit_of_constants(&self) -> &'static str {
+        match self.kind {
+            Quantity::Receptance | Quantity::Mobility | Quantity::Accelerance => "1/kg",
+            Quantity::Ratio => "1/s²",
+            _ => "",
+        }
+    }
+
     /// Leaves out the lines that cannot be used, with a finding for each kind; `least` is the lowest
     /// coherence allowed.
     ///

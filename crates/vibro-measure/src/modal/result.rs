@@ -40,7 +40,7 @@ pub struct Mode {
     pub frequency: Estimate,
     /// Damping ratio.
     pub zeta: Estimate,
-    /// Modal constant A of the receptance A/(ωᵣ² − ω² + 2iζωᵣω), 1/kg: its magnitude, negative where its
+    /// Modal constant A of the receptance A/(ωᵣ² − ω² + 2iζωᵣω), in 1/kg: its magnitude, negative where its
     /// phase is within 45° of 180°. In a mode shape the signs are the directions.
     pub modal_constant: Estimate,
     /// Phase of the modal constant in degrees: 0 or 180° for a mode of which all parts move in step. `None`
@@ -89,7 +89,7 @@ pub struct Pole {
     pub frequency: f64,
     /// Damping ratio.
     pub zeta: f64,
-    /// Modal constant A, 1/kg for a response over a force.
+    /// Modal constant A: 1/kg for a response over a force, 1/s² for a ratio of equal units.
     pub constant: Complex64,
 }
 

@@ -130,27 +130,13 @@ fn choose(
         let hint = "`vibro impacts` for a machine; for a drop among voices the part with the bounces, or the height of its fall";
         return Err(Error::refused(why).hint(hint).setting("span").setting("height"));
     }
-    let time = |i: usize| sounds[i].time;
-    let (a, b) = (train.impacts[0], train.impacts[1]);
-    if let Some(Rival::Fall(i, j)) = train.rival {
-        let [fall, begin, end] = [time(j) - time(i), time(i), time(j)].map(|time| quantity(time, "s", 3));
-        let why = format!(
-            "the sounds at {begin} and {end} may be the release and the first impact: {fall} is the time of the fall from that height"
-        );
-        return refused(why, &train);
-    }
-    if let Some(Rival::Train(i, j)) = train.rival {
-        let [first, other] = apart([time(b) - time(a), time(j) - time(i)]);
-        let [begin, later] = apart([time(a), time(i)]);
-        let why = format!(
-            "{n} sounds, and two trains of bounces among them are as likely: first flight {first} from {begin} on, or {other} from {later} on"
-        );
+    if let Some(why) = rivalled(&train, sounds) {
         return refused(why, &train);
     }
     let before = train.impacts[0];
     let other = n - train.impacts.len() - before - train.echoes;
     let foreign = before - train.release + other;
-    let flight = time(b) - time(a);
+    let flight = sounds[train.impacts[1]].time - sounds[before].time;
     if let Some(why) = unconfirmed(&train, foreign, sounds, heard.full.is_some()) {
         return refused(why, &train);
     }
@@ -162,15 +148,43 @@ fn choose(
             format!("the first flight of {flight} is R = {r:.4} by the height: it may be that of an echo");
         return refused(why, &train);
     }
+    let findings = on_others(&train, other, sounds);
+    Ok((train.impacts, findings))
+}
+
+/// Another explanation of the sounds that is as likely as the train.
+fn rivalled(train: &Plausible, sounds: &[Sound]) -> Option<String> {
+    let time = |i: usize| sounds[i].time;
+    Some(match train.rival? {
+        Rival::Fall(i, j) => {
+            let [fall, begin, end] = [time(j) - time(i), time(i), time(j)].map(|time| quantity(time, "s", 3));
+            format!(
+                "the sounds at {begin} and {end} may be the release and the first impact: {fall} is the time of the fall from that height"
+            )
+        }
+        Rival::Train(i, j) => {
+            let (n, a, b) = (sounds.len(), train.impacts[0], train.impacts[1]);
+            let [first, other] = apart([time(b) - time(a), time(j) - time(i)]);
+            let [begin, later] = apart([time(a), time(i)]);
+            format!(
+                "{n} sounds, and two trains of bounces among them are as likely: first flight {first} from {begin} on, or {other} from {later} on"
+            )
+        }
+    })
+}
+
+/// Findings on the sounds beside a train, `other` of which are neither before it nor its echoes.
+fn on_others(train: &Plausible, other: usize, sounds: &[Sound]) -> Vec<Finding> {
+    let before = train.impacts[0];
     let of = |code, n: usize| (n > 0).then(|| Finding::note(code).count("n", n));
-    let louder = sounds[..before].iter().filter(|sound| sound.height > sounds[a].height).count();
+    let louder = sounds[..before].iter().filter(|sound| sound.height > sounds[before].height).count();
     let of_handling = (louder > 0).then(|| Finding::caution("louder-before").count("n", before));
     let of_handling =
         of_handling.map(|found| found.count("louder", louder)).or(of("handling-ignored", before));
     let one = (train.impacts.len() == 2 && train.release == 0).then(|| Finding::caution("one-flight"));
     let echoes = of("echoes-ignored", train.echoes).map(|found| found.number("delay", SHADOW));
     let findings = [of_handling, echoes, of("sounds-ignored", other), one];
-    Ok((train.impacts, findings.into_iter().flatten().collect()))
+    findings.into_iter().flatten().collect()
 }
 
 /// Why a train of one or two flights is not certain, with `foreign` other sounds in the record, and with or

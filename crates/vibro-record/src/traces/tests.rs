@@ -40,3 +40,22 @@ fn traces_of_two_files_begin_together_wherever_they_count_from() {
     let apart = together(trace(1.7e9, 0.0), trace(1.7e9 + 0.003, 0.0)).unwrap_err().to_string();
     assert!(apart.contains("sampled together"), "{apart}");
 }
+
+#[test]
+fn samples_that_were_looked_at_are_still_handed_out() {
+    let all: Vec<f64> = (0..3 * BLOCK).map(|i| i as f64).collect();
+    let axis = crate::Axis::time(0.0, 1e-3, all.len());
+    let trace = Trace { meta: Meta::new("a", Unit::opaque("V")), axis, values: all.clone() };
+    for looked_at in [0, 1, BLOCK + 1, usize::MAX] {
+        let mut traces = Traces::from_memory(vec![trace.clone()]).unwrap();
+        traces.calibrate(0, 2.0).unwrap();
+        for _ in 0..2 {
+            let seen = traces.peek(looked_at).unwrap();
+            assert!(seen.first().map_or(0, Vec::len) >= looked_at.min(all.len()));
+        }
+        let mut block = Vec::new();
+        while traces.append(&mut block).unwrap() > 0 {}
+        let doubled: Vec<f64> = all.iter().map(|v| 2.0 * v).collect();
+        assert!(block[0] == doubled, "{looked_at}");
+    }
+}
