@@ -141,7 +141,7 @@ impl Keys {
     /// If the traces allow no answer.
     pub fn lines_of(&self, mut traces: Traces, source: &Source<'_>) -> Result<SpectralResult> {
         let all = traces.frames();
-        Ok(spectral(&mut traces, &self.options()?, |done| source.progress.at(done, all))?)
+        spectral(&mut traces, &self.options()?, |done| source.progress.at(done, all))
     }
 }
 

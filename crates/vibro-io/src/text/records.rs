@@ -110,7 +110,9 @@ impl<'a> RecordContext<'a> {
             findings.append(&mut of_axis);
         }
         for column in &mut built {
-            of_axis.iter().for_each(|found| column.record.meta_mut().found(found.clone()));
+            for found in &of_axis {
+                column.record.meta_mut().found(found.clone());
+            }
         }
         Ok(built)
     }

@@ -190,7 +190,7 @@ impl<'a> Cells<'a> {
         for (values, sparse) in columns.iter_mut().zip(&rows.sparse) {
             match sparse {
                 Some((first, every)) => {
-                    *values = values.iter().skip(*first).step_by(*every).copied().collect()
+                    *values = values.iter().skip(*first).step_by(*every).copied().collect();
                 }
                 None if without(values) && !unused.is_empty() => {}
                 None => gaps += values.iter().filter(|v| v.re.is_nan()).count(),
