@@ -227,6 +227,8 @@ impl OfFile for Keys {
         answer.details.push(settings_table(&found));
         let name = if self.reference.is_some() { "frf" } else { "spectrum" };
         answer.figure(name, figures::lines(source.name, &found));
+        let argand = figures::argand(source.name, &found);
+        answer.figures.extend(argand.map(|figure| ("frf_argand".to_owned(), figure)));
         let (files, unwritten) = files::records(name, &found.records())?;
         answer.files = files;
         answer.add("", unwritten);

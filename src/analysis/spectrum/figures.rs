@@ -1,12 +1,13 @@
 //! Spectra, and frequency response functions with their band and coherence.
 
-use crate::analysis::frf::figures::{coherence_plot, phase_plot};
+use crate::analysis::frf::figures::{coherence_plot, complex_plane, locus, phase_plot};
 use crate::measure::spectral::{Lines, SpectralResult};
 use crate::record::{Scaling, Spectrum};
 use crate::report::layout::{capital, lettered};
-use crate::report::{AxisSpec, Figure, Ink, Legend, Marker, Plot, Series};
+use crate::report::{AxisSpec, Figure, Ink, Legend, Marker, Plot, Series, Stroke};
 use crate::signal::transfer::Transfer;
 use crate::units::Quantity;
+use crate::units::notation::significant;
 
 /// A spectrum, or a frequency response function.
 pub fn lines(title: &str, result: &SpectralResult) -> Figure {
@@ -112,4 +113,32 @@ fn transfer(title: &str, transfer: &Transfer, conditions: &str) -> Figure {
     }
     lettered(figure.panel(below))
         .caption(format!("{conditions} The phase is drawn where the coherence is 0.5 or more."))
+}
+
+/// Most peaks of a function whose frequencies are written in its Argand diagram.
+const NAMED_PEAKS: usize = 3;
+/// Least magnitude over the largest of lines that have a dot, or a name, in an Argand diagram.
+const LEAST_NAMED: f64 = 0.05;
+
+/// Argand diagram of a frequency response function, without lines of a coherence below 0.5: imaginary over
+/// real part. `None` of a spectrum.
+pub fn argand(title: &str, result: &SpectralResult) -> Option<Figure> {
+    let Lines::Transfer(found) = &result.found else { return None };
+    let (f, values, coherence) = (found.frf.axis.values(), &found.frf.values, &found.coherence);
+    let is_drawn = |k: &usize| values[*k].is_finite() && coherence.get(*k).is_none_or(|c| *c >= 0.5);
+    let drawn: Vec<usize> = (0..f.len()).filter(is_drawn).collect();
+    let least = LEAST_NAMED * drawn.iter().map(|k| values[*k].norm()).fold(0.0, f64::max);
+    let large = |k: &usize| values[*k].norm() >= least;
+    let parts = |lines: &[usize]| lines.iter().map(|k| (values[*k].re, values[*k].im)).unzip();
+    let ((re, im), (dots_re, dots_im)) =
+        (parts(&drawn), parts(&drawn.iter().copied().filter(large).collect::<Vec<_>>()));
+    let mut plot = complex_plane(&found.frf.meta)
+        .with(Series::line("", re, im).ink(Ink::Nth(0)).stroke(Stroke::Thin))
+        .with(locus("", dots_re, dots_im).ink(Ink::Nth(0)));
+    for k in result.peaks(NAMED_PEAKS).into_iter().filter(|k| is_drawn(k) && large(k)) {
+        plot = plot.note(format!("{} Hz", significant(f[k], 4)), values[k].re, values[k].im);
+    }
+    let coherent = if coherence.is_empty() { "" } else { " Lines with a coherence below 0.5 are left out." };
+    let caption = format!("Imaginary over real part, with the frequencies of the largest peaks.{coherent}");
+    Some(Figure::single(format!("Argand diagram, {title}")).height(80.0).panel(plot).caption(caption))
 }
