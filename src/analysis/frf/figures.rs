@@ -151,9 +151,9 @@ fn is_windowed(meta: &Meta, measured: &Measured) -> bool {
     meta.added_decay().is_some() || measured.window.is_some()
 }
 
-/// The fitted response at its lines and, where these are fewer than `smooth`, between them. Between two lines it is the sum
-/// of the modes, with the other terms of the fit interpolated linearly. The effect of a window on the modes
-/// is known at the lines only.
+/// The fitted response at its lines and, where these are fewer than `smooth`, between them. Between two lines
+/// it is the sum of the modes, with the other terms of the fit interpolated linearly. The effect of a window
+/// on the modes is known at the lines only.
 fn curve(measured: &Measured, modes: &[Mode], windowed: bool, smooth: usize) -> Vec<(f64, Complex64)> {
     let fitted = modes.first().map(|mode| mode.fitted.as_slice()).unwrap_or_default();
     let at_lines = fitted.iter().map(|(f, re, im)| (*f, Complex64::new(*re, *im)));
