@@ -7,7 +7,8 @@ use crate::report::{AxisSpec, Figure, Plot, Series, Stroke};
 /// Amplitude of the force over excitation frequency; `None` where no sweep has its force. At a resonance a
 /// shaker's force drops, as the structure takes its stroke.
 pub fn force(title: &str, responses: &[Response]) -> Option<Figure> {
-    let y = AxisSpec::new("Force amplitude", "N");
+    // From 0, so that a steady force is a level line and not its own scatter.
+    let y = AxisSpec::new("Force amplitude", "N").limits(0.0, f64::NAN);
     let mut plot = Plot::new(AxisSpec::new("Excitation frequency", "Hz"), y);
     for (i, response) in responses.iter().enumerate() {
         let known = response.points.iter().filter_map(|p| Some((p.excitation, p.force?, p.force_std)));
