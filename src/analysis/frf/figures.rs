@@ -78,7 +78,7 @@ pub fn argand(title: &str, meta: &Meta, measured: &Measured, modes: &[Mode]) -> 
         return None;
     }
     let windowed = is_windowed(meta, measured);
-    let mut circles: Vec<(&[Mode], Vec<(f64, Complex64)>)> =
+    let mut circles: Vec<_> =
         groups.iter().map(|group| (*group, curve(measured, group, windowed, SMOOTH_CIRCLE))).collect();
     let size = |curve: &[(f64, Complex64)]| curve.iter().map(|(_, value)| value.norm()).fold(0.0, f64::max);
     circles.sort_by(|a, b| size(&b.1).total_cmp(&size(&a.1)));
