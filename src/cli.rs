@@ -16,7 +16,7 @@ mod shell;
 mod stdout;
 mod sweep;
 
-use crate::analysis::{decay, frf, spectrum};
+use crate::analysis::{decay, frf};
 use crate::campaign::in_range;
 use crate::error::{Error, Result};
 use crate::read::Limit;
@@ -72,7 +72,7 @@ const GROUPS: &[(&str, &[CommandRow])] = &[
                 "excitation LIST.TXT",
                 "Excitation frequency of every point of a sweep",
             ),
-            CommandRow::of::<record::MeasuredFile<spectrum::Keys>>(
+            CommandRow::of::<record::Spectrum>(
                 "spectrum trace.csv --channel velocity --out figures",
                 "Spectrum of a channel, or frequency response function between two",
             ),

@@ -238,6 +238,8 @@ impl Keys {
         answer.csv("methods", &methods);
         answer.details.push(methods);
         answer.figure("frf", figures::frf(name, meta, measured, &found.modes));
+        let argand = figures::argand(name, meta, measured, &found.modes);
+        answer.figures.extend(argand.map(|figure| ("argand".to_owned(), figure)));
         if !records.is_empty() {
             let (files, unwritten) = files::records("frf", records)?;
             answer.files.extend(files);
@@ -280,7 +282,7 @@ const OF_SWEEP: &str =
 impl Analysis for Keys {
     const SECTION: &'static str = "frf";
     const TITLE: &'static str = "Frequency response functions";
-    const FILES: Names = Names::Numbered(&["modes", "methods", "frf"]);
+    const FILES: Names = Names::Numbered(&["modes", "methods", "frf", "argand"]);
     const RESTS_ON: &'static [&'static str] = &["sweep"];
 
     fn check(entry: &Entry<Keys>, _: &[Entry<Keys>]) -> Result<()> {

@@ -13,10 +13,11 @@ use crate::measure::spectral::{Lines, Method, SpectralOptions, SpectralResult, s
 use crate::read::Header;
 use crate::record::{Scaling, Traces, Window, find_channel, shown};
 use crate::report::files::Names;
-use crate::report::layout::table;
+use crate::report::layout::{headed, table};
 use crate::report::{Cell, Table, files};
 use crate::signal::transfer::Estimator;
 use serde::Deserialize;
+use serde_json::Value;
 use std::path::{Path, PathBuf};
 
 /// How a spectrum is taken, or the function of two channels.
@@ -194,8 +195,8 @@ impl Keys {
     }
 }
 
-/// File and channel of a reference in another file, `FILE#CHANNEL`.
-fn in_other_file(reference: &str) -> Option<(&Path, &str)> {
+/// File and channel of `FILE#CHANNEL`, such as a reference in another file.
+pub(crate) fn in_other_file(reference: &str) -> Option<(&Path, &str)> {
     let (file, channel) = reference.rsplit_once('#')?;
     let file = Path::new(file);
     file.extension().map(|_| (file, channel))
@@ -231,14 +232,90 @@ impl OfFile for Keys {
         answer.result.insert("channel".to_owned(), found.name.clone().into());
         answer.add("", &found.findings);
         answer.tables = vec![peaks(source.name, &found), tones(source.name, &found)];
-        answer.details.push(settings_table(&found));
+        answer.details.push(settings_table([(found.name.as_str(), &found)]));
         let name = if self.reference.is_some() { "frf" } else { "spectrum" };
         answer.figure(name, figures::lines(source.name, &found));
+        let argand = figures::argand(source.name, &found);
+        answer.figures.extend(argand.map(|figure| ("frf_argand".to_owned(), figure)));
         let (files, unwritten) = files::records(name, &found.records())?;
         answer.files = files;
         answer.add("", unwritten);
         Ok(answer)
     }
+}
+
+/// Spectra of several records, or functions: one figure, and the peaks of each beside those of the others.
+///
+/// # Errors
+/// If their units or scalings differ.
+pub fn compared(found: &[(String, SpectralResult)]) -> Result<Answer> {
+    let mut answer = Answer::default();
+    let Some((first, like)) = found.first() else { return Ok(answer) };
+    let mut spectra = Vec::new();
+    // The table of common peaks has its name among the files, too.
+    let slugs = files::slugs(std::iter::once("peaks").chain(found.iter().map(|(name, _)| name.as_str())));
+    for ((name, result), slug) in found.iter().zip(&slugs[1..]) {
+        let ordinate = |of: &SpectralResult| format!("{} ({})", of.unit, of.scaling);
+        if ordinate(result) != ordinate(like) {
+            let found = format!("{first} in {}, {name} in {}", ordinate(like), ordinate(result));
+            return Err(Error::usage(found, "spectra of one unit and scaling").setting("unit"));
+        }
+        let mut one = Answer::of(result)?;
+        one.result.insert("name".to_owned(), name.as_str().into());
+        one.result.insert("channel".to_owned(), result.name.as_str().into());
+        spectra.push(Value::Object(std::mem::take(&mut one.result)));
+        one.add(name, &result.findings);
+        one.tables.push(tones(name, result));
+        let (files, unwritten) = files::records(&format!("{}_{slug}", kind(result)), &result.records())?;
+        one.files = files;
+        one.add(name, unwritten);
+        answer.append(one);
+    }
+    answer.result.insert("spectra".to_owned(), spectra.into());
+    answer.table(&format!("{}_peaks", kind(like)), common_peaks(found));
+    answer.details.push(settings_table(found.iter().map(|(name, result)| (name.as_str(), result))));
+    answer.figures.extend(figures::together(found).map(|figure| (kind(like).to_owned(), figure)));
+    Ok(answer)
+}
+
+/// Start of the names of files of a result.
+fn kind(result: &SpectralResult) -> &'static str {
+    if matches!(result.found, Lines::Transfer(_)) { "frf" } else { "spectrum" }
+}
+
+/// Largest peaks of several spectra, those within a line spacing of the coarsest in one row.
+fn common_peaks(found: &[(String, SpectralResult)]) -> Table {
+    let spacing = |result: &SpectralResult| result.frequency.windows(2).next().map_or(0.0, |w| w[1] - w[0]);
+    let near = 1.5 * found.iter().map(|(_, result)| spacing(result)).fold(0.0, f64::max);
+    let mut peaks: Vec<(f64, usize, usize)> = Vec::new();
+    for (record, (_, result)) in found.iter().enumerate() {
+        peaks.extend(result.peaks(SHOWN_PEAKS).into_iter().map(|k| (result.frequency[k], record, k)));
+    }
+    peaks.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let columns: Vec<(String, &str)> = found
+        .iter()
+        .flat_map(|(name, result)| [(name.clone(), "Hz"), (format!("{name}, value"), result.unit.as_str())])
+        .collect();
+    let columns: Vec<(&str, &str)> = columns.iter().map(|(name, unit)| (name.as_str(), *unit)).collect();
+    let mut rows: Vec<Vec<Option<usize>>> = Vec::new();
+    let mut last = f64::NEG_INFINITY;
+    for (f, record, k) in peaks {
+        match rows.last_mut() {
+            Some(row) if f - last <= near && row[record].is_none() => row[record] = Some(k),
+            _ => {
+                rows.push(vec![None; found.len()]);
+                rows.last_mut().into_iter().for_each(|row| row[record] = Some(k));
+                last = f;
+            }
+        }
+    }
+    let cells = |row: Vec<Option<usize>>| {
+        let of = |(peak, (_, result)): (Option<usize>, &(String, SpectralResult))| {
+            [peak.map(|k| result.frequency[k]).into(), peak.map(|k| result.value[k]).into()]
+        };
+        row.into_iter().zip(found).flat_map(of).collect::<Vec<Cell>>()
+    };
+    rows.into_iter().map(cells).fold(headed("Largest peaks", &columns), Table::row)
 }
 
 /// Number of largest peaks in the table of a record.
@@ -278,21 +355,21 @@ fn peaks(name: &str, found: &SpectralResult) -> Table {
 /// By how much a sine half-way between two lines reads low, by window.
 const READS_LOW: [(&str, &str); 3] = [("hann", "15 %"), ("rectangular", "36 %"), ("hamming", "18 %")];
 
-/// Settings with which the lines were computed.
-fn settings_table(found: &SpectralResult) -> Table {
+/// Settings with which the lines of each record were computed.
+fn settings_table<'a>(results: impl IntoIterator<Item = (&'a str, &'a SpectralResult)>) -> Table {
     table(
         "Settings of the spectra",
-        [found],
+        results,
         &[
-            ("record", "", &|f| Cell::from(f.name.as_str())),
-            ("lines", "", &|f| Cell::from(f.frequency.len())),
-            ("scaling", "", &|f| Cell::from(f.scaling)),
-            ("unit", "", &|f| Cell::from(f.unit.as_str())),
-            ("level unit", "", &|f| Cell::from(f.level_unit.as_deref().unwrap_or("-"))),
-            ("window", "", &|f| Cell::from(f.window)),
-            ("ENBW", "lines", &|f| Cell::Number(f.enbw)),
-            ("detrend", "", &|f| Cell::from(f.detrend)),
-            ("averages", "", &|f| Cell::from(f.averages)),
+            ("record", "", &|(name, _)| Cell::from(*name)),
+            ("lines", "", &|(_, f)| Cell::from(f.frequency.len())),
+            ("scaling", "", &|(_, f)| Cell::from(f.scaling)),
+            ("unit", "", &|(_, f)| Cell::from(f.unit.as_str())),
+            ("level unit", "", &|(_, f)| Cell::from(f.level_unit.as_deref().unwrap_or("-"))),
+            ("window", "", &|(_, f)| Cell::from(f.window)),
+            ("ENBW", "lines", &|(_, f)| Cell::Number(f.enbw)),
+            ("detrend", "", &|(_, f)| Cell::from(f.detrend)),
+            ("averages", "", &|(_, f)| Cell::from(f.averages)),
         ],
     )
 }

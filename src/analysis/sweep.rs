@@ -282,6 +282,7 @@ impl Analysis for Keys {
     const FILES: Names = Names::Named(&[
         "response",
         "receptance",
+        "force",
         "waterfall",
         "map",
         "overlay",
@@ -354,6 +355,7 @@ impl Analysis for Keys {
             if let Some(figure) = figures::receptance(&job.title, &responses) {
                 all.figure("receptance", figure);
             }
+            all.figures.extend(figures::force(&job.title, &responses).map(|f| ("force".to_owned(), f)));
             all.tables = vec![tables::resonances(&responses), tables::jumps(&responses)];
         }
         job.show("", "", all);

@@ -4,7 +4,7 @@ use super::sweep::{SweepPlace, of_script};
 use super::{CommandArgs, complain, print};
 use crate::analysis::drill::cycles;
 use crate::analysis::sweep::{Files, Listed, StoredResponseKeys, named};
-use crate::analysis::{self, Analysis, Answer, OfFile, Source, drill, drop, frf, impacts, pulse};
+use crate::analysis::{self, Analysis, Answer, OfFile, Source, drill, drop, frf, impacts, pulse, spectrum};
 use crate::campaign::{Channel, Reading};
 use crate::error::{Error, Result};
 use crate::measure::drill::Cycle;
@@ -39,6 +39,17 @@ pub struct MeasuredFile<K: Args> {
     file: PathBuf,
     #[command(flatten)]
     keys: K,
+    #[command(flatten)]
+    record: RecordArgs,
+}
+
+#[derive(Debug, Args)]
+pub struct Spectrum {
+    /// Measurement file, or FILE#CHANNEL; several are compared
+    #[arg(index = 1, required = true, value_name = "FILE")]
+    files: Vec<PathBuf>,
+    #[command(flatten)]
+    keys: spectrum::Keys,
     #[command(flatten)]
     record: RecordArgs,
 }
@@ -136,6 +147,54 @@ impl<K: Args + OfFile + Analysis> CommandArgs for MeasuredFile<K> {
     fn run(&self, json: bool) -> Result<u8> {
         let (folder, output) = self.record.results([&self.file], K::FILES)?;
         print::answer(self.by(&folder, json, K::measure)?, output, json)
+    }
+}
+
+impl Spectrum {
+    /// A typed file, and its channel where it is `FILE#CHANNEL`.
+    fn place(&self, typed: &Path) -> (PathBuf, Channel) {
+        let stated = &self.record.channel;
+        let text = typed.to_string_lossy();
+        match spectrum::in_other_file(&text).filter(|_| !typed.exists()) {
+            Some((file, channel)) => {
+                (file.to_owned(), Channel { channel: Some(channel.to_owned()), ..stated.clone() })
+            }
+            None => (typed.to_owned(), stated.clone()),
+        }
+    }
+
+    /// Name of a typed file: the shortest of stem, file name and all that was typed that no other file has.
+    fn name(&self, typed: &Path) -> String {
+        let stem = |typed: &Path| self.place(typed).0.file_stem().map_or_else(String::new, shown);
+        let last = |typed: &Path| typed.file_name().map_or_else(String::new, shown);
+        let names: [&dyn Fn(&Path) -> String; 2] = [&stem, &last];
+        let alone = |name: &&&dyn Fn(&Path) -> String| {
+            self.files.iter().filter(|other| name(other) == name(typed)).count() == 1
+        };
+        names.iter().find(alone).map_or_else(|| shown(typed), |name| name(typed))
+    }
+}
+
+impl CommandArgs for Spectrum {
+    /// Prints the answer of one record, or of several beside each other.
+    fn run(&self, json: bool) -> Result<u8> {
+        let places: Vec<(PathBuf, Channel)> = self.files.iter().map(|file| self.place(file)).collect();
+        let files = places.iter().map(|(file, _)| file);
+        let (folder, output) = self.record.results(files, spectrum::Keys::FILES)?;
+        if let [(file, channel)] = places.as_slice() {
+            let answer = self
+                .record
+                .measured(&folder, file, json, |source| self.keys.measure(&Source { channel, ..*source }))?;
+            return print::answer(answer, output, json);
+        }
+        let mut found = Vec::new();
+        for (typed, (file, channel)) in self.files.iter().zip(&places) {
+            let lines = self
+                .record
+                .measured(&folder, file, json, |source| self.keys.lines(&Source { channel, ..*source }))?;
+            found.push((self.name(typed), lines));
+        }
+        print::answer(spectrum::compared(&found)?, output, json)
     }
 }
 

@@ -170,6 +170,7 @@ impl CommandArgs for ResponseArgs {
             if let Some(figure) = figures::receptance(&found.name, all) {
                 answer.figure("receptance", figure);
             }
+            answer.figures.extend(figures::force(&found.name, all).map(|f| ("force".to_owned(), f)));
             answer.csv("response", &tables::response(&found));
             answer.tables = vec![tables::curve(&found), tables::resonances(all), tables::jumps(all)];
             answer
@@ -179,7 +180,7 @@ impl CommandArgs for ResponseArgs {
 }
 
 /// Names of the files that `vibro response` and `vibro waterfall` write.
-const RESPONSE: Names = Names::Numbered(&["response", "receptance"]);
+const RESPONSE: Names = Names::Numbered(&["response", "receptance", "force"]);
 const WATERFALL: Names = Names::Numbered(&["waterfall", "map"]);
 
 impl ResponseArgs {

@@ -171,6 +171,20 @@ impl Axis {
         Some(Axis { lo, hi, title: labelled(&spec.label, &unit), scale: spec.scale, power, degrees })
     }
 
+    /// Two linear axes of one unit with the same span and power of ten.
+    pub(super) fn alike((x, y): (Axis, Axis), (of_x, of_y): (&AxisSpec, &AxisSpec)) -> (Axis, Axis) {
+        let half = (x.hi - x.lo).max(y.hi - y.lo) / 2.0;
+        let ends = |axis: &Axis| {
+            let middle = f64::midpoint(axis.lo, axis.hi);
+            (middle - half, middle + half)
+        };
+        let ((left, right), (low, high)) = (ends(&x), ends(&y));
+        let power = engineering([left, right, low, high].into_iter().map(f64::abs).fold(0.0, f64::max));
+        let title = |spec: &AxisSpec| labelled(&spec.label, &scaled_unit(&spec.unit, power));
+        let across = Axis { lo: left, hi: right, power, title: title(of_x), ..x };
+        (across, Axis { lo: low, hi: high, power, title: title(of_y), ..y })
+    }
+
     /// Position of a value: 0 at the lower limit, 1 at the upper one; NaN where the scale has no such value.
     /// Positions far outside are clamped to ±1e4, so that lines can be cut at the frame.
     pub(super) fn at(&self, value: f64) -> f64 {
@@ -262,6 +276,21 @@ mod tests {
         assert_eq!(axis.title, "Displacement (mm)");
         let labels: Vec<_> = axis.ticks(6).major.into_iter().map(|t| t.label).collect();
         assert_eq!(labels, ["0.0", "0.5", "1.0", "1.5", "2.0"]);
+    }
+
+    #[test]
+    fn axes_that_are_alike_have_one_span_and_one_unit() {
+        let (of_x, of_y) = (AxisSpec::new("Real part", "m/N"), AxisSpec::new("Imaginary part", "m/N"));
+        let axis = |spec, data: &[f64]| Axis::new(spec, extent(data), Room::Tight).unwrap();
+        let axes = (axis(&of_x, &[-6e-4, 6e-4]), axis(&of_y, &[-1.6e-3, 0.0]));
+        let (x, y) = Axis::alike(axes, (&of_x, &of_y));
+        let near = |a: f64, b: f64| (a - b).abs() < 1e-15;
+        assert!(
+            near(x.lo, -8e-4) && near(x.hi, 8e-4) && near(y.lo, -1.6e-3) && near(y.hi, 0.0),
+            "{x:?} {y:?}"
+        );
+        assert_eq!((x.title.as_str(), y.title.as_str()), ("Real part (mm/N)", "Imaginary part (mm/N)"));
+        assert_eq!(x.power, y.power);
     }
 
     #[test]

@@ -65,6 +65,8 @@ pub struct Plot {
     /// Whether it repeats an earlier panel, for example on a logarithmic axis. A page whose axes can be
     /// changed leaves it out.
     pub again: bool,
+    /// Whether both axes, linear and of one unit, have the same length a unit: a circle is round.
+    pub square: bool,
 }
 
 /// A text with a line to the point that it labels.
@@ -161,6 +163,11 @@ impl Plot {
     /// Sets where the names of the series stand.
     pub fn legend(self, legend: Legend) -> Plot {
         Plot { legend, ..self }
+    }
+
+    /// Gives both axes the same length a unit.
+    pub fn square(self) -> Plot {
+        Plot { square: true, ..self }
     }
 
     /// Marks the plot as a repeat of an earlier panel.

@@ -128,6 +128,7 @@ impl Plot {
         Some(json!({
             "kind": "plot",
             "title": self.title,
+            "square": self.square,
             "x": x.data(),
             "y": y.data(),
             "series": series,

@@ -61,6 +61,7 @@ impl<'a> Sheet<'a> {
         let above = Room::Above(if plot.notes.is_empty() { 0.06 } else { 0.2 });
         let (x_room, y_room) = match (&plot.heatmap, needs_margin) {
             (Some(_), _) => (Room::Tight, Room::Tight),
+            (None, _) if plot.square => (Room::Margin, Room::Margin),
             (None, true) => (Room::Margin, above),
             (None, false) => (Room::Tight, above),
         };
@@ -68,6 +69,7 @@ impl<'a> Sheet<'a> {
         let axes = Axis::new(&plot.x, shared, x_room).zip(Axis::new(&plot.y, y, y_room));
         // Stated limits alone make no plot: without data there are no axes.
         let axes = axes.filter(|_| !x.is_empty() && !y.is_empty());
+        let axes = axes.map(|axes| if plot.square { Axis::alike(axes, (&plot.x, &plot.y)) } else { axes });
         let looks = style::looks(&plot.series);
         let keys = KeyList::new(&plot.series, &looks, plot.heatmap.as_ref());
         let legend = match plot.legend {
@@ -80,7 +82,9 @@ impl<'a> Sheet<'a> {
     }
 
     /// Space around a frame of about this size, in points.
-    pub fn insets(&self, size: (f64, f64)) -> Insets {
+    pub fn insets(&self, (w, h): (f64, f64)) -> Insets {
+        let Rect { w, h, .. } = self.within(Rect { x: 0.0, y: 0.0, w, h });
+        let size = (w, h);
         let without_axes = Insets { left: NAME_ROOM, bottom: NAME_ROOM, top: SMALL, right: GAP };
         let mut insets =
             self.axes.as_ref().map_or(without_axes, |(x, y)| frame::insets(x, y, size, self.named_x));
@@ -105,6 +109,7 @@ impl<'a> Sheet<'a> {
     /// If no free place for the legend exists inside the frame, puts it beside or above; returns whether it
     /// did.
     pub fn move_legend_out(&mut self, frame: Rect) -> bool {
+        let frame = self.within(frame);
         let Some(place) = self.place(frame).filter(|_| self.legend == Legend::Auto) else { return false };
         if self.free_place(&place, &Clutter::of(&self.forms(&place))).is_some() {
             return false;
@@ -116,6 +121,7 @@ impl<'a> Sheet<'a> {
 
     /// Draws the plot with this frame.
     pub fn draw(&self, canvas: &mut Canvas, frame: Rect) {
+        let frame = self.within(frame);
         self.draw_title(canvas, frame);
         let Some(place) = self.place(frame) else { return self.draw_nothing(canvas, frame) };
         if let Some(map) = &self.plot.heatmap {
@@ -149,6 +155,14 @@ impl<'a> Sheet<'a> {
         }
         notes::name_lines(canvas, &self.plot.series, &place, &mut clutter);
         notes::write_notes(canvas, &self.plot.notes, &place, &mut clutter);
+    }
+
+    /// The frame in this rectangle: a square in its middle where the plot asks for one.
+    fn within(&self, room: Rect) -> Rect {
+        let side = room.w.min(room.h);
+        let inset = |length: f64| (length - side) / 2.0;
+        let square = Rect { x: room.x + inset(room.w), y: room.y + inset(room.h), w: side, h: side };
+        if self.plot.square && self.axes.is_some() { square } else { room }
     }
 
     /// The axes in this frame; `None` without data.

@@ -9,8 +9,10 @@ use std::f64::consts::TAU;
 
 /// Most spectral lines that are drawn as dots; more are drawn as a curve.
 const DOTS: usize = 150;
-/// Fewest points of a smooth curve.
+/// Fewest points of a smooth curve over frequency.
 const SMOOTH: usize = 300;
+/// Fewest points of a smooth circle, which is passed within a few bandwidths.
+const SMOOTH_CIRCLE: usize = 3000;
 
 /// Magnitude (logarithmic) over phase in degrees, with the fitted response over the lines of each mode.
 pub fn frf(title: &str, meta: &Meta, measured: &Measured, modes: &[Mode]) -> Figure {
@@ -26,10 +28,8 @@ pub fn frf(title: &str, meta: &Meta, measured: &Measured, modes: &[Mode]) -> Fig
     // Modes that were fitted together have one curve.
     let (mut x, mut y, mut angle) = (Vec::new(), Vec::new(), Vec::new());
     for together in modes.chunk_by(|a, b| a.lines == b.lines) {
-        for (f, value) in curve(measured, together, meta.added_decay().is_some() || measured.window.is_some())
-            .into_iter()
-            .chain([(f64::NAN, Complex64::from(f64::NAN))])
-        {
+        let fitted = curve(measured, together, is_windowed(meta, measured), SMOOTH);
+        for (f, value) in fitted.into_iter().chain([(f64::NAN, Complex64::from(f64::NAN))]) {
             x.push(f);
             y.push(value.norm());
             angle.push(value.arg().to_degrees());
@@ -67,13 +67,97 @@ pub fn frf(title: &str, meta: &Meta, measured: &Measured, modes: &[Mode]) -> Fig
     })
 }
 
-/// The fitted response at its lines and, where these are few, between them. Between two lines it is the sum
-/// of the modes, with the other terms of the fit interpolated linearly. The effect of a window on the modes
-/// is known at the lines only.
-fn curve(measured: &Measured, modes: &[Mode], windowed: bool) -> Vec<(f64, Complex64)> {
+/// Most groups of modes whose circles are drawn, those with the largest response.
+const MOST_CIRCLES: usize = 6;
+
+/// Argand diagram: imaginary over real part of the lines of each mode, with the fitted response. Modes that
+/// were fitted together share a panel. `None` without modes or phases.
+pub fn argand(title: &str, meta: &Meta, measured: &Measured, modes: &[Mode]) -> Option<Figure> {
+    let groups: Vec<&[Mode]> = modes.chunk_by(|a, b| a.lines == b.lines).collect();
+    if groups.is_empty() || measured.magnitude_only {
+        return None;
+    }
+    let windowed = is_windowed(meta, measured);
+    let mut circles: Vec<_> =
+        groups.iter().map(|group| (*group, curve(measured, group, windowed, SMOOTH_CIRCLE))).collect();
+    let size = |curve: &[(f64, Complex64)]| curve.iter().map(|(_, value)| value.norm()).fold(0.0, f64::max);
+    circles.sort_by(|a, b| size(&b.1).total_cmp(&size(&a.1)));
+    circles.truncate(MOST_CIRCLES);
+    circles.sort_by(|a, b| a.0[0].lines.0.total_cmp(&b.0[0].lines.0));
+    let columns = circles.len().min(3);
+    let rows = circles.len().div_ceil(columns);
+    let figure = if columns == 1 { Figure::single("") } else { Figure::double("").columns(columns) };
+    let height = [92.0, 88.0, 8.0 + 64.0 * rows as f64][columns - 1];
+    let mut figure = Figure { title: format!("Argand diagram, {title}"), ..figure.height(height) };
+    for (number, (group, curve)) in circles.iter().enumerate() {
+        figure = figure.panel(circle(meta, measured, group, curve, number == 0));
+    }
+    let left_out = match groups.len() - circles.len() {
+        0 => String::new(),
+        n => format!(" Left out: {n} with a smaller response."),
+    };
+    let caption = "Imaginary over real part of the lines around each mode, with the modes fitted to them.";
+    Some(lettered(figure).caption(format!("{caption}{left_out}")))
+}
+
+/// The lines of modes that were fitted together in the complex plane; `named` gives them a legend.
+fn circle(meta: &Meta, measured: &Measured, modes: &[Mode], curve: &[(f64, Complex64)], named: bool) -> Plot {
+    let name = |name: &'static str| if named { name } else { "" };
+    let (from, to, _) = modes[0].lines;
+    let coherent = |k: &usize| measured.coherence.as_ref().is_none_or(|c| c[*k] >= 0.5);
+    let (re, im): (Vec<f64>, Vec<f64>) = (0..measured.frequency.len())
+        .filter(|k| (from..=to).contains(&measured.frequency[*k]) && coherent(k))
+        .map(|k| (measured.values[k].re, measured.values[k].im))
+        .unzip();
+    let lines = locus(name("measured"), re, im).ink(Ink::Grey);
+    let (re, im): (Vec<f64>, Vec<f64>) = curve.iter().map(|(_, value)| (value.re, value.im)).unzip();
+    let fitted = Series::line(name("fitted modes"), re, im).ink(Ink::Nth(0)).stroke(Stroke::Dashed);
+    let mut plot = complex_plane(meta).with(lines).with(fitted);
+    let own: Vec<(f64, Complex64)> =
+        modes.iter().filter_map(|mode| at(curve, mode.frequency.value)).collect();
+    for (f, value) in &own {
+        plot = plot.note(format!("{f:.2} Hz"), value.re, value.im);
+    }
+    let (re, im): (Vec<f64>, Vec<f64>) = own.iter().map(|(_, value)| (value.re, value.im)).unzip();
+    plot.with(Series::points(name("natural frequency"), re, im).marker(Marker::OpenCircle).ink(Ink::Nth(1)))
+}
+
+/// A point of a curve at a frequency, between two of its points.
+fn at(curve: &[(f64, Complex64)], f: f64) -> Option<(f64, Complex64)> {
+    let pair = curve.windows(2).find(|pair| (pair[0].0..=pair[1].0).contains(&f))?;
+    let part = (f - pair[0].0) / (pair[1].0 - pair[0].0);
+    Some((f, pair[0].1 + (pair[1].1 - pair[0].1) * part))
+}
+
+/// Values in the complex plane: dots, or a curve where they are many.
+pub(crate) fn locus(name: &str, re: Vec<f64>, im: Vec<f64>) -> Series {
+    if re.len() <= DOTS {
+        return Series::points(name, re, im).marker(Marker::Circle);
+    }
+    Series::line(name, re, im).stroke(Stroke::Solid)
+}
+
+/// Axes of the complex plane of a function, with lines through its origin.
+pub(crate) fn complex_plane(meta: &Meta) -> Plot {
+    let axis = |label: &str| AxisSpec::new(label, meta.unit.symbol());
+    Plot::new(axis("Real part"), axis("Imaginary part"))
+        .square()
+        .with(Series::vertical("", 0.0))
+        .with(Series::horizontal("", 0.0))
+}
+
+/// Whether a window of the segments or of the response shapes the lines.
+fn is_windowed(meta: &Meta, measured: &Measured) -> bool {
+    meta.added_decay().is_some() || measured.window.is_some()
+}
+
+/// The fitted response at its lines and, where these are fewer than `smooth`, between them. Between two lines
+/// it is the sum of the modes, with the other terms of the fit interpolated linearly. The effect of a window
+/// on the modes is known at the lines only.
+fn curve(measured: &Measured, modes: &[Mode], windowed: bool, smooth: usize) -> Vec<(f64, Complex64)> {
     let fitted = modes.first().map(|mode| mode.fitted.as_slice()).unwrap_or_default();
     let at_lines = fitted.iter().map(|(f, re, im)| (*f, Complex64::new(*re, *im)));
-    if windowed || measured.magnitude_only || fitted.len() >= SMOOTH {
+    if windowed || measured.magnitude_only || fitted.len() >= smooth {
         return at_lines.collect();
     }
     let modal = |f: f64| {
@@ -85,7 +169,7 @@ fn curve(measured: &Measured, modes: &[Mode], windowed: bool) -> Vec<(f64, Compl
         };
         Complex64::new(0.0, omega).powi(measured.power()) * modes.iter().map(of).sum::<Complex64>()
     };
-    let between = SMOOTH.div_ceil(fitted.len().saturating_sub(1).max(1));
+    let between = smooth.div_ceil(fitted.len().saturating_sub(1).max(1));
     let rest: Vec<(f64, Complex64)> = at_lines.map(|(f, value)| (f, value - modal(f))).collect();
     let piece = |pair: &[(f64, Complex64)]| {
         let ((a, from), (b, to)) = (pair[0], pair[1]);
@@ -129,6 +213,7 @@ pub(crate) fn phase_plot(
 mod tests {
     use super::*;
     use crate::measure::modal::{ModalOptions, modal};
+    use crate::report::Panel;
     use crate::units::Quantity;
 
     /// Two modes at twelve lines: the curve goes through them, and between them as the modes do.
@@ -146,12 +231,51 @@ mod tests {
         let options = ModalOptions { band: Some((9.0, 30.0)), ..ModalOptions::default() };
         let found = modal(&measured, &options).unwrap();
         assert_eq!(found.modes.len(), 2);
-        let curve = curve(&measured, &found.modes, false);
+        let curve = curve(&measured, &found.modes, false, SMOOTH);
         assert!(curve.len() > SMOOTH && curve.windows(2).all(|w| w[0].0 < w[1].0));
         for (f, value) in curve {
             // A fit ends once a step reduces the residual by less than 1e-8 of itself; the residual of exact
             // lines is rounding.
             assert!((value - truth(f)).norm() < 1e-5 * truth(f).norm(), "{f}: {value} {}", truth(f));
         }
+    }
+
+    /// The mobility of a viscous mode is a circle through the origin with its diameter A/(2ζω₀) on the real
+    /// axis: (H − r)² = r² for every line, with the natural frequency opposite the origin (Ewins 1984).
+    #[test]
+    fn a_mode_is_a_circle_in_the_complex_plane() {
+        let (own, zeta, constant) = (TAU * 5.23, 0.02, 8.0);
+        let mobility = |f: f64| {
+            let omega = TAU * f;
+            Complex64::new(0.0, omega * constant)
+                / Complex64::new(own * own - omega * omega, 2.0 * zeta * own * omega)
+        };
+        let f: Vec<f64> = (0..40).map(|k| 4.25 + 0.05 * f64::from(k)).collect();
+        let measured = Measured::new(f.clone(), f.iter().map(|f| mobility(*f)).collect(), Quantity::Mobility);
+        let found = modal(&measured, &ModalOptions::default()).unwrap();
+        let meta = Meta::new("v", crate::units::Unit::parse_or_opaque("(m/s)/N"));
+        let figure = argand("one", &meta, &measured, &found.modes).unwrap();
+        let [Panel::Plot(plot)] = figure.panels.as_slice() else { panic!("{} panels", figure.panels.len()) };
+        let radius = constant / (2.0 * zeta * own) / 2.0;
+        // The other series are the lines through the origin and the mark of the natural frequency.
+        for name in ["measured", "fitted modes"] {
+            let series = plot.series.iter().find(|series| series.name == name).unwrap();
+            assert!(series.x.len() > 4);
+            for (re, im) in series.x.iter().zip(&series.y) {
+                // As far as the curve of the fit, see above, and between two of its points.
+                assert!(
+                    ((re - radius).hypot(*im) - radius).abs() < 1e-4 * radius,
+                    "{}: {re} {im}",
+                    series.name
+                );
+            }
+        }
+        let [note] = plot.notes.as_slice() else { panic!("{:?}", plot.notes) };
+        assert_eq!(note.text, "5.23 Hz");
+        assert!((note.x - 2.0 * radius).abs() < 1e-4 * radius && note.y.abs() < 1e-4 * radius, "{note:?}");
+        assert!(plot.square);
+        let magnitudes = Measured { magnitude_only: true, ..measured };
+        assert!(argand("one", &meta, &magnitudes, &found.modes).is_none());
+        assert!(argand("one", &meta, &magnitudes, &[]).is_none());
     }
 }

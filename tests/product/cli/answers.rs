@@ -126,6 +126,7 @@ fn pictures_and_tables_are_written_where_asked() {
     for file in value["files"].as_array().unwrap() {
         assert!(out.join(file.as_str().unwrap()).is_file(), "{file}");
     }
+    assert!(out.join("force.svg").is_file());
     json(&["waterfall", text(&list), "--unit", "m/s", "--out", text(&out)]);
     for name in ["response.svg", "response.png", "response.csv", "waterfall.svg", "map.png", "waterfall.csv"]
     {

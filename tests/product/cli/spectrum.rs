@@ -82,7 +82,7 @@ fn response_to_a_reference_with_files_that_are_read_again() {
             phase[k]
         );
     }
-    for name in ["frf.svg", "frf.png", "frf.csv", "frf.uff"] {
+    for name in ["frf.svg", "frf.png", "frf_argand.svg", "frf.csv", "frf.uff"] {
         assert!(out.join(name).is_file(), "{name}");
     }
     for name in ["frf.csv", "frf.uff"] {
@@ -412,4 +412,61 @@ fn peaks_of_a_spectrum_that_a_file_holds() {
     // Without its reference a level is no amplitude.
     let said = complaint(&["spectrum", text(&path), "--base-band", "200"], 2);
     assert!(said.contains("dB"), "{said}");
+}
+
+/// Two records of sines on lines of the transform, 16 periods and more of each in a segment: the peaks that
+/// both have stand in one row, the third of the second record alone.
+#[test]
+fn spectra_of_several_files_stand_beside_each_other() {
+    let folder = tempfile::tempdir().unwrap();
+    let write = |name: &str, sines: &[(f64, f64)]| {
+        let mut noise = Noise::new(7);
+        let mut rows = String::from("time [s],handle [m/s^2],body [m/s^2]\n");
+        for k in 0..8192 {
+            let t = f64::from(k) / 1024.0;
+            let sum: f64 = sines.iter().map(|(f, a)| a * (TAU * f * t).sin()).sum();
+            let [one, other] = [sum, 2.0 * sum].map(|value| value + noise.between(-0.05, 0.05));
+            let _ = writeln!(rows, "{t},{one:.6},{other:.6}");
+        }
+        let path = folder.path().join(name);
+        fs::write(&path, rows).unwrap();
+        path
+    };
+    let drill = write("drill.csv", &[(32.0, 3.0), (96.0, 1.0)]);
+    let rig = write("rig.csv", &[(32.0, 2.0), (96.0, 0.5), (160.0, 0.4)]);
+    let out = folder.path().join("out");
+    let both = ["spectrum", text(&drill), text(&rig), "--channel", "handle", "--segment", "1024"];
+    let found = json(&[&both[..], &["--out", text(&out)]].concat());
+    let spectra = found["spectra"].as_array().unwrap();
+    assert_eq!((spectra.len(), spectra[1]["name"].as_str()), (2, Some("rig")));
+    // One file gives the same lines as beside another.
+    let alone = json(&["spectrum", text(&rig), "--channel", "handle", "--segment", "1024"]);
+    assert_eq!(alone["value"], spectra[1]["value"]);
+    let peaks = fs::read_to_string(out.join("spectrum_peaks.csv")).unwrap();
+    let rows: Vec<Vec<Option<f64>>> =
+        peaks.lines().skip(1).map(|row| row.split(',').map(|cell| cell.parse().ok()).collect()).collect();
+    let expected = [
+        [Some(32.0), Some(3.0), Some(32.0), Some(2.0)],
+        [Some(96.0), Some(1.0), Some(96.0), Some(0.5)],
+        [None, None, Some(160.0), Some(0.4)],
+    ];
+    assert_eq!(rows.len(), 3, "{peaks}");
+    for (row, expected) in rows.iter().zip(expected) {
+        for (cell, expected) in row.iter().zip(expected) {
+            // Noise of 0.03 RMS over 512 lines and 15 averages is 0.002 at a line: five times that.
+            let near = cell.zip(expected).is_none_or(|(cell, expected)| (cell - expected).abs() < 0.01);
+            assert!(near && cell.is_some() == expected.is_some(), "{peaks}");
+        }
+    }
+    for name in ["spectrum.svg", "spectrum.png", "spectrum_drill.csv", "spectrum_rig.uff"] {
+        assert!(out.join(name).is_file(), "{name}");
+    }
+    let channels = [format!("{}#handle", text(&rig)), format!("{}#body", text(&rig))];
+    let of_one = json(&["spectrum", &channels[0], &channels[1], "--segment", "1024"]);
+    let names: Vec<_> = (0..2).map(|k| of_one["spectra"][k]["channel"].as_str().unwrap()).collect();
+    assert_eq!(names, ["handle", "body"]);
+    let lower = folder.path().join("lower.csv");
+    fs::write(&lower, fs::read_to_string(&rig).unwrap().replace("m/s^2", "m/s")).unwrap();
+    let other = complaint(&["spectrum", text(&drill), text(&lower), "--channel", "handle"], 2);
+    assert!(other.contains("m/s²") && other.contains("lower"), "{other}");
 }

@@ -277,7 +277,16 @@ class Plot {
         setCursor: [() => this.point()],
       },
     }, [[x.low, x.high], ends], this.frame);
+    if (this.panel.square) this.square(x, y);
     this.plot.over.addEventListener("click", () => this.spectrum());
+  }
+
+  /** Widens the axis with room to spare, so that both have the same length a unit. */
+  square(x, y) {
+    const { width, height } = this.plot.bbox, unit = Math.max((x.high - x.low) / width, (y.high - y.low) / height);
+    const about = ({ low, high }, length) => ({ min: (low + high - unit * length) / 2, max: (low + high + unit * length) / 2 });
+    this.plot.setScale("x", about(x, width));
+    this.plot.setScale("y", about(y, height));
   }
 
   inFrame(drawing) {
