@@ -152,9 +152,9 @@ impl Keys {
         answer.add("", still(&swept, &scene.rig));
         answer.tables.push(resonances_and_jumps(&resonances, &jumps));
         if !(irregular.is_empty() && by_chance.is_empty()) {
-            answer.tables.push(ranges(&irregular, &by_chance, over_force));
+            answer.tables.push(ranges(&irregular, &by_chance, over_force, swept.floor()));
         }
-        answer.tables.push(final_states(&ends));
+        answer.tables.push(final_states(&ends, swept.floor()));
         answer.figure("sweep", figures::sweep(&swept, &resonances, &jumps, plan.observable, over_force));
         answer.figure("reaction", figures::forces(&swept, over_force));
         for Leg { direction, portrait, end, .. } in runs.legs() {
@@ -202,7 +202,7 @@ fn still(swept: &Swept, rig: &Rig) -> Option<Finding> {
 }
 
 /// Ranges of frequency or force without one periodic motion.
-fn ranges(irregular: &[Range], by_chance: &[Range], over_force: bool) -> Table {
+fn ranges(irregular: &[Range], by_chance: &[Range], over_force: bool, floor: f64) -> Table {
     let unit = if over_force { "N" } else { "Hz" };
     let named = |what, ranges: &[Range]| ranges.iter().map(|r| (what, r.clone())).collect::<Vec<_>>();
     let all = [named("irregular or not settled", irregular), named("by chance of the start", by_chance)];
@@ -214,14 +214,19 @@ fn ranges(irregular: &[Range], by_chance: &[Range], over_force: bool) -> Table {
             ("motion", "", &|(what, _)| (*what).into()),
             ("from", unit, &|(_, r)| r.from.into()),
             ("to", unit, &|(_, r)| r.to.into()),
-            ("largest x1", "m", &|(_, r)| r.x1.into()),
-            ("largest x2", "m", &|(_, r)| r.x2.into()),
+            ("largest x1", "m", &|(_, r)| moving(r.x1, floor)),
+            ("largest x2", "m", &|(_, r)| moving(r.x2, floor)),
         ],
     )
 }
 
+/// A displacement or velocity, 0 below the floor (m or m/s).
+fn moving(value: f64, floor: f64) -> Cell {
+    Cell::from(if value.abs() < floor { 0.0 } else { value })
+}
+
 /// State at the end of each direction, from which another sweep starts.
-fn final_states(ends: &[&End]) -> Table {
+fn final_states(ends: &[&End], floor: f64) -> Table {
     table(
         "End",
         ends,
@@ -230,10 +235,10 @@ fn final_states(ends: &[&End]) -> Table {
             ("frequency", "Hz", &|end| end.frequency.into()),
             ("impacts", "", &|end| end.regime.to_string().into()),
             ("masses", "", &|end| end.masses().into()),
-            ("x1", "m", &|end| end.state.x1.into()),
-            ("v1", "m/s", &|end| end.state.v1.into()),
-            ("x2", "m", &|end| end.state.x2.into()),
-            ("v2", "m/s", &|end| end.state.v2.into()),
+            ("x1", "m", &|end| moving(end.state.x1, floor)),
+            ("v1", "m/s", &|end| moving(end.state.v1, floor)),
+            ("x2", "m", &|end| moving(end.state.x2, floor)),
+            ("v2", "m/s", &|end| moving(end.state.v2, floor)),
             ("phase", "rad", &|end| end.phase.into()),
         ],
     )

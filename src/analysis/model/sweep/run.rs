@@ -133,14 +133,16 @@ impl Runs {
     /// Ranges in which a start at another phase leads to another regular motion.
     pub fn by_chance(&self) -> Vec<Range> {
         let floor = self.swept().floor();
-        self.ranges(|leg, points, i| {
+        let mut found = self.ranges(|leg, points, i| {
             let same = |other: &Point| {
                 let pairs = points[i].amplitudes().into_iter().zip(other.amplitudes());
                 pairs.into_iter().all(|(a, b)| (a - b).abs() <= (ALIKE * a.max(b)).max(floor))
             };
             let others = || self.others.iter().filter_map(|legs| legs[leg].points.get(i));
             points[i].is_regular(floor) && others().any(|p| p.is_regular(floor) && !same(p))
-        })
+        });
+        found.retain(|range| range.points >= FEWEST);
+        found
     }
 
     /// Ranges of points for which `is` holds, given the leg, its points and the index.
@@ -175,6 +177,8 @@ impl Runs {
 
 /// Amplitudes that differ by less, over the larger, belong to one motion.
 const ALIKE: f64 = 0.05;
+/// Fewest points of a range in which motions coexist: at the edge of irregular motion single points differ.
+const FEWEST: usize = 3;
 /// Ranges that are fewer points apart are one.
 const NEAR: usize = 4;
 
