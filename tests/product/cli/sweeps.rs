@@ -43,8 +43,8 @@ fn a_sweep_of_the_force_keeps_its_frequency() {
     assert!(answer["down"].as_array().unwrap().is_empty());
 }
 
-/// At 8 Hz all times of a step are multiples of 1/8 s, which have no rounding: a sweep that starts from the
-/// end of another continues it exactly.
+/// A sweep that starts from the end of another continues it. Only the clock differs: instants round to 1e-16 of
+/// 20 s, in which the masses move 1e-13 of their amplitude; impacts multiply that by less than 100 in a step.
 #[test]
 fn a_sweep_from_the_end_of_another_continues_it() {
     let swept = |range: &str, start: &str| {
@@ -59,7 +59,8 @@ fn a_sweep_from_the_end_of_another_continues_it() {
     let second = swept("--from 0.75 --to 1.25 --steps 3", &format!(" --start={}", numbers.join(",")));
     for (i, point) in second["up"].as_array().unwrap().iter().enumerate() {
         for key in ["force", "x1", "x2"] {
-            assert_eq!(point[key], whole["up"][i + 2][key], "{key} of point {i}");
+            let [found, expected] = [point, &whole["up"][i + 2]].map(|p| p[key].as_f64().unwrap());
+            assert!((found / expected - 1.0).abs() < 1e-11, "{key} of point {i}: {found} {expected}");
         }
     }
 }
