@@ -69,8 +69,8 @@ const DECAYS: f64 = 3.0;
 /// Largest part of a sweep's time that a transient of the start is given: without damping none decays.
 const LONGEST_START: f64 = 0.05;
 
-/// Whether the motion at a frequency (Hz) is periodic, and no transient of the start. Points behind a jump may
-/// be unsettled; so the point itself must be regular, and most of the five around it.
+/// Whether the motion at a frequency (Hz) is periodic, and no transient of the start. Points behind a jump
+/// may be unsettled; so the point itself must be regular, and most of the five around it.
 fn is_settled(points: &[Point], frequency: f64, floor: f64, rig: &Rig) -> bool {
     let at = nearest(points, frequency);
     let around = &points[at.saturating_sub(2)..(at + 3).min(points.len())];
