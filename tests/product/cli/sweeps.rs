@@ -44,7 +44,8 @@ fn a_sweep_of_the_force_keeps_its_frequency() {
 }
 
 /// A sweep that starts from the end of another continues it. Only the clock differs: instants round to 1e-16
-/// of 20 s, in which the masses move 1e-13 of their amplitude; impacts multiply that by less than 100 in a step.
+/// of 20 s, in which the masses move 1e-13 of their amplitude; impacts multiply that by less than
+/// 100 in a step.
 #[test]
 fn a_sweep_from_the_end_of_another_continues_it() {
     let swept = |range: &str, start: &str| {
