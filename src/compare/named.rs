@@ -1,9 +1,11 @@
-//! Resonances and jumps of a simulated sweep, named by the rules for a measured one.
+//! Resonances and jumps of a simulated sweep, named by the phase between the masses.
 
+use crate::model::Rig;
 use crate::model::sweep::{Point, Swept};
 use serde::Serialize;
+use std::f64::consts::FRAC_PI_2;
 use vibro_measure::jump::Jump;
-use vibro_measure::resonance::{NamedCurve, Resonance, ResonanceKind, name_modes};
+use vibro_measure::resonance::{NamedCurve, Resonance, ResonanceKind, name_modes_by_phase, share_jumps};
 use vibro_record::Direction;
 
 /// A resonance or jump on the curve of one mass.
@@ -21,15 +23,31 @@ pub struct Named<T> {
 /// Resonances and jumps of a simulated frequency sweep, of both masses and directions.
 ///
 /// The scatter from cycle to cycle counts as the uncertainty of a point: otherwise irregular ranges would
-/// be full of peaks.
-pub fn named(swept: &Swept) -> (Vec<Named<Resonance>>, Vec<Named<Jump>>) {
+/// be full of peaks. Irregular motion, a transient of the start and a mass at rest have no resonance.
+pub fn named(swept: &Swept, rig: &Rig) -> (Vec<Named<Resonance>>, Vec<Named<Jump>>) {
     let sides = [(&swept.up, Direction::Up), (&swept.down, Direction::Down)];
     let mut curves: Vec<NamedCurve> = sides
         .into_iter()
         .filter(|(points, _)| points.len() > 2)
         .flat_map(|(points, direction)| [1, 2].map(|mass| curve(points, mass, direction)))
         .collect();
-    name_modes(&mut curves);
+    share_jumps(&mut curves);
+    let side = |direction| if direction == Direction::Up { &swept.up } else { &swept.down };
+    let floor = swept.floor();
+    for NamedCurve { direction, resonances, jumps, .. } in &mut curves {
+        let points = side(*direction);
+        resonances.retain(|r| r.amplitude > floor && is_settled(points, r.frequency, floor, rig));
+        jumps.retain(|j| j.amplitude_before.max(j.amplitude_after) > floor);
+        for jump in jumps {
+            for x in [&mut jump.amplitude_before, &mut jump.amplitude_after] {
+                *x = if *x < floor { 0.0 } else { *x };
+            }
+        }
+    }
+    name_modes_by_phase(&mut curves, |direction, frequency| {
+        let points = side(direction);
+        Some(points[nearest(points, frequency)].relative_phase?.abs() < FRAC_PI_2)
+    });
     let mut all = (Vec::new(), Vec::new());
     for NamedCurve { mass, direction, resonances, jumps, .. } in curves {
         let mass = mass.unwrap_or_default();
@@ -38,6 +56,29 @@ pub fn named(swept: &Swept) -> (Vec<Named<Resonance>>, Vec<Named<Jump>>) {
         all.1.extend(jumps.into_iter().map(|found| Named { mass, direction, found }));
     }
     all
+}
+
+/// Index of the point nearest to a frequency in Hz.
+fn nearest(points: &[Point], frequency: f64) -> usize {
+    let off = |i: &usize| (points[*i].frequency - frequency).abs();
+    (0..points.len()).min_by(|a, b| off(a).total_cmp(&off(b))).unwrap_or(0)
+}
+
+/// A transient of the start has decayed to 1/e³, 5 %.
+const DECAYS: f64 = 3.0;
+/// Largest part of a sweep's time that a transient of the start is given: without damping none decays.
+const LONGEST_START: f64 = 0.05;
+
+/// Whether the motion at a frequency (Hz) is periodic, and no transient of the start. Points behind a jump
+/// may be unsettled; so the point itself must be regular, and most of the five around it.
+fn is_settled(points: &[Point], frequency: f64, floor: f64, rig: &Rig) -> bool {
+    let at = nearest(points, frequency);
+    let around = &points[at.saturating_sub(2)..(at + 3).min(points.len())];
+    let regular = around.iter().filter(|p| p.is_regular(floor)).count();
+    let decay = (rig.c1 / rig.m1).min(rig.c2 / rig.m2) / 2.0;
+    let all = points.last().map_or(0.0, |p| p.time);
+    let start = (DECAYS / decay).min(LONGEST_START * all);
+    points[at].is_regular(floor) && 2 * regular > around.len() && points[at].time > start
 }
 
 /// The curve of one mass in one direction.
@@ -63,7 +104,7 @@ mod tests {
         let plan = Plan { from: 3.0, to: 14.0, pace, observable: Observable::Rms };
         let motion = Simulation::new(&Rig::thesis(), &Sine { force: 0.1, frequency: 3.0 }).unwrap();
         let swept = apart(&[Direction::Up], |up| plan.frequency(&mut motion.clone(), 0.1, up)).unwrap();
-        let (resonances, _) = named(&swept);
+        let (resonances, _) = named(&swept, &Rig::thesis());
         let named = |kind, range: std::ops::Range<f64>| {
             resonances
                 .iter()

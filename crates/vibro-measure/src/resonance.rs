@@ -286,17 +286,30 @@ const TOGETHER: f64 = 0.1;
 /// Names the resonances in which both masses move: the largest maximum below the antiresonance of mass 1 is
 /// the grazing resonance (in phase), the largest above it the clapping one (out of phase).
 ///
-/// A jump of one mass changes the motion of both. A step of the other mass there that its slopes do not
-/// predict is added to its jumps, and resonances are searched again with the jumps of both. A maximum at
-/// which the other mass of the same sweep rests keeps its kind, as do all where the other mass was not
-/// measured. A sweep without an antiresonance of mass 1 uses that of the other direction.
+/// A sweep without an antiresonance of mass 1 uses that of the other direction. Where the phase between the
+/// masses is known, [`name_modes_by_phase`] is better.
 pub fn name_modes(curves: &mut [NamedCurve]) {
-    let partner = |curves: &[NamedCurve], i: usize| {
-        let own = &curves[i];
-        curves.iter().position(|c| c.mass != own.mass && c.direction == own.direction)
-    };
+    share_jumps(curves);
+    let excited = |c: &&NamedCurve, direction| c.mass == Some(1) && c.direction == direction;
+    let between = |direction| deepest(&curves.iter().find(|c| excited(c, direction))?.resonances);
+    let (up, down) = (between(Direction::Up), between(Direction::Down));
+    name_modes_by_phase(curves, |direction, frequency| {
+        let between = if direction == Direction::Up { up.or(down) } else { down.or(up) };
+        Some(frequency < between?)
+    });
+}
+
+/// The curve of the other mass in the same direction.
+fn partner(curves: &[NamedCurve], i: usize) -> Option<&NamedCurve> {
+    curves.iter().find(|c| c.mass != curves[i].mass && c.direction == curves[i].direction)
+}
+
+/// Gives each curve the jumps of the other mass, since a jump of one changes the motion of both: a step there
+/// that the curve's slopes do not predict is added to its jumps, and resonances are searched again with the
+/// jumps of both.
+pub fn share_jumps(curves: &mut [NamedCurve]) {
     for i in 0..curves.len() {
-        let foreign = partner(curves, i).map_or_else(Vec::new, |other| curves[other].jumps.clone());
+        let foreign = partner(curves, i).map_or_else(Vec::new, |other| other.jumps.clone());
         if foreign.is_empty() {
             continue;
         }
@@ -308,18 +321,26 @@ pub fn name_modes(curves: &mut [NamedCurve]) {
         let all = [own.jumps.as_slice(), &foreign].concat();
         own.resonances = resonances(&own.curve, &all, own.mass);
     }
-    let excited = |c: &&NamedCurve, direction| c.mass == Some(1) && c.direction == direction;
-    let between = |direction| deepest(&curves.iter().find(|c| excited(c, direction))?.resonances);
-    let (up, down) = (between(Direction::Up), between(Direction::Down));
+}
+
+/// Names the largest maximum in phase the grazing resonance, the largest out of phase the clapping one.
+/// `in_phase` tells whether the masses move in phase at a frequency (Hz) of a direction, where it is known.
+///
+/// A maximum at which the other mass of the same sweep rests keeps its kind, as do all where the other mass
+/// was not measured.
+pub fn name_modes_by_phase(curves: &mut [NamedCurve], in_phase: impl Fn(Direction, f64) -> Option<bool>) {
     for i in 0..curves.len() {
-        let between = if curves[i].direction == Direction::Up { up.or(down) } else { down.or(up) };
-        let (Some(between), Some(partner)) = (between, partner(curves, i)) else { continue };
-        let partner = curves[partner].curve.clone();
-        for (kind, below) in [(ResonanceKind::Grazing, true), (ResonanceKind::Clapping, false)] {
-            let largest = curves[i]
-                .resonances
+        let direction = curves[i].direction;
+        let Some(partner) = partner(curves, i).map(|other| other.curve.clone()) else { continue };
+        let own = &mut curves[i].resonances;
+        if own.iter().all(|r| in_phase(direction, r.frequency).is_none()) {
+            continue;
+        }
+        for (kind, phase) in [(ResonanceKind::Grazing, true), (ResonanceKind::Clapping, false)] {
+            let largest = own
                 .iter_mut()
-                .filter(|r| r.kind == ResonanceKind::Resonance && (r.frequency < between) == below)
+                .filter(|r| r.kind == ResonanceKind::Resonance)
+                .filter(|r| in_phase(direction, r.frequency) == Some(phase))
                 .filter(|r| at(&partner, r.frequency).is_some_and(|other| other >= TOGETHER * r.amplitude))
                 .max_by(|a, b| a.amplitude.total_cmp(&b.amplitude));
             if let Some(largest) = largest {
@@ -327,7 +348,7 @@ pub fn name_modes(curves: &mut [NamedCurve]) {
             }
         }
         // A maximum at a jump that did not get the name of a mode is only the edge of the jump.
-        curves[i].resonances.retain(|r| !(r.at_jump && r.kind == ResonanceKind::Resonance));
+        own.retain(|r| !(r.at_jump && r.kind == ResonanceKind::Resonance));
     }
 }
 

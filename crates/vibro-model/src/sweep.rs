@@ -6,7 +6,7 @@ mod gauge;
 pub use gauge::Gauge;
 #[cfg(test)]
 use gauge::LOW_PASS;
-pub use gauge::Observable;
+pub use gauge::{Observable, STILL};
 
 use super::motion::Motion;
 use super::reaction::{Reaction, Tally};
@@ -69,6 +69,15 @@ pub struct Point {
     pub x1_scatter: f64,
     /// The same of x₂.
     pub x2_scatter: f64,
+    /// Phase in rad of x₂ against x₁ at the excitation frequency: 0 in phase, ±π in antiphase; `None` where a
+    /// mass stands still.
+    pub relative_phase: Option<f64>,
+    /// [`Gauge::unrest`] of x₁ and x₂ in m.
+    #[serde(skip)]
+    pub unrest: [f64; 2],
+    /// Time in s from the start of the motion to the end of this point.
+    #[serde(skip)]
+    pub time: f64,
     /// The force between the masses over the cycles read.
     pub reaction: Reaction,
 }
@@ -154,7 +163,7 @@ impl Plan {
             }
             let (first, last) = (at(cycle as f64), at(until as f64));
             let reaction = tally.read((until - cycle) as u32);
-            found.push(point(&gauge, f64::midpoint(first, last), force, reaction));
+            found.push(point(&gauge, f64::midpoint(first, last), force, motion.time(), reaction));
             cycle = until;
         }
         Ok(found)
@@ -190,13 +199,13 @@ impl Plan {
                 } else if settle > 0 {
                     motion.advance(motion.time() + f64::from(settle) / frequency, &mut |_| {})?;
                 }
-                gauge.clear();
+                gauge.restart();
                 let mut tally = Tally::new(motion, f64::INFINITY);
                 for _ in 0..measure {
                     pass(motion, 1.0, &mut gauge, Some(&mut tally))?;
                     gauge.close_cycle();
                 }
-                Ok(point(&gauge, frequency, force, tally.read(measure)))
+                Ok(point(&gauge, frequency, force, motion.time(), tally.read(measure)))
             })
             .collect()
     }
@@ -219,9 +228,25 @@ fn pass(
     })
 }
 
-fn point(gauge: &Gauge, frequency: f64, force: f64, reaction: Reaction) -> Point {
+fn point(gauge: &Gauge, frequency: f64, force: f64, time: f64, reaction: Reaction) -> Point {
     let [(x1, x1_scatter), (x2, x2_scatter)] = gauge.read();
-    Point { frequency, force, x1, x2, x1_scatter, x2_scatter, reaction }
+    let (relative_phase, unrest) = (gauge.relative_phase(), gauge.unrest());
+    Point { frequency, force, x1, x2, x1_scatter, x2_scatter, relative_phase, unrest, time, reaction }
+}
+
+/// Largest change from cycle to cycle, over the amplitude, of a motion that counts as periodic.
+const REGULAR: f64 = 0.05;
+
+impl Point {
+    /// Amplitudes of both masses in m.
+    pub fn amplitudes(&self) -> [f64; 2] {
+        [self.x1, self.x2]
+    }
+
+    /// Whether both masses, where they move by more than `floor` (m), repeat within four cycles.
+    pub fn is_regular(&self, floor: f64) -> bool {
+        self.amplitudes().into_iter().zip(self.unrest).all(|(x, unrest)| x <= floor || unrest <= REGULAR * x)
+    }
 }
 
 /// A sweep up and one down.
@@ -231,6 +256,27 @@ pub struct Swept {
     pub up: Vec<Point>,
     /// Points of the sweep down, in the order of time; empty without one.
     pub down: Vec<Point>,
+}
+
+impl Swept {
+    /// Amplitude in m below which a mass stands still.
+    pub fn floor(&self) -> f64 {
+        let all = self.up.iter().chain(&self.down).flat_map(Point::amplitudes);
+        STILL * all.fold(0.0, f64::max)
+    }
+
+    /// Sets amplitudes below [`Swept::floor`] to 0: they are rounding, or the rest of an old motion.
+    pub fn without_dust(mut self) -> Swept {
+        let floor = self.floor();
+        for p in self.up.iter_mut().chain(&mut self.down) {
+            for (x, scatter) in [(&mut p.x1, &mut p.x1_scatter), (&mut p.x2, &mut p.x2_scatter)] {
+                if *x < floor {
+                    (*x, *scatter) = (0.0, 0.0);
+                }
+            }
+        }
+        self
+    }
 }
 
 /// Runs `one` for each of the directions, in parallel.

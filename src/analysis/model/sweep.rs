@@ -1,19 +1,22 @@
 //! Sweeps of frequency or force, the motion carried on from step to step: `vibro model sweep`.
 
+mod run;
+
 use super::contact::{self, Contact, Moving};
 use super::{Driven, SceneKeys, figures};
 use crate::analysis::answer::Answer;
 use crate::compare::{Named, named};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::measure::jump::Jump;
 use crate::measure::resonance::Resonance;
 use crate::model::simulate::GRAZING_SPEED;
-use crate::model::sweep::{Observable, Pace, Plan, Point, Swept, apart};
-use crate::model::{Excitation, Rig, Simulation, State};
+use crate::model::sweep::{Observable, Pace, Plan, Swept};
+use crate::model::{Rig, Simulation, State};
 use crate::record::{Direction, Finding};
-use crate::report::Table;
 use crate::report::files::Names;
 use crate::report::layout::{headed, pair, table};
+use crate::report::{Cell, Table};
+use run::{End, Leg, Range, Runs};
 use serde::Deserialize;
 use serde_json::json;
 
@@ -36,9 +39,16 @@ pub struct Keys {
     /// The contact law.
     #[cfg_attr(feature = "cli", arg(help = contact::HELP, value_name = "LAW", value_parser = crate::campaign::word::<Contact>, default_value = "restitution"))]
     pub model: Contact,
-    /// Direction: up, down, both
+    /// Direction: up, down, both (each from the start), up-down (down from where up ends)
     #[cfg_attr(feature = "cli", arg(value_name = "WAY", value_parser = crate::campaign::word::<Directions>, default_value = "both"))]
     pub direction: Directions,
+    /// Start: displacements in m, velocities in m/s, phase of the excitation in rad; 0 is the crest of a sine
+    /// and the beginning of a pulse [default: at rest, phase 0]
+    #[cfg_attr(
+        feature = "cli",
+        arg(long, value_name = "X1,V1,X2,V2,PHASE", value_delimiter = ',', allow_hyphen_values = true)
+    )]
+    pub start: Vec<f64>,
     /// Change the frequency continuously by this many Hz/s, instead of in steps
     #[cfg_attr(feature = "cli", arg(conflicts_with_all = ["settle", "measure"]))]
     pub sweep_rate: Option<f64>,
@@ -69,19 +79,34 @@ pub enum SweptParameter {
 
 /// The ways in which it is swept.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "lowercase")]
+#[serde(rename_all = "kebab-case")]
 pub enum Directions {
     /// Values rise.
     Up,
     /// Values fall.
     Down,
-    /// One after the other.
+    /// Both, each from the start.
     Both,
+    /// Up, and then down from the state at the end of the sweep up.
+    UpDown,
+}
+
+impl Directions {
+    /// The sweeps: each begins at the start, and its directions continue each other.
+    fn sweeps(self) -> &'static [&'static [Direction]] {
+        use Direction::{Down, Up};
+        match self {
+            Directions::Up => &[&[Up]],
+            Directions::Down => &[&[Down]],
+            Directions::Both => &[&[Up], &[Down]],
+            Directions::UpDown => &[&[Up, Down]],
+        }
+    }
 }
 
 impl Keys {
     /// Names of the files in its answer.
-    pub const FILES: Names = Names::Numbered(&["sweep", "reaction"]);
+    pub const FILES: Names = Names::Numbered(&["sweep", "reaction", "end_up", "end_down"]);
 
     /// The sweep with its resonances and jumps.
     ///
@@ -98,9 +123,17 @@ impl Keys {
         };
         let plan = Plan { from: self.from, to: self.to, pace, observable: self.observable };
         plan.check()?;
+        let (state, phase) = self.start(&scene.rig)?;
         let make = contact::motions(&scene, self.model, GRAZING_SPEED)?;
-        let swept = self.swept(make, &scene.rig, &excitation, &plan)?;
-        let (resonances, jumps) = if over_force { (Vec::new(), Vec::new()) } else { named(&swept) };
+        let make = |excitation: &_, later: f64| make(excitation, state, phase + later);
+        let frequency = over_force.then(|| excitation.frequency());
+        let runs = Runs::of(make, &excitation, &plan, frequency, self.direction.sweeps())?;
+        let (irregular, by_chance) = (runs.irregular(), runs.by_chance());
+        let swept = runs.swept();
+        let (resonances, jumps) =
+            if over_force { (Vec::new(), Vec::new()) } else { named(&swept, &scene.rig) };
+        let swept = swept.without_dust();
+        let ends: Vec<&End> = runs.legs().map(|leg| &leg.end).collect();
         let mut answer = Answer::of(&json!({
             "scene": scene,
             "observable": plan.observable,
@@ -108,57 +141,108 @@ impl Keys {
             "down": swept.down,
             "resonances": resonances,
             "jumps": jumps,
+            "irregular": irregular,
+            "by_chance": by_chance,
+            "ends": ends,
         }))?;
         answer.add("", finding);
         answer.add("", contact::buffer(&scene, self.model));
         answer.add("", scattered(&swept));
+        answer.add("", chance(&runs, &by_chance));
+        answer.add("", still(&swept, &scene.rig));
         answer.tables.push(resonances_and_jumps(&resonances, &jumps));
+        if !(irregular.is_empty() && by_chance.is_empty()) {
+            answer.tables.push(ranges(&irregular, &by_chance, over_force, swept.floor()));
+        }
+        answer.tables.push(final_states(&ends, swept.floor()));
         answer.figure("sweep", figures::sweep(&swept, &resonances, &jumps, plan.observable, over_force));
         answer.figure("reaction", figures::forces(&swept, over_force));
+        for Leg { direction, portrait, end, .. } in runs.legs() {
+            let title =
+                format!("Motion at the end of the sweep {}, {:.2} Hz", direction.name(), end.frequency);
+            let figure = figures::traces(&title, portrait, scene.rig.gap);
+            answer.figure(format!("end_{}", direction.name()), figure);
+        }
         answer.csv("sweep", &points(&swept));
         Ok(answer)
     }
 
-    /// Sweeps a motion that `make` creates from an excitation, a state and a phase.
-    fn swept(
-        &self,
-        make: impl Fn(&Excitation, State, f64) -> Result<Moving> + Sync,
-        rig: &Rig,
-        excitation: &Excitation,
-        plan: &Plan,
-    ) -> Result<Swept> {
-        let directions: &[Direction] = match self.direction {
-            Directions::Up => &[Direction::Up],
-            Directions::Down => &[Direction::Down],
-            Directions::Both => &[Direction::Up, Direction::Down],
-        };
-        let rest = Simulation::at_rest(rig);
-        apart(directions, |direction| {
-            let start = if direction == Direction::Up { plan.from } else { plan.to };
-            if self.over == SweptParameter::Frequency {
-                let mut motion = make(&excitation.at_frequency(start), rest, 0.0)?;
-                return plan.frequency(&mut *motion, excitation.size(), direction);
+    /// State and phase (rad) at the start.
+    fn start(&self, rig: &Rig) -> Result<(State, f64)> {
+        match self.start[..] {
+            [] => Ok((Simulation::at_rest(rig), 0.0)),
+            [x1, v1, x2, v2, phase] => Ok((State { x1, v1, x2, v2 }, phase)),
+            _ => {
+                let found = format!("{} numbers of a start", self.start.len());
+                Err(Error::usage(found, "five: x1,v1,x2,v2,phase in m, m/s and rad").setting("start"))
             }
-            let mut motion = make(&excitation.at_size(start), rest, 0.0)?;
-            let frequency = excitation.frequency();
-            plan.steps(&mut *motion, direction, |motion, value| {
-                motion.set_excitation(&excitation.at_size(value))?;
-                Ok((frequency, value))
-            })
-        })
+        }
     }
 }
 
-/// Largest scatter from cycle to cycle, over the amplitude, of a motion that repeats every cycle.
-const REGULAR_SCATTER: f64 = 0.05;
-
 /// Caution on the points whose cycles differ.
 fn scattered(swept: &Swept) -> Option<Finding> {
-    let irregular =
-        |p: &&Point| p.x1_scatter > REGULAR_SCATTER * p.x1 || p.x2_scatter > REGULAR_SCATTER * p.x2;
-    let n = swept.up.iter().chain(&swept.down).filter(irregular).count();
-    let all = swept.up.len() + swept.down.len();
-    (n > 0).then(|| Finding::caution("sweep-cycles-unlike").count("n", n).count("all", all))
+    let all = || swept.up.iter().chain(&swept.down);
+    let n = all().filter(|p| !p.is_regular(swept.floor())).count();
+    (n > 0).then(|| Finding::caution("sweep-cycles-unlike").count("n", n).count("all", all().count()))
+}
+
+/// Caution on the points that another phase of the start changes.
+fn chance(runs: &Runs, by_chance: &[Range]) -> Option<Finding> {
+    let n: usize = by_chance.iter().map(|range| range.points).sum();
+    let all: usize = runs.legs().map(|leg| leg.points.len()).sum();
+    (n > 0).then(|| Finding::caution("sweep-start-decides").count("n", n).count("all", all))
+}
+
+/// Notes the masses that stand still in the whole sweep.
+fn still(swept: &Swept, rig: &Rig) -> Option<Finding> {
+    let moves = |mass: usize| swept.up.iter().chain(&swept.down).any(|p| p.amplitudes()[mass] > 0.0);
+    let mass = (0..2).find(|mass| !moves(*mass))?;
+    (mass == 0 || rig.m2.is_finite()).then(|| Finding::note("sweep-mass-still").count("mass", mass + 1))
+}
+
+/// Ranges of frequency or force without one periodic motion.
+fn ranges(irregular: &[Range], by_chance: &[Range], over_force: bool, floor: f64) -> Table {
+    let unit = if over_force { "N" } else { "Hz" };
+    let named = |what, ranges: &[Range]| ranges.iter().map(|r| (what, r.clone())).collect::<Vec<_>>();
+    let all = [named("irregular or not settled", irregular), named("by chance of the start", by_chance)];
+    table(
+        "Ranges",
+        all.concat(),
+        &[
+            ("direction", "", &|(_, r)| r.direction.name().into()),
+            ("motion", "", &|(what, _)| (*what).into()),
+            ("from", unit, &|(_, r)| r.from.into()),
+            ("to", unit, &|(_, r)| r.to.into()),
+            ("largest x1", "m", &|(_, r)| moving(r.x1, floor)),
+            ("largest x2", "m", &|(_, r)| moving(r.x2, floor)),
+        ],
+    )
+}
+
+/// A displacement or velocity, 0 below the floor (m or m/s).
+fn moving(value: f64, floor: f64) -> Cell {
+    Cell::from(if value.abs() < floor { 0.0 } else { value })
+}
+
+/// State at the end of each direction, from which another sweep starts.
+fn final_states(ends: &[&End], floor: f64) -> Table {
+    table(
+        "End",
+        ends,
+        &[
+            ("direction", "", &|end| end.direction.name().into()),
+            ("frequency", "Hz", &|end| end.frequency.into()),
+            ("impacts", "", &|end| end.regime.to_string().into()),
+            ("masses", "", &|end| end.masses().into()),
+            ("x1", "m", &|end| moving(end.state.x1, floor)),
+            ("v1", "m/s", &|end| moving(end.state.v1, floor)),
+            ("x2", "m", &|end| moving(end.state.x2, floor)),
+            ("v2", "m/s", &|end| moving(end.state.v2, floor)),
+            ("phase", "rad", &|end| end.phase.into()),
+        ],
+    )
+    .note("Impacts: in so many cycles of the excitation. A start with these numbers continues the motion.")
 }
 
 /// Point by point, up and then down.
@@ -194,7 +278,9 @@ fn resonances_and_jumps(resonances: &[Named<Resonance>], jumps: &[Named<Jump>]) 
     for Named { mass, direction, found } in jumps {
         let place = pair(found.frequency, Some(found.frequency_std));
         let kind = format!("jump, {}", found.change).into();
-        let after = found.amplitude_after.into();
+        // Below the floor the amplitude is set to 0.
+        let after =
+            if found.amplitude_after > 0.0 { found.amplitude_after.into() } else { Cell::from("still") };
         table.push([usize::from(*mass).into(), direction.name().into(), kind, place, after]);
     }
     table

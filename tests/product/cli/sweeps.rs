@@ -43,6 +43,47 @@ fn a_sweep_of_the_force_keeps_its_frequency() {
     assert!(answer["down"].as_array().unwrap().is_empty());
 }
 
+/// A sweep that starts from the end of another continues it. Only the clock differs: instants round to 1e-16
+/// of 20 s, in which the masses move 1e-13 of their amplitude; impacts multiply that by less than
+/// 100 in a step.
+#[test]
+fn a_sweep_from_the_end_of_another_continues_it() {
+    let swept = |range: &str, start: &str| {
+        json(&words(&format!(
+            "model sweep --over force --force 0.1 --frequency 8 {range} --settle 24 --measure 8 --direction up{start}"
+        )))
+    };
+    let whole = swept("--from 0.25 --to 1.25 --steps 5", "");
+    let first = swept("--from 0.25 --to 0.5 --steps 2", "");
+    let end = &first["ends"][0];
+    let numbers = ["x1", "v1", "x2", "v2", "phase"].map(|key| end[key].as_f64().unwrap().to_string());
+    let second = swept("--from 0.75 --to 1.25 --steps 3", &format!(" --start={}", numbers.join(",")));
+    for (i, point) in second["up"].as_array().unwrap().iter().enumerate() {
+        for key in ["force", "x1", "x2"] {
+            let [found, expected] = [point, &whole["up"][i + 2]].map(|p| p[key].as_f64().unwrap());
+            assert!((found / expected - 1.0).abs() < 1e-11, "{key} of point {i}: {found} {expected}");
+        }
+    }
+}
+
+/// Above the frequency of the masses together they clap, however many steps the sweep has.
+#[test]
+fn names_do_not_depend_on_the_number_of_steps() {
+    for steps in [60, 150] {
+        let line =
+            format!("model sweep --force 0.5 --from 8 --to 12 --steps {steps} --settle 300 --direction up");
+        let answer = json(&words(&line));
+        let kinds: Vec<_> = answer["resonances"].as_array().unwrap().iter().map(|r| &r["kind"]).collect();
+        assert_eq!(kinds, ["antiresonance", "clapping", "clapping"], "{steps} steps");
+    }
+}
+
+#[test]
+fn a_start_has_five_numbers() {
+    let output = vibro(&words("model sweep --force 0.1 --from 3 --to 4 --start 0,0,0,0"));
+    assert!(String::from_utf8_lossy(&output.stderr).contains("five: x1,v1,x2,v2,phase"));
+}
+
 #[test]
 fn a_map_has_its_keys_and_its_rows() {
     let folder = tempfile::tempdir().unwrap();

@@ -38,6 +38,9 @@ pub(crate) const LOW_PASS: f64 = 10.0;
 /// amplitude.
 const SAMPLES: f64 = 32.0;
 
+/// Longest period in cycles of a motion whose cycles count as alike.
+const LONGEST_PERIOD: usize = 4;
+
 /// Sums over a time, for each mass.
 #[derive(Debug, Clone, Copy)]
 struct Sums {
@@ -80,6 +83,10 @@ pub struct Gauge {
     cycles: f64,
     /// Sum of their values and of the squares, for each mass.
     scatter: [(f64, f64); 2],
+    /// Values of the last cycles, the newest first.
+    recent: Vec<[f64; 2]>,
+    /// For each period: sums of squared changes against the cycle one period before, and their number.
+    changes: [([f64; 2], f64); LONGEST_PERIOD],
 }
 
 impl Gauge {
@@ -88,13 +95,21 @@ impl Gauge {
         let natural = rig.oscillators().map(|o| o.omega2().sqrt());
         let natural = natural.into_iter().filter(|n| n.is_finite()).fold(0.0, f64::max);
         let (cycle, total, scatter) = (Sums::NONE, Sums::NONE, [(0.0, 0.0); 2]);
-        Gauge { observable, natural, square: [0.0; 2], cycle, total, cycles: 0.0, scatter }
+        let (recent, changes) = (Vec::new(), [([0.0; 2], 0.0); LONGEST_PERIOD]);
+        Gauge { observable, natural, square: [0.0; 2], cycle, total, cycles: 0.0, scatter, recent, changes }
     }
 
-    /// Deletes the cycles read, but keeps the running mean square.
+    /// Deletes the cycles read, but keeps the running mean square and the values of the last cycles.
     pub fn clear(&mut self) {
         (self.cycle, self.total, self.cycles) = (Sums::NONE, Sums::NONE, 0.0);
         self.scatter = [(0.0, 0.0); 2];
+        self.changes = [([0.0; 2], 0.0); LONGEST_PERIOD];
+    }
+
+    /// Also deletes the values of the last cycles: the cycles that follow belong to another step.
+    pub fn restart(&mut self) {
+        self.recent.clear();
+        self.clear();
     }
 
     /// Adds a piece of `duration` s that begins at `phase` (rad) under `omega` (rad/s).
@@ -114,14 +129,13 @@ impl Gauge {
             let next = wave * turn;
             for mass in 0..2 {
                 let [a, b] = [&before, &after].map(|s| coordinate(s, mass));
+                // f = x e^{−iωt}, ḟ = (v − iωx) e^{−iωt}.
+                let (fa, fb) = (wave * a.0, next * b.0);
+                let da = wave * Complex64::new(a.1, -omega * a.0);
+                let db = next * Complex64::new(b.1, -omega * b.0);
+                cycle.integral[mass] += (fa + fb) * (h / 2.0) + (da - db) * (h * h / 12.0);
                 match self.observable {
-                    Observable::Fundamental => {
-                        // f = x e^{−iωt}, ḟ = (v − iωx) e^{−iωt}.
-                        let (fa, fb) = (wave * a.0, next * b.0);
-                        let da = wave * Complex64::new(a.1, -omega * a.0);
-                        let db = next * Complex64::new(b.1, -omega * b.0);
-                        cycle.integral[mass] += (fa + fb) * (h / 2.0) + (da - db) * (h * h / 12.0);
-                    }
+                    Observable::Fundamental => {}
                     Observable::Peak => extend(&mut cycle.range[mass], a, b, h),
                     Observable::Rms => {
                         let old = self.square[mass].sqrt();
@@ -141,9 +155,16 @@ impl Gauge {
 
     /// Ends a cycle.
     pub fn close_cycle(&mut self) {
-        let Gauge { observable, cycle, total, cycles, scatter, .. } = self;
+        let Gauge { observable, cycle, total, cycles, scatter, recent, changes, .. } = self;
+        let values = [0, 1].map(|mass| cycle.value(*observable, mass));
+        for ((sums, count), old) in changes.iter_mut().zip(&*recent) {
+            *sums = [0, 1].map(|mass| sums[mass] + (values[mass] - old[mass]).powi(2));
+            *count += 1.0;
+        }
+        recent.truncate(LONGEST_PERIOD - 1);
+        recent.insert(0, values);
         for (mass, (sum, squares)) in scatter.iter_mut().enumerate() {
-            let value = cycle.value(*observable, mass);
+            let value = values[mass];
             *sum += value;
             *squares += value * value;
             total.integral[mass] += cycle.integral[mass];
@@ -167,6 +188,29 @@ impl Gauge {
         })
     }
 }
+
+impl Gauge {
+    /// Standard deviation in m between cycles that would be equal if the motion had a period of one to four
+    /// cycles, for each mass. A slow change of the amplitude adds next to nothing. 0 without earlier cycles.
+    pub fn unrest(&self) -> [f64; 2] {
+        [0, 1].map(|mass| {
+            let known = self.changes.iter().filter(|(_, count)| *count > 0.0);
+            let squares = known.map(|(sums, count)| sums[mass] / (2.0 * count));
+            squares.reduce(f64::min).unwrap_or(0.0).sqrt()
+        })
+    }
+
+    /// Phase in rad of x₂ against x₁ at the excitation frequency; `None` where a mass stands still.
+    pub fn relative_phase(&self) -> Option<f64> {
+        let [x1, x2] = self.total.integral;
+        let moving = x1.norm().min(x2.norm()) > STILL * x1.norm().max(x2.norm());
+        moving.then(|| (x2 * x1.conj()).arg())
+    }
+}
+
+/// Part of the largest amplitude below which a mass stands still: sums of a few thousand terms round to 1e-13
+/// of them.
+pub const STILL: f64 = 1e-9;
 
 /// Displacement (m) and velocity (m/s) of a mass.
 fn coordinate(state: &State, mass: usize) -> (f64, f64) {

@@ -124,6 +124,11 @@ fn a_settled_step_is_the_closed_form() {
                 assert!((found / expected - 1.0).abs() < 1e-5, "{observable:?} {found} {expected}");
             }
             assert!(point.x1_scatter < 1e-6 * point.x1);
+            // The phase errs by as much as the amplitudes, in rad.
+            let phase = (orbit.fundamental[1] / orbit.fundamental[0]).arg();
+            let off = (point.relative_phase.unwrap() - phase).abs();
+            assert!(off.min(TAU - off) < 1e-5, "{point:?} {phase}");
+            assert!(point.is_regular(0.0));
         }
     }
 }
