@@ -1,5 +1,5 @@
-//! Random accelerations of a handle, to check how often the stated uncertainties of the weighted values cover the
-//! truth.
+//! Random accelerations of a handle, to check how often the stated uncertainties of the weighted values
+//! cover the truth.
 
 use super::disturbance::Mix;
 use super::record::{Answer, Kind, Record};

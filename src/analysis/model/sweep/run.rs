@@ -71,8 +71,8 @@ pub(super) struct Runs {
 type Sweep<'a> = &'a dyn Fn(&mut dyn Motion, Direction) -> Result<Vec<Point>>;
 
 impl Runs {
-    /// Sweeps motions that `make` creates from an excitation and a shift of the phase at the start (rad),
-    /// over the force at `frequency` (Hz) if that is given. A start from another phase that fails is left out.
+    /// Sweeps motions that `make` creates from an excitation and a shift of the phase at the start (rad), over
+    /// the force at `frequency` (Hz) if that is given. A start from another phase that fails is left out.
     pub fn of(
         make: impl Fn(&Excitation, f64) -> Result<Moving> + Sync,
         excitation: &Excitation,
@@ -104,7 +104,7 @@ impl Runs {
             let legs = runs.iter().map(|run| run.as_ref().ok()).collect::<Option<Vec<_>>>()?;
             Some(legs.into_iter().flatten().cloned().collect())
         };
-        let others = shifted.chunks(sweeps.len()).filter_map(|runs| all(runs)).collect();
+        let others = shifted.chunks(sweeps.len()).filter_map(all).collect();
         Ok(Runs { legs, others, over_force: frequency.is_some() })
     }
 
