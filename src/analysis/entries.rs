@@ -1,4 +1,4 @@
-//! The tables of a campaign of one kind of record.
+//! Tables of one kind of record in a campaign, such as all of `[[impacts]]`.
 
 use super::kind::{Analysis, name_of};
 use super::recordings::{is_pattern, matching};
@@ -8,8 +8,8 @@ use crate::record::shown;
 use std::collections::BTreeSet;
 use std::path::PathBuf;
 
-/// The tables of a kind of record with the errors in them. A table with a pattern gives one table for each
-/// matching file.
+/// All tables of a kind of record, each with the result of its check. A table with a pattern gives one table
+/// for each matching file.
 fn expanded<A: Analysis>(campaign: &Campaign) -> Result<Vec<(Entry<A>, Result<()>)>> {
     let folder = campaign.within();
     let expand = |(entry, checked): (Entry<A>, Result<()>)| {
@@ -36,7 +36,7 @@ fn expanded<A: Analysis>(campaign: &Campaign) -> Result<Vec<(Entry<A>, Result<()
     Ok(campaign.entries(A::SECTION, A::OF_FILES)?.into_iter().flat_map(expand).collect())
 }
 
-/// The tables of a kind of record without faults. A table with a pattern gives one table for each matching
+/// The faultless tables of a kind of record. A table with a pattern gives one table for each matching
 /// file.
 ///
 /// # Errors

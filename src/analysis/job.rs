@@ -28,13 +28,13 @@ pub struct Job<'a> {
     pub progress: &'a dyn Progress,
     /// Title of the report.
     pub title: String,
-    /// All answers, long tables as details.
+    /// All answers together; long tables, such as response curves, are in its `details`.
     pub(super) found: Answer,
     /// Number of records with an answer.
     pub(super) answers: usize,
-    /// Number of answers that were taken from the last run.
+    /// Number of answers taken from those kept of the last run.
     pub(super) again: usize,
-    /// Error of the first record that could not be read.
+    /// First error of a record other than a refusal, such as a file that cannot be read.
     pub(super) failed: Option<Error>,
 }
 
@@ -160,7 +160,7 @@ impl<'a> Job<'a> {
     }
 
     /// Digest of all inputs of these sections, and their files. Inputs are the files and all tables of the
-    /// campaign except those of other records.
+    /// campaign except those of other kinds of record.
     fn inputs_of(&self, sections: &[&str]) -> Result<(Digest, Vec<PathBuf>)> {
         let (these, others): (Vec<&AnalysisKind>, Vec<&AnalysisKind>) =
             self.kinds.iter().partition(|kind| sections.contains(&kind.section));
@@ -170,7 +170,8 @@ impl<'a> Job<'a> {
         Ok((self.digest([sections.concat(), stated], &files), files))
     }
 
-    /// Digest of words, and of names and contents of files. A file that cannot be read counts by name only.
+    /// Digest of texts (section, name, keys), and of names and contents of files. A file that cannot be read
+    /// counts by name only.
     fn digest(&self, words: impl IntoIterator<Item = String>, files: &[PathBuf]) -> Digest {
         let words = words.into_iter().map(String::into_bytes);
         let of_file = |file: &PathBuf| {
@@ -196,7 +197,7 @@ impl<'a> Job<'a> {
         for entry in entries {
             let name = name_of(entry);
             let Some(mut files) = self.found(&name, K::files(self.campaign, entry)) else { continue };
-            // A table of numbers alone has no file.
+            // A table may state numbers instead of a file.
             let path = files.first().filter(|_| entry.file.is_some()).cloned().unwrap_or_default();
             let table = [K::SECTION.to_owned(), name.clone(), self.campaign.stated_in(entry)];
             let mut inputs = self.digest(table, &files);

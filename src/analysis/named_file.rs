@@ -1,4 +1,4 @@
-//! Files that tables of a campaign name.
+//! Files named by the tables of a campaign.
 
 use std::path::PathBuf;
 
@@ -12,7 +12,7 @@ pub(crate) fn few<S: AsRef<str>>(names: &[S]) -> String {
     shown.join(", ") + &if more > 0 { format!(" and {more} more") } else { String::new() }
 }
 
-/// A file that a table names.
+/// A file named by a table.
 #[derive(Debug)]
 pub(crate) struct NamedFile {
     /// The file.
@@ -21,6 +21,7 @@ pub(crate) struct NamedFile {
     pub section: &'static str,
     /// Name of the table.
     pub table: String,
-    /// Statements of the table on the record: channels, and settings for reading.
+    /// Channels and settings for reading as one text: the same for tables that read the same values of a
+    /// file.
     pub record: String,
 }

@@ -49,7 +49,8 @@ pub struct Compute {
     /// Lowest frequency used, in Hz. Default: two line spacings or a quarter of the lowest excitation
     /// frequency, whichever is larger.
     pub fmin: Option<f64>,
-    /// Highest frequency in waterfalls, in Hz. Default: the last visible line.
+    /// Highest frequency in waterfalls and maps, in Hz. Default: where the last line that can be seen beside
+    /// the largest lies.
     pub fmax: Option<f64>,
 }
 
@@ -83,13 +84,15 @@ pub struct ModelEntry {
     pub name: Option<Follows>,
     /// Relative change of an amplitude that is negligible when a model is chosen. Default 0.02.
     pub tolerance: f64,
-    /// Excitation cycles simulated at each point of a sweep before the motion is read. Default 300.
+    /// Excitation cycles simulated at each point of a sweep before the motion is evaluated, so that
+    /// transients decay. Default 300.
     pub settle: u32,
-    /// Excitation cycles over which the motion is read. Default 64.
+    /// Excitation cycles over which the motion is evaluated: a pattern longer than a ninth of them is not
+    /// recognised. Default 64.
     pub measure: u32,
 }
 
-/// Models that can follow a sweep.
+/// Contact models that can simulate a sweep.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Follows {
@@ -112,7 +115,7 @@ impl Follows {
     }
 }
 
-/// Cycles at a point beyond which a campaign is refused: a sweep of 40 points then takes some seconds.
+/// Upper limit of `settle` and of `measure`, in cycles a point: it bounds the time that a sweep may take.
 const MOST: u32 = 1_000_000;
 
 impl Default for ModelEntry {

@@ -4,7 +4,7 @@
 use crate::style::{LEADER, MARKER, SMALL, TICK};
 use crate::{Anchor, BLACK, Canvas, Form, GREY, Note, Place, Point, Rect, Rgb, Series, Shape, Text, font};
 
-/// Height of a text's baseline above the lower edge of its box, over the height of small text.
+/// Height of a text's baseline above the lower edge of its box, as a fraction of the size of small text.
 const DESCENT: f64 = 0.16;
 
 /// Cost of a place outside the frame: above all others, so that it is never chosen.

@@ -103,9 +103,9 @@ pub(super) fn clipped(line: &[Point], frame: Rect) -> Vec<Vec<Point>> {
     parts
 }
 
-/// The line with fewer points, nowhere further than `tolerance` in points from it (Douglas and Peucker 1973).
-/// Before that, many points within a quarter of a point of width are reduced to their first, lowest, highest
-/// and last.
+/// The line with fewer points (Douglas and Peucker 1973). Many points within a quarter of a point of width
+/// are first reduced to their first, lowest, highest and last; the rest lies within `tolerance`, in points,
+/// of these.
 pub(super) fn thinned(line: &[Point], tolerance: f64) -> Vec<Point> {
     let line = by_columns(line, 0.25);
     let Some(last) = line.len().checked_sub(1).filter(|last| *last >= 2) else { return line };

@@ -39,8 +39,8 @@ impl TickStep {
         if self.exponent < 0 { whole / power } else { whole * power }
     }
 
-    /// Multiples of the step from `lo` to `hi`, as counts; a limit that misses one by rounding only includes
-    /// it.
+    /// Multiples of the step from `lo` to `hi`, as counts. A multiple that a limit misses only by
+    /// rounding is included.
     fn within(self, lo: f64, hi: f64) -> Vec<f64> {
         let first = (lo / self.times(1.0) - SLACK).ceil();
         let last = (hi / self.times(1.0) + SLACK).floor();
@@ -60,8 +60,8 @@ impl TickStep {
 const SLACK: f64 = 1e-9;
 
 /// Ticks of a linear axis at multiples of 1, 2 or 5 times a power of ten (of 15°, 30°, 45°, … where
-/// `degrees`): at least two; at most `most`, or up to five where no step has between two and `most`. Labels
-/// are the values divided by 10^`power`.
+/// `degrees`): two to `most`. Where no step gives that, the next finer step has up to five. Labels are the
+/// values divided by 10^`power`.
 pub(super) fn linear(lo: f64, hi: f64, most: usize, power: i32, degrees: bool) -> Ticks {
     let span = hi - lo;
     if !(span > 0.0 && span.is_finite()) {
@@ -95,8 +95,8 @@ pub(super) fn linear(lo: f64, hi: f64, most: usize, power: i32, degrees: bool) -
 }
 
 /// Ticks of a logarithmic axis from `lo` to `hi` (log₁₀ of its limits). With two powers of ten or more on
-/// the axis these are labelled; with fewer, the multiples of powers of ten by 1, 2 and 5, if there are two
-/// of them up to `most`; else round values.
+/// the axis these are labelled; with fewer, the multiples of powers of ten by 1, 2 and 5, if there
+/// are 2 to `most` of them; else round values.
 pub(super) fn logarithmic(lo: f64, hi: f64, most: usize) -> Ticks {
     if !(hi > lo && (hi - lo).is_finite()) {
         return Ticks::default();

@@ -24,8 +24,8 @@ impl Reader {
     ///
     /// # Errors
     /// As [`Reader::from_path`]; if the file holds no trace, or its traces have no sampling rate, or
-    /// different rates, lengths or start times. [`Reader::stream_channels`] reads only those that belong
-    /// together.
+    /// different rates, lengths or start times. [`Reader::stream_channels`] reads a selection: name
+    /// channels of one rate and length.
     pub fn stream(&self, path: impl AsRef<Path>) -> Result<Traces> {
         self.stream_channels(path, &[])
     }
@@ -84,8 +84,9 @@ impl Reader {
         Traces::of_file(path, recording.findings, traces)
     }
 
-    /// One channel to be read block by block, after the channel `reference` if there is one; `calibration`
-    /// multiplies its values. A channel that is not named must be the only one beside the reference.
+    /// Opens one channel for reading block by block. With a `reference`, that channel is number 0 and the
+    /// chosen one number 1. `calibration` multiplies the values of the chosen one. Without `channel`, the
+    /// file must hold exactly one beside the reference.
     ///
     /// # Errors
     /// As [`Reader::stream_channels`]; if there are several channels and none was named.
@@ -159,8 +160,8 @@ fn none_chosen(path: &Path, channels: &[(usize, &str)], best: usize) -> Error {
 }
 
 impl Recording {
-    /// The trace that `channel` names, or by its number among the traces from 1; the only one where it is
-    /// `None`. A `calibration` multiplies the values.
+    /// The trace with the name `channel`, or with this number (traces count from 1). `None` takes the only
+    /// trace. A `calibration` multiplies the values.
     ///
     /// ```
     /// use vibro_io::Reader;
@@ -172,9 +173,8 @@ impl Recording {
     /// # Ok::<(), vibro_record::Error>(())
     /// ```
     ///
-    /// # Errors
-    /// If there is no such trace, or several and none was named; if a calibration is not a number other than
-    /// 0, or is given for fractions of full scale without a unit.
+    /// # Errors If there is no such trace, or several and none was named; if the calibration is 0 or not
+    /// finite, or the trace is a fraction of full scale, which needs a unit, too.
     pub fn trace(&self, channel: Option<&str>, calibration: Option<f64>) -> Result<Trace> {
         calibrated(self.chosen(channel)?.1.clone(), calibration)
     }
@@ -193,8 +193,8 @@ impl Recording {
         calibrated(Trace { values, ..trace.clone() }, calibration)
     }
 
-    /// The stored spectrum that `channel` names, or by its number among the spectra from 1; the only one
-    /// where it is `None`.
+    /// The stored spectrum with the name `channel`, or with this number (spectra count from 1). `None` takes
+    /// the only one.
     ///
     /// # Errors
     /// If there is no such spectrum, or several and none was named.

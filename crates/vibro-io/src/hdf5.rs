@@ -26,10 +26,12 @@ use hdf5_reader::{Attribute, Dataset, Datatype};
 use vibro_record::{Finding, Result, Values};
 
 const SIGNATURE: &[u8] = b"\x89HDF\r\n\x1a\n";
-/// Attributes that programs write for themselves, as [`Dialect::word`] gives their names.
+/// Attributes of HDF5 dimension scales (CLASS, NAME, `DIMENSION_LIST` …), which are no data; spelled as by
+/// [`Dialect::word`], in lower case with letters and digits only.
 const INTERNAL: &[&str] = &["class", "name", "dimensionlist", "dimensionlabels", "referencelist"];
-/// Names of attributes that convert stored numbers to values: factor, offset and reference of the integers of
-/// an oscilloscope, factor and offset of any number, and the number that marks a missing value.
+/// Attributes by which stored numbers are converted: ((stored − reference) · factor + offset) · scale + add,
+/// in the order factor, offset, reference, scale, add. The first three, of an oscilloscope, apply to integers
+/// only. The sixth marks a missing value.
 const SCALE: [&[&str]; 6] = [
     &["yinc", "yincrement"],
     &["yorg", "yorigin"],
@@ -41,7 +43,8 @@ const SCALE: [&[&str]; 6] = [
 type Scale = [f64; SCALE.len()];
 /// Scale of numbers that are stored as the values themselves.
 const AS_STORED: Scale = [1.0, 0.0, 0.0, 1.0, 0.0, f64::NAN];
-/// Names of factors of integers that state neither quantity nor direction: such a dataset is left out.
+/// Attributes of integers that do not say what they convert, or whether to multiply or to divide. Unless the
+/// value is 1, the dataset is left out.
 const FACTORS: [&str; 3] = ["scale", "gain", "conversion"];
 
 static DIALECT: Dialect = Dialect {
@@ -156,8 +159,8 @@ impl GroupWalk<'_> {
         self.variables.push((name.to_owned(), content));
     }
 
-    /// Adds the texts and numbers among attributes. Returns the scale that they state, else the one from
-    /// above.
+    /// Adds the texts and numbers among attributes. Returns the scale that they state, else the one
+    /// inherited from the parent group.
     fn stated(&mut self, path: &str, attributes: &[Attribute], mut scale: Scale) -> Scale {
         for attribute in attributes {
             let word = DIALECT.word(&attribute.name);

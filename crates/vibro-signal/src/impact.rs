@@ -19,10 +19,11 @@ use vibro_record::lanes;
 use vibro_record::units::notation::shortest;
 use vibro_record::{Error, Finding, Meta, Result, Trace, median};
 
-/// Trigger level above the quiet level, over the largest force: lower finds weaker blows, but also noise.
+/// Trigger level above the quiet level, as a fraction of the largest force: a lower one finds weaker blows,
+/// but also noise.
 const TRIGGER: f64 = 0.2;
-/// Smallest second blow that is looked for, over the smoothed peak. It finds true second blows from a tenth
-/// of the peak on, where noise and filters take less than a third of them.
+/// Lowest threshold for a second blow, as a fraction of the smoothed peak. Blows of 10 % of the peak exceed
+/// it even if noise and filters lower them by 30 %.
 const SECOND: f64 = 0.07;
 /// A second blow rises from the valley before it by this factor; the flank of one blow, however bent, does
 /// not.
@@ -31,11 +32,11 @@ const RISE: f64 = 2.0;
 const SIGMAS: f64 = 6.0;
 /// Time in s within which the hammer bounces: nobody strikes again so soon.
 const BOUNCE: f64 = 0.1;
-/// Smallest power of the force over that of its noise (10 dB): below it a spectral line shows no response to
-/// the force.
+/// Least power of the force at a line over the power of its noise (10 dB). A line below it has no response
+/// function.
 const AUDIBLE: f64 = 10.0;
-/// An extreme nearer the quiet level than this part of the larger extreme is no clipping level: a force does
-/// not go below zero.
+/// Least distance of a clipping level from the quiet level, as a fraction of the largest deviation. A nearer
+/// extreme is the force at rest between blows: a blow does not pull.
 const RAIL: f64 = 0.1;
 
 const CUT_OFF: &str = "the record cuts it off";
@@ -76,8 +77,8 @@ pub struct BlowTransfer {
     pub transfer: Transfer,
     /// Every blow.
     pub blows: Vec<Blow>,
-    /// Decay in 1/s that the exponential window adds: a mode of f Hz seems to have a damping ratio that is
-    /// this over 2πf larger.
+    /// Decay in 1/s that the exponential window adds: it raises the damping ratio of a mode at f Hz by this
+    /// divided by 2πf.
     pub added_decay: f64,
     /// The windows that were applied: `rectangular` for none, `force`, `exponential`, or `force and
     /// exponential`.
@@ -196,8 +197,8 @@ pub fn from_blows(
     })
 }
 
-/// Fewest samples from one blow to the next, or to the end of the record: the longest record that holds a
-/// single blow.
+/// Longest record in samples that holds a single blow: the shortest interval between blows, or from the last
+/// blow to the end.
 ///
 /// The samples after the last blow count unless they are fewer than half of those between blows.
 ///
@@ -289,7 +290,7 @@ fn smoothed(values: &[f64]) -> Vec<f64> {
     (0..values.len()).map(at).collect()
 }
 
-/// Whether a smoothed force rises again before or after its largest blow; its first `before` samples are
+/// Whether a smoothed force rises again before or after its largest blow; the first `before` of `values` are
 /// quiet.
 fn second(values: &[f64], before: usize, sign: f64, noise: f64) -> bool {
     let quiet = Quiet::of(if before > 0 { &values[..before] } else { values });
@@ -322,8 +323,9 @@ impl Quiet {
     }
 }
 
-/// The value at which a record is clipped, its highest or its lowest; its first `before` samples are quiet.
-/// Each end is judged on its own, since an offset drives a signal into one of them first.
+/// The value at which a record is clipped, its highest or its lowest; the first `before` of `values` are
+/// quiet. Highest and lowest value are judged separately: with an offset, a signal clips at one of them
+/// first.
 fn overloaded(values: &[f64], before: usize) -> Option<f64> {
     let level = Quiet::of(if before > 0 { &values[..before] } else { values }).level;
     let mut rails = Rails::default();

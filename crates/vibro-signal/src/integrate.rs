@@ -304,8 +304,8 @@ mod tests {
             let truth = Complex64::new(0.0, -1e-3);
             assert!((sine / truth - 1.0).norm() < 0.01, "{f} Hz: {sine}");
             // Integrated white noise above the corner f_c has the variance σ²/(2π² f_c · rate), since
-            // ∫df/(2πf)² = 1/(4π² f_c) and its density is 2σ²/rate; two periods a record apart differ by √2
-            // of it.
+            // ∫df/(2πf)² = 1/(4π² f_c) and its density is 2σ²/rate; the difference of
+            // two uncorrelated samples has √2 times its root, and that of two means over a period less.
             let left = 0.01 * amplitude / (2.0 * PI * PI * how.corner * rate).sqrt();
             assert!(found.drift.abs() < 4.0 * 2f64.sqrt() * left, "{f} Hz: {}", found.drift);
         }

@@ -33,9 +33,11 @@ impl Default for Scene {
     }
 }
 
-/// Cycles before a motion from rest is shown, cycles shown, and points in each of them.
+/// Cycles before a motion from rest is shown: by then a disturbance of the thesis' rig has decayed below e⁻⁸.
 const SETTLE: u32 = 300;
+/// Cycles shown.
 const SHOWN: u32 = 4;
+/// Points in each cycle shown.
 const POINTS: u32 = 200;
 
 impl Scene {

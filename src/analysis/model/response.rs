@@ -12,11 +12,11 @@ use crate::report::{Cell, Table};
 use num_complex::Complex64;
 use serde_json::{Value, json};
 
-/// What is asked.
+/// Keys of `vibro model response`.
 #[derive(Debug, Clone)]
 #[cfg_attr(feature = "cli", derive(clap::Args))]
 pub struct Keys {
-    /// The scene.
+    /// Rig and excitation.
     #[cfg_attr(feature = "cli", command(flatten))]
     pub scene: SceneKeys,
     /// Lowest excitation frequency in Hz
@@ -87,7 +87,7 @@ impl Keys {
     }
 }
 
-/// Every motion at every frequency.
+/// One row for each frequency and motion that exists; solutions that are no motion are left out.
 fn branches(response: &Response) -> Table {
     let rows = response.points.iter().flat_map(|p| p.orbits.iter().filter(|o| o.validity.exists));
     table(

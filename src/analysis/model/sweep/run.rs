@@ -71,8 +71,9 @@ pub(super) struct Runs {
 type Sweep<'a> = &'a dyn Fn(&mut dyn Motion, Direction) -> Result<Vec<Point>>;
 
 impl Runs {
-    /// Sweeps motions that `make` creates from an excitation and a shift of the phase at the start (rad), over
-    /// the force at `frequency` (Hz) if that is given. A start from another phase that fails is left out.
+    /// Sweeps motions that `make` creates from an excitation and a shift of the phase at the start (rad),
+    /// over the force at `frequency` (Hz) if that is given. A start from another phase that fails is left
+    /// out.
     pub fn of(
         make: impl Fn(&Excitation, f64) -> Result<Moving> + Sync,
         excitation: &Excitation,

@@ -76,7 +76,7 @@ fn two_unlike_blows_a_turn_are_two_groups_and_two_alike_are_one() {
             };
             [blow(0.25, 9.59), blow(0.75, weak)]
         };
-        (0..45).flat_map(|cycle| turn(cycle)).collect::<Vec<Impact>>()
+        (0..45).flat_map(turn).collect::<Vec<Impact>>()
     };
     let mut all = of(5.4);
     let groups = grouped(&mut all, 45, &options(None));
