@@ -173,8 +173,9 @@ impl Recording {
     /// # Ok::<(), vibro_record::Error>(())
     /// ```
     ///
-    /// # Errors If there is no such trace, or several and none was named; if the calibration is 0 or not
-    /// finite, or the trace is a fraction of full scale, which needs a unit, too.
+    /// # Errors
+    /// If there is no such trace, or several and none was named; if the calibration is 0 or not finite, or
+    /// the trace is a fraction of full scale, which needs a unit, too.
     pub fn trace(&self, channel: Option<&str>, calibration: Option<f64>) -> Result<Trace> {
         calibrated(self.chosen(channel)?.1.clone(), calibration)
     }

@@ -68,7 +68,7 @@ fn front_and_rear() {
 fn two_unlike_blows_a_turn_are_two_groups_and_two_alike_are_one() {
     let of = |weak: f64| {
         let mut noise = Noise::new(11);
-        let mut turn = |cycle: usize| {
+        let turn = |cycle: usize| {
             let mut blow = |phase: f64, speed: f64| Impact {
                 cycle,
                 time: cycle as f64 + phase,
