@@ -152,7 +152,7 @@ test("a waterfall turns by pointer and keys, changes to levels, and names the sp
 }));
 
 test("a map names the cell under the pointer and shows its spectrum", () => open(report, {}, async (page) => {
-  const map = await show(page, "[data-figure]", 3);
+  const map = await show(page, "[data-figure]", 4);
   await map.locator(".u-over").first().hover();
   await until(async () => /dB|mm|µm/.test(await map.locator(".tip").textContent()));
   assert.equal(await map.locator(".uplot").count(), 2);
