@@ -236,7 +236,7 @@ impl OfFile for Keys {
         let name = if self.reference.is_some() { "frf" } else { "spectrum" };
         answer.figure(name, figures::lines(source.name, &found));
         let argand = figures::argand(source.name, &found);
-        answer.figures.extend(argand.map(|figure| ("frf_argand".to_owned(), figure)));
+        answer.figures.extend(argand.map(|figure| ("argand_frf".to_owned(), figure)));
         let (files, unwritten) = files::records(name, &found.records())?;
         answer.files = files;
         answer.add("", unwritten);
@@ -258,7 +258,7 @@ pub fn compared(found: &[(String, SpectralResult)]) -> Result<Answer> {
         let ordinate = |of: &SpectralResult| format!("{} ({})", of.unit, of.scaling);
         if ordinate(result) != ordinate(like) {
             let found = format!("{first} in {}, {name} in {}", ordinate(like), ordinate(result));
-            return Err(Error::usage(found, "spectra of one unit and scaling").setting("unit"));
+            return Err(Error::usage(found, "spectra of one quantity, unit and scaling"));
         }
         let mut one = Answer::of(result)?;
         one.result.insert("name".to_owned(), name.as_str().into());
@@ -283,7 +283,8 @@ fn kind(result: &SpectralResult) -> &'static str {
     if matches!(result.found, Lines::Transfer(_)) { "frf" } else { "spectrum" }
 }
 
-/// Largest peaks of several spectra, those within a line spacing of the coarsest in one row.
+/// Largest peaks of several spectra. Those of different spectra within one and a half line spacings of the
+/// coarsest share a row, the nearest first.
 fn common_peaks(found: &[(String, SpectralResult)]) -> Table {
     let spacing = |result: &SpectralResult| result.frequency.windows(2).next().map_or(0.0, |w| w[1] - w[0]);
     let near = 1.5 * found.iter().map(|(_, result)| spacing(result)).fold(0.0, f64::max);
@@ -291,29 +292,37 @@ fn common_peaks(found: &[(String, SpectralResult)]) -> Table {
     for (record, (_, result)) in found.iter().enumerate() {
         peaks.extend(result.peaks(SHOWN_PEAKS).into_iter().map(|k| (result.frequency[k], record, k)));
     }
-    peaks.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let mut pairs: Vec<(f64, usize, usize)> = Vec::new();
+    for (i, a) in peaks.iter().enumerate() {
+        let others = peaks.iter().enumerate().skip(i + 1);
+        pairs.extend(others.map(|(j, b)| ((a.0 - b.0).abs(), i, j)).filter(|pair| pair.0 <= near));
+    }
+    pairs.sort_by(|a, b| a.0.total_cmp(&b.0));
+    // Each peak is a row of its own until it joins another; `rows` holds indices of peaks.
+    let mut rows: Vec<Vec<usize>> = (0..peaks.len()).map(|i| vec![i]).collect();
+    for (_, i, j) in pairs {
+        let row_of = |peak| rows.iter().position(|row| row.contains(&peak));
+        let (Some(one), Some(other)) = (row_of(i), row_of(j)) else { continue };
+        let records = |row: usize| rows[row].iter().map(|k| peaks[*k].1);
+        if one != other && !records(one).any(|record| records(other).any(|r| r == record)) {
+            let joined = std::mem::take(&mut rows[other]);
+            rows[one].extend(joined);
+        }
+    }
+    rows.retain(|row| !row.is_empty());
+    let lowest = |row: &[usize]| row.iter().map(|k| peaks[*k].0).fold(f64::INFINITY, f64::min);
+    rows.sort_by(|a, b| lowest(a).total_cmp(&lowest(b)));
     let columns: Vec<(String, &str)> = found
         .iter()
         .flat_map(|(name, result)| [(name.clone(), "Hz"), (format!("{name}, value"), result.unit.as_str())])
         .collect();
     let columns: Vec<(&str, &str)> = columns.iter().map(|(name, unit)| (name.as_str(), *unit)).collect();
-    let mut rows: Vec<Vec<Option<usize>>> = Vec::new();
-    let mut last = f64::NEG_INFINITY;
-    for (f, record, k) in peaks {
-        match rows.last_mut() {
-            Some(row) if f - last <= near && row[record].is_none() => row[record] = Some(k),
-            _ => {
-                rows.push(vec![None; found.len()]);
-                rows.last_mut().into_iter().for_each(|row| row[record] = Some(k));
-                last = f;
-            }
-        }
-    }
-    let cells = |row: Vec<Option<usize>>| {
-        let of = |(peak, (_, result)): (Option<usize>, &(String, SpectralResult))| {
+    let cells = |row: Vec<usize>| {
+        let of = |(record, (_, result)): (usize, &(String, SpectralResult))| {
+            let peak = row.iter().map(|k| &peaks[*k]).find(|peak| peak.1 == record).map(|peak| peak.2);
             [peak.map(|k| result.frequency[k]).into(), peak.map(|k| result.value[k]).into()]
         };
-        row.into_iter().zip(found).flat_map(of).collect::<Vec<Cell>>()
+        found.iter().enumerate().flat_map(of).collect::<Vec<Cell>>()
     };
     rows.into_iter().map(cells).fold(headed("Largest peaks", &columns), Table::row)
 }
@@ -392,7 +401,7 @@ fn tones(name: &str, found: &SpectralResult) -> Table {
 impl Analysis for Keys {
     const SECTION: &'static str = "spectrum";
     const TITLE: &'static str = "Spectra";
-    const FILES: Names = Names::Named(&["spectrum", "frf"]);
+    const FILES: Names = Names::Named(&["spectrum", "frf", "argand_frf"]);
 
     fn check(entry: &Entry<Keys>, _: &[Entry<Keys>]) -> Result<()> {
         entry.file.as_ref().ok_or_else(no_file)?;

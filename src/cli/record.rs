@@ -163,6 +163,25 @@ impl Spectrum {
         }
     }
 
+    /// Checks that no channel is named in two ways, and that no record is typed twice.
+    fn check(&self, places: &[(PathBuf, Channel)]) -> Result<()> {
+        for (k, (typed, place)) in self.files.iter().zip(places).enumerate() {
+            let named = self.record.channel.channel.as_deref().filter(|_| *typed != place.0);
+            if let Some(channel) = named {
+                let found = format!("{} beside the channel \"{channel}\"", shown(typed));
+                return Err(
+                    Error::usage(found, "FILE#CHANNEL, or a channel for all files").setting("channel")
+                );
+            }
+            let same =
+                |(file, channel): &(PathBuf, Channel)| *file == place.0 && channel.channel == place.1.channel;
+            if places[..k].iter().any(same) {
+                return Err(Error::usage(format!("{} twice", shown(typed)), "each record once"));
+            }
+        }
+        Ok(())
+    }
+
     /// Name of a typed file: the shortest of stem, file name and all that was typed that no other file has.
     fn name(&self, typed: &Path) -> String {
         let stem = |typed: &Path| self.place(typed).0.file_stem().map_or_else(String::new, shown);
@@ -179,6 +198,7 @@ impl CommandArgs for Spectrum {
     /// Prints the answer of one record, or of several beside each other.
     fn run(&self, json: bool) -> Result<u8> {
         let places: Vec<(PathBuf, Channel)> = self.files.iter().map(|file| self.place(file)).collect();
+        self.check(&places)?;
         let files = places.iter().map(|(file, _)| file);
         let (folder, output) = self.record.results(files, spectrum::Keys::FILES)?;
         if let [(file, channel)] = places.as_slice() {

@@ -155,11 +155,13 @@ pub(crate) fn slugs<'a>(names: impl Iterator<Item = &'a str>) -> Vec<String> {
     let mut slugs: Vec<String> = Vec::new();
     for (i, name) in names.enumerate() {
         let slug = slug(name);
-        slugs.push(match slug.as_str() {
-            "" => (i + 1).to_string(),
-            taken if slugs.iter().any(|s| s == taken) => format!("{taken}_{}", i + 1),
-            _ => slug,
-        });
+        let mut unique = if slug.is_empty() { (i + 1).to_string() } else { slug.clone() };
+        let mut number = i + 1;
+        while slugs.contains(&unique) {
+            unique = format!("{slug}_{number}");
+            number += 1;
+        }
+        slugs.push(unique);
     }
     slugs
 }
@@ -168,6 +170,15 @@ pub(crate) fn slugs<'a>(names: impl Iterator<Item = &'a str>) -> Vec<String> {
 mod tests {
     use super::*;
     use crate::record::Fact;
+
+    #[test]
+    fn no_two_records_share_a_file_name() {
+        let slugs = slugs(["a_4", "a", "", "A", "a 4", "3"].into_iter());
+        let mut distinct = slugs.clone();
+        distinct.sort();
+        distinct.dedup();
+        assert_eq!(distinct.len(), 6, "{slugs:?}");
+    }
 
     #[test]
     fn a_function_with_gaps_is_written_as_far_as_the_format_goes() {

@@ -74,7 +74,7 @@ pub fn response(sweep: &Sweep, options: &ResponseOptions) -> Result<Response> {
     let excitations = excitations(sweep, options.fmin.unwrap_or(0.0))?;
     let df = sweep.line_width().unwrap_or(f64::NAN);
     let wrong = wrong_window(sweep, &excitations, df);
-    let mut found = read(sweep, options, &excitations)?;
+    let (mut found, _) = read(sweep, options, &excitations)?;
     found.findings.splice(0..0, wrong.iter().cloned());
     let mut found = found.curve(sweep.direction);
     if wrong.is_some() {
@@ -91,11 +91,16 @@ pub fn response(sweep: &Sweep, options: &ResponseOptions) -> Result<Response> {
     Ok(found)
 }
 
-/// The points of a sweep at known excitations, without jumps and resonances yet.
+/// The points of a sweep at known excitations, without jumps and resonances yet; and for each the standard
+/// deviation of one component that steady lines add there, in the unit of the measured signal.
 ///
 /// # Errors
 /// If the stored quantity cannot be integrated to a displacement, velocity or acceleration.
-pub(crate) fn read(sweep: &Sweep, options: &ResponseOptions, excitations: &[Excitation]) -> Result<Response> {
+pub(crate) fn read(
+    sweep: &Sweep,
+    options: &ResponseOptions,
+    excitations: &[Excitation],
+) -> Result<(Response, Vec<f64>)> {
     let df = sweep.line_width().unwrap_or(f64::NAN);
     // A spectrum that was divided by frequency is noise below two lines, and below a quarter of the lowest
     // excitation.
@@ -121,6 +126,7 @@ pub(crate) fn read(sweep: &Sweep, options: &ResponseOptions, excitations: &[Exci
     taker.steady = SteadyLine::of(&measured, &positions, window);
     let steps = sweep.points.iter().zip(excitations).zip(&measured);
     let points = steps.map(|((p, e), measured)| taker.point(p, e, measured)).collect();
+    let beside = positions.iter().map(|at| taker.beside(*at, window)).collect();
     let passed = taker.steady.iter().map(|line| {
         let n = positions.iter().filter(|at| line.at(**at, window) > 0.0).count();
         Finding::caution("sweep-passes-line")
@@ -133,7 +139,7 @@ pub(crate) fn read(sweep: &Sweep, options: &ResponseOptions, excitations: &[Exci
         ("analyser_integrated", &sweep.analyser_integrated),
         ("fmin", &fmin),
     ];
-    Ok(Response {
+    let response = Response {
         name: sweep.name.clone(),
         direction: None,
         mass: sweep.mass,
@@ -145,7 +151,8 @@ pub(crate) fn read(sweep: &Sweep, options: &ResponseOptions, excitations: &[Exci
         jumps: Vec::new(),
         findings: sweep.findings.iter().cloned().chain(repeated(sweep)).chain(passed).collect(),
         history: sweep.history().iter().cloned().chain([Step::new("response", &taken)]).collect(),
-    })
+    };
+    Ok((response, beside))
 }
 
 impl Response {

@@ -80,8 +80,10 @@ pub fn stepped(
     }
     let excitations: Vec<Excitation> =
         taken.iter().zip(&steps).map(|(taken, step)| taken.excitation(step)).collect();
-    let mut found = read(&sweep, options, &excitations)?;
-    for (point, step) in found.points.iter_mut().zip(&taken) {
+    let (mut found, beside) = read(&sweep, options, &excitations)?;
+    for ((point, step), beside) in found.points.iter_mut().zip(&mut taken).zip(beside) {
+        step.response.allow(beside);
+        step.ratio.allow(beside / step.force.0);
         step.overrule(point, options.times(&sweep), found.unit);
         found.findings.extend(step.findings.iter().cloned());
     }
@@ -305,8 +307,8 @@ impl Phasor {
         Phasor { std: None, across: None, ..self }
     }
 
-    /// Adds the change that a transient or drift may still make, in the unit of the phasor, to both
-    /// uncertainties.
+    /// Adds the change that a transient, a drift or a steady line may make, in the unit of the phasor, to
+    /// both uncertainties.
     fn allow(&mut self, left: f64) {
         for std in [&mut self.std, &mut self.across] {
             *std = std.map(|std| std.hypot(left));

@@ -19,6 +19,7 @@ use crate::report::{Cell, Table};
 use run::{End, Leg, Range, Runs};
 use serde::Deserialize;
 use serde_json::json;
+use std::f64::consts::TAU;
 
 /// What is asked.
 #[derive(Debug, Clone)]
@@ -46,7 +47,7 @@ pub struct Keys {
     /// and the beginning of a pulse [default: at rest, phase 0]
     #[cfg_attr(
         feature = "cli",
-        arg(long, value_name = "X1,V1,X2,V2,PHASE", value_delimiter = ',', allow_hyphen_values = true)
+        arg(long, value_name = "X1,V1,X2,V2,PHASE", value_delimiter = ',', allow_hyphen_values = true, action = clap::ArgAction::Set)
     )]
     pub start: Vec<f64>,
     /// Change the frequency continuously by this many Hz/s, instead of in steps
@@ -171,7 +172,7 @@ impl Keys {
     fn start(&self, rig: &Rig) -> Result<(State, f64)> {
         match self.start[..] {
             [] => Ok((Simulation::at_rest(rig), 0.0)),
-            [x1, v1, x2, v2, phase] => Ok((State { x1, v1, x2, v2 }, phase)),
+            [x1, v1, x2, v2, phase] => Ok((State { x1, v1, x2, v2 }, phase.rem_euclid(TAU))),
             _ => {
                 let found = format!("{} numbers of a start", self.start.len());
                 Err(Error::usage(found, "five: x1,v1,x2,v2,phase in m, m/s and rad").setting("start"))
@@ -227,6 +228,11 @@ fn moving(value: f64, floor: f64) -> Cell {
 
 /// State at the end of each direction, from which another sweep starts.
 fn final_states(ends: &[&End], floor: f64) -> Table {
+    let start = |end: &&End| {
+        let State { x1, v1, x2, v2 } = end.state;
+        format!("--start={x1:?},{v1:?},{x2:?},{v2:?},{:?} ({})", end.phase, end.direction.name())
+    };
+    let continued: Vec<String> = ends.iter().map(start).collect();
     table(
         "End",
         ends,
@@ -242,7 +248,10 @@ fn final_states(ends: &[&End], floor: f64) -> Table {
             ("phase", "rad", &|end| end.phase.into()),
         ],
     )
-    .note("Impacts: in so many cycles of the excitation. A start with these numbers continues the motion.")
+    .note(format!(
+        "Impacts: in so many cycles of the excitation. To continue the motion: {}.",
+        continued.join(", ")
+    ))
 }
 
 /// Point by point, up and then down.

@@ -82,7 +82,7 @@ fn response_to_a_reference_with_files_that_are_read_again() {
             phase[k]
         );
     }
-    for name in ["frf.svg", "frf.png", "frf_argand.svg", "frf.csv", "frf.uff"] {
+    for name in ["frf.svg", "frf.png", "argand_frf.svg", "frf.csv", "frf.uff"] {
         assert!(out.join(name).is_file(), "{name}");
     }
     for name in ["frf.csv", "frf.uff"] {

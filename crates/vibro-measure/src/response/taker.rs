@@ -61,11 +61,16 @@ impl Taker<'_> {
         point.response.values.magnitudes().into_iter().enumerate().map(undone).collect()
     }
 
-    /// Standard deviation of one component of the lines at `position`: of the noise around, and of steady
-    /// lines there.
+    /// Standard deviation of one component that steady lines add at `position`.
+    pub fn beside(&self, position: f64, window: Option<Window>) -> f64 {
+        self.steady.iter().fold(0.0, |sum, line| sum.hypot(line.at(position, window)))
+    }
+
+    /// Standard deviation of one component of the lines at `position`: of the noise around line `k`, and of
+    /// steady lines.
     fn floor(&self, measured: &[f64], position: f64, k: usize, window: Option<Window>) -> Option<f64> {
         let noise = noise::around(measured, k, noise::REACH, window)?;
-        Some(self.steady.iter().fold(noise, |sum, line| sum.hypot(line.at(position, window))))
+        Some(noise.hypot(self.beside(position, window)))
     }
 
     /// Reads one step from the magnitudes of its measured signal.
@@ -134,7 +139,10 @@ impl Taker<'_> {
         let (x, f) = (*response.get(k)?, *force.get(k)?);
         let window = point.response.window;
         let noise = |values: &Values| noise::around(&values.magnitudes(), k, noise::REACH, window);
-        let (of_x, of_f) = (noise(&point.response.values)?, noise(&point.force)?);
+        // A steady line is one of the measured signal, which the analyser divided.
+        let divided = (TAU * self.frequency(k as f64)).powi(self.sweep.analyser_integrated.into());
+        let steady = self.beside(self.position(excitation), window) / divided;
+        let (of_x, of_f) = (noise(&point.response.values)?.hypot(steady), noise(&point.force)?);
         let relative = (of_x / x.norm()).hypot(of_f / f.norm());
         // The analyser's division at the frequency of the line is replaced by one at the frequency of the
         // sine.
