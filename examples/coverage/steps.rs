@@ -3,12 +3,13 @@
 
 use super::disturbance::{Chain, Mix};
 use super::record::{Answer, Kind, Record};
+use super::sweeps::{resonance_answer, sweep_up};
 use super::trace;
 use num_complex::Complex64;
 use std::f64::consts::{PI, TAU};
 use vibroimpact::measure::response::{ResponseOptions, ResponsePoint};
 use vibroimpact::measure::stepped::stepped;
-use vibroimpact::record::{Axis, Direction, StepTraces, Sweep};
+use vibroimpact::record::{Axis, StepTraces};
 
 /// The kinds of records drawn here.
 pub const KINDS: &[Kind] = &[Kind {
@@ -95,15 +96,7 @@ fn draw(mix: &mut Mix) -> Record {
     let largest = frequencies.iter().map(|f| receptance(*f).norm() * setup.force).fold(0.0, f64::max);
     let traces: Vec<_> = frequencies.iter().map(|f| setup.step(mix, *f, largest)).collect();
     let traces = traces.into_iter().map(|t| (t.path.clone(), Ok(t))).collect();
-    let sweep = Sweep {
-        name: "sweep".into(),
-        direction: Some(Direction::Up),
-        mass: Some(1),
-        axis: Axis::index(0),
-        analyser_integrated: 0,
-        points: Vec::new(),
-        findings: Vec::new(),
-    };
+    let sweep = sweep_up(Axis::index(0), Vec::new());
     let found = stepped(sweep, traces, &ResponseOptions::default()).ok().map(|(_, found)| found);
     let mut record = Record::default();
     // A step without a sine of force would be left out; none of these is.
@@ -112,11 +105,7 @@ fn draw(mix: &mut Mix) -> Record {
     for (k, f) in frequencies.into_iter().enumerate() {
         step_answers(&mut record, f, receptance(f), points.get(k).copied());
     }
-    let resonance = natural_frequency * (1.0 - 2.0 * zeta * zeta).sqrt();
-    let distance = |f: f64| (f - resonance).abs();
-    let resonances = found.iter().flat_map(|r| &r.resonances);
-    let nearest = resonances.min_by(|a, b| distance(a.frequency).total_cmp(&distance(b.frequency)));
-    record.answers.push(Answer::of("resonance", resonance, nearest.map(|r| (r.frequency, r.frequency_std))));
+    resonance_answer(&mut record, natural_frequency, zeta, found.as_ref());
     record
 }
 

@@ -5,6 +5,7 @@ use super::disturbance::{Chain, Mix};
 use super::record::{Answer, Kind, Record};
 use super::trace;
 use std::f64::consts::{PI, TAU};
+use vibroimpact::measure::resonance::Resonance;
 use vibroimpact::measure::response::{Response, ResponseOptions, response};
 use vibroimpact::record::{Axis, Direction, Scaling, Spectrum, Sweep, SweepPoint, Values, Window};
 use vibroimpact::signal::fft::Transform;
@@ -153,12 +154,31 @@ fn draw(mix: &mut Mix) -> Record {
     let lowest = 6.0 * LINE_SPACING;
     let (points, truths): (Vec<SweepPoint>, Vec<Truth>) =
         (0..steps).map(|k| setup.step(mix, frequency(k).max(lowest), k, largest)).unzip();
-    let axis = points[0].response.axis.clone();
-    let (name, direction) = ("sweep".into(), Some(Direction::Up));
-    let sweep =
-        Sweep { name, direction, mass: Some(1), axis, analyser_integrated: 0, points, findings: Vec::new() };
+    let sweep = sweep_up(points[0].response.axis.clone(), points);
     let found = response(&sweep, &ResponseOptions::default()).ok();
     sweep_answers(&setup, truths, found.as_ref())
+}
+
+/// A sweep of the excited mass with rising frequency.
+pub fn sweep_up(axis: Axis, points: Vec<SweepPoint>) -> Sweep {
+    let (name, direction) = ("sweep".into(), Some(Direction::Up));
+    Sweep { name, direction, mass: Some(1), axis, analyser_integrated: 0, points, findings: Vec::new() }
+}
+
+/// Adds the answer for the resonance of the displacement, which lies below the undamped natural frequency in
+/// Hz. Returns the true resonance in Hz, and the one found nearest to it.
+pub fn resonance_answer<'a>(
+    record: &mut Record,
+    natural_frequency: f64,
+    zeta: f64,
+    found: Option<&'a Response>,
+) -> (f64, Option<&'a Resonance>) {
+    let truth = natural_frequency * (1.0 - 2.0 * zeta * zeta).sqrt();
+    let distance = |f: f64| (f - truth).abs();
+    let resonances = found.into_iter().flat_map(|r| &r.resonances);
+    let nearest = resonances.min_by(|a, b| distance(a.frequency).total_cmp(&distance(b.frequency)));
+    record.answers.push(Answer::of("resonance", truth, nearest.map(|r| (r.frequency, r.frequency_std))));
+    (truth, nearest)
 }
 
 /// The answers for every step, and for the resonance nearest to the true one.
@@ -173,13 +193,7 @@ fn sweep_answers(setup: &Setup, truths: Vec<Truth>, found: Option<&Response>) ->
         let amplitude = point.filter(|p| p.upper_limit.is_none()).map(|p| &p.amplitude);
         record.answers.push(Answer::new("amplitude", truth.amplitude, amplitude));
     }
-    // The displacement is largest below the undamped natural frequency.
-    let resonance = setup.natural_frequency * (1.0 - 2.0 * setup.zeta * setup.zeta).sqrt();
-    let distance = |f: f64| (f - resonance).abs();
-    let resonances = found.iter().flat_map(|r| &r.resonances);
-    let nearest = resonances.min_by(|a, b| distance(a.frequency).total_cmp(&distance(b.frequency)));
-    let frequency = nearest.map(|r| (r.frequency, r.frequency_std));
-    record.answers.push(Answer::of("resonance", resonance, frequency));
+    let (resonance, nearest) = resonance_answer(&mut record, setup.natural_frequency, setup.zeta, found);
     // With modulation each step has its own mean force, so the steps do not lie on one resonance curve and
     // no height is asked.
     if setup.modulation == 0.0 {

@@ -61,9 +61,9 @@ impl Answer {
         self.findings.extend(findings.into_iter().map(|f| (record.to_owned(), f.borrow().clone())));
     }
 
-    /// Adds a figure.
-    pub fn figure(&mut self, name: impl Into<String>, figure: Figure) {
-        self.figures.push((name.into(), figure));
+    /// Adds a figure, if there is one.
+    pub fn figure(&mut self, name: impl Into<String>, figure: impl Into<Option<Figure>>) {
+        self.figures.extend(figure.into().map(|figure| (name.into(), figure)));
     }
 
     /// Adds a table to show, also as a CSV file.

@@ -238,8 +238,7 @@ impl Keys {
         answer.csv("methods", &methods);
         answer.details.push(methods);
         answer.figure("frf", figures::frf(name, meta, measured, &found.modes));
-        let argand = figures::argand(name, meta, measured, &found.modes);
-        answer.figures.extend(argand.map(|figure| ("argand".to_owned(), figure)));
+        answer.figure("argand", figures::argand(name, meta, measured, &found.modes));
         if !records.is_empty() {
             let (files, unwritten) = files::records("frf", records)?;
             answer.files.extend(files);

@@ -105,7 +105,7 @@ impl Keys {
 fn shown(name: &str, found: &PulseResult) -> Result<Answer> {
     let mut answer = Answer::of(found)?;
     answer.add("", &found.findings);
-    answer.figures.extend(figures::pulse(name, found).map(|figure| ("pulse".to_owned(), figure)));
+    answer.figure("pulse", figures::pulse(name, found));
     answer.evidence.push(found.into());
     answer.headlines.push(headline(
         "Contact pulses",

@@ -235,8 +235,7 @@ impl OfFile for Keys {
         answer.details.push(settings_table([(found.name.as_str(), &found)]));
         let name = if self.reference.is_some() { "frf" } else { "spectrum" };
         answer.figure(name, figures::lines(source.name, &found));
-        let argand = figures::argand(source.name, &found);
-        answer.figures.extend(argand.map(|figure| ("argand_frf".to_owned(), figure)));
+        answer.figure("argand_frf", figures::argand(source.name, &found));
         let (files, unwritten) = files::records(name, &found.records())?;
         answer.files = files;
         answer.add("", unwritten);
@@ -274,7 +273,7 @@ pub fn compared(found: &[(String, SpectralResult)]) -> Result<Answer> {
     answer.result.insert("spectra".to_owned(), spectra.into());
     answer.table(&format!("{}_peaks", kind(like)), common_peaks(found));
     answer.details.push(settings_table(found.iter().map(|(name, result)| (name.as_str(), result))));
-    answer.figures.extend(figures::together(found).map(|figure| (kind(like).to_owned(), figure)));
+    answer.figure(kind(like), figures::together(found));
     Ok(answer)
 }
 

@@ -351,11 +351,7 @@ impl Analysis for Keys {
         job.put("crossings", &pairing::all_crossings(&responses))?;
         let mut all = Answer { findings: pairing::swept_twice(&responses), ..Answer::default() };
         if !responses.is_empty() {
-            all.figure("response", figures::response(&job.title, &responses));
-            if let Some(figure) = figures::receptance(&job.title, &responses) {
-                all.figure("receptance", figure);
-            }
-            all.figures.extend(figures::force(&job.title, &responses).map(|f| ("force".to_owned(), f)));
+            figures::responses(&mut all, &job.title, &responses);
             all.tables = vec![tables::resonances(&responses), tables::jumps(&responses)];
         }
         job.show("", "", all);

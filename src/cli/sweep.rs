@@ -166,11 +166,7 @@ impl CommandArgs for ResponseArgs {
             let all = std::slice::from_ref(&found);
             let mut answer = Answer::of(&found)?;
             answer.add("", &found.findings);
-            answer.figure("response", figures::response(&found.name, all));
-            if let Some(figure) = figures::receptance(&found.name, all) {
-                answer.figure("receptance", figure);
-            }
-            answer.figures.extend(figures::force(&found.name, all).map(|f| ("force".to_owned(), f)));
+            figures::responses(&mut answer, &found.name, all);
             answer.csv("response", &tables::response(&found));
             answer.tables = vec![tables::curve(&found), tables::resonances(all), tables::jumps(all)];
             answer

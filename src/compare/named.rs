@@ -1,9 +1,8 @@
 //! Resonances and jumps of a simulated sweep, named by the phase between the masses.
 
 use crate::model::Rig;
-use crate::model::sweep::{Point, Swept};
+use crate::model::sweep::{Point, Swept, above_floor, in_phase};
 use serde::Serialize;
-use std::f64::consts::FRAC_PI_2;
 use vibro_measure::jump::Jump;
 use vibro_measure::resonance::{NamedCurve, Resonance, ResonanceKind, name_modes_by_phase, share_jumps};
 use vibro_record::Direction;
@@ -39,14 +38,13 @@ pub fn named(swept: &Swept, rig: &Rig) -> (Vec<Named<Resonance>>, Vec<Named<Jump
         resonances.retain(|r| r.amplitude > floor && is_settled(points, r.frequency, floor, rig));
         jumps.retain(|j| j.amplitude_before.max(j.amplitude_after) > floor);
         for jump in jumps {
-            for x in [&mut jump.amplitude_before, &mut jump.amplitude_after] {
-                *x = if *x < floor { 0.0 } else { *x };
-            }
+            jump.amplitude_before = above_floor(jump.amplitude_before, floor);
+            jump.amplitude_after = above_floor(jump.amplitude_after, floor);
         }
     }
     name_modes_by_phase(&mut curves, |direction, frequency| {
         let points = side(direction);
-        Some(points[nearest(points, frequency)].relative_phase?.abs() < FRAC_PI_2)
+        points[nearest(points, frequency)].relative_phase.map(in_phase)
     });
     let mut all = (Vec::new(), Vec::new());
     for NamedCurve { mass, direction, resonances, jumps, .. } in curves {

@@ -12,7 +12,7 @@ use super::motion::Motion;
 use super::reaction::{Reaction, Tally};
 use super::scales;
 use serde::Serialize;
-use std::f64::consts::TAU;
+use std::f64::consts::{FRAC_PI_2, TAU};
 use vibro_record::{Direction, Error, Result};
 
 /// Steps of constant frequency per cycle of a continuous sweep. A step has the frequency at its middle, so
@@ -247,6 +247,16 @@ impl Point {
     pub fn is_regular(&self, floor: f64) -> bool {
         self.amplitudes().into_iter().zip(self.unrest).all(|(x, unrest)| x <= floor || unrest <= REGULAR * x)
     }
+}
+
+/// Whether masses with this phase of x₂ against x₁ (rad) move in phase, rather than in antiphase.
+pub fn in_phase(relative_phase: f64) -> bool {
+    relative_phase.abs() < FRAC_PI_2
+}
+
+/// The value, or 0 where it is smaller than the floor of rounding.
+pub fn above_floor(value: f64, floor: f64) -> f64 {
+    if value.abs() < floor { 0.0 } else { value }
 }
 
 /// A sweep up and one down.

@@ -9,6 +9,8 @@ use std::f64::consts::TAU;
 
 /// Most spectral lines that are drawn as dots; more are drawn as a curve.
 const DOTS: usize = 150;
+/// Least coherence of a line whose phase is drawn: below it, the phase is mostly noise.
+pub(crate) const COHERENT: f64 = 0.5;
 /// Fewest points of a smooth curve over frequency.
 const SMOOTH: usize = 300;
 /// Fewest points of a smooth circle, which is passed within a few bandwidths.
@@ -104,7 +106,7 @@ pub fn argand(title: &str, meta: &Meta, measured: &Measured, modes: &[Mode]) -> 
 fn circle(meta: &Meta, measured: &Measured, modes: &[Mode], curve: &[(f64, Complex64)], named: bool) -> Plot {
     let name = |name: &'static str| if named { name } else { "" };
     let (from, to, _) = modes[0].lines;
-    let coherent = |k: &usize| measured.coherence.as_ref().is_none_or(|c| c[*k] >= 0.5);
+    let coherent = |k: &usize| measured.coherence.as_ref().is_none_or(|c| c[*k] >= COHERENT);
     let (re, im): (Vec<f64>, Vec<f64>) = (0..measured.frequency.len())
         .filter(|k| (from..=to).contains(&measured.frequency[*k]) && coherent(k))
         .map(|k| (measured.values[k].re, measured.values[k].im))
@@ -198,7 +200,7 @@ pub(crate) fn phase_plot(
     coherence: &[f64],
     ink: Ink,
 ) -> Plot {
-    let known = coherence.iter().map(|c| *c >= 0.5).chain(std::iter::repeat(true));
+    let known = coherence.iter().map(|c| *c >= COHERENT).chain(std::iter::repeat(true));
     let phase: Vec<f64> =
         values.zip(known).map(|(v, known)| if known { v.arg().to_degrees() } else { f64::NAN }).collect();
     let shown = if f.len() <= DOTS {

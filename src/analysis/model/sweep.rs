@@ -10,7 +10,7 @@ use crate::error::{Error, Result};
 use crate::measure::jump::Jump;
 use crate::measure::resonance::Resonance;
 use crate::model::simulate::GRAZING_SPEED;
-use crate::model::sweep::{Observable, Pace, Plan, Swept};
+use crate::model::sweep::{Observable, Pace, Plan, Swept, above_floor};
 use crate::model::{Rig, Simulation, State};
 use crate::record::{Direction, Finding};
 use crate::report::files::Names;
@@ -129,8 +129,9 @@ impl Keys {
         let make = |excitation: &_, later: f64| make(excitation, state, phase + later);
         let frequency = over_force.then(|| excitation.frequency());
         let runs = Runs::of(make, &excitation, &plan, frequency, self.direction.sweeps())?;
-        let (irregular, by_chance) = (runs.irregular(), runs.by_chance());
         let swept = runs.swept();
+        let floor = swept.floor();
+        let (irregular, by_chance) = (runs.irregular(floor), runs.by_chance(floor));
         let (resonances, jumps) =
             if over_force { (Vec::new(), Vec::new()) } else { named(&swept, &scene.rig) };
         let swept = swept.without_dust();
@@ -148,14 +149,15 @@ impl Keys {
         }))?;
         answer.add("", finding);
         answer.add("", contact::buffer(&scene, self.model));
-        answer.add("", scattered(&swept));
-        answer.add("", chance(&runs, &by_chance));
+        let all = swept.up.len() + swept.down.len();
+        answer.add("", points_within(&irregular, all, "sweep-cycles-unlike"));
+        answer.add("", points_within(&by_chance, all, "sweep-start-decides"));
         answer.add("", still(&swept, &scene.rig));
         answer.tables.push(resonances_and_jumps(&resonances, &jumps));
         if !(irregular.is_empty() && by_chance.is_empty()) {
-            answer.tables.push(ranges(&irregular, &by_chance, over_force, swept.floor()));
+            answer.tables.push(ranges(&irregular, &by_chance, over_force, floor));
         }
-        answer.tables.push(final_states(&ends, swept.floor()));
+        answer.tables.push(final_states(&ends, floor));
         answer.figure("sweep", figures::sweep(&swept, &resonances, &jumps, plan.observable, over_force));
         answer.figure("reaction", figures::forces(&swept, over_force));
         for Leg { direction, portrait, end, .. } in runs.legs() {
@@ -181,18 +183,10 @@ impl Keys {
     }
 }
 
-/// Caution on the points whose cycles differ.
-fn scattered(swept: &Swept) -> Option<Finding> {
-    let all = || swept.up.iter().chain(&swept.down);
-    let n = all().filter(|p| !p.is_regular(swept.floor())).count();
-    (n > 0).then(|| Finding::caution("sweep-cycles-unlike").count("n", n).count("all", all().count()))
-}
-
-/// Caution on the points that another phase of the start changes.
-fn chance(runs: &Runs, by_chance: &[Range]) -> Option<Finding> {
-    let n: usize = by_chance.iter().map(|range| range.points).sum();
-    let all: usize = runs.legs().map(|leg| leg.points.len()).sum();
-    (n > 0).then(|| Finding::caution("sweep-start-decides").count("n", n).count("all", all))
+/// Caution on the points that lie in some ranges, of all points of the sweeps.
+fn points_within(ranges: &[Range], all: usize, code: &'static str) -> Option<Finding> {
+    let n: usize = ranges.iter().map(|range| range.points).sum();
+    (n > 0).then(|| Finding::caution(code).count("n", n).count("all", all))
 }
 
 /// Notes the masses that stand still in the whole sweep.
@@ -215,15 +209,10 @@ fn ranges(irregular: &[Range], by_chance: &[Range], over_force: bool, floor: f64
             ("motion", "", &|(what, _)| (*what).into()),
             ("from", unit, &|(_, r)| r.from.into()),
             ("to", unit, &|(_, r)| r.to.into()),
-            ("largest x1", "m", &|(_, r)| moving(r.x1, floor)),
-            ("largest x2", "m", &|(_, r)| moving(r.x2, floor)),
+            ("largest x1", "m", &|(_, r)| above_floor(r.x1, floor).into()),
+            ("largest x2", "m", &|(_, r)| above_floor(r.x2, floor).into()),
         ],
     )
-}
-
-/// A displacement or velocity, 0 below the floor (m or m/s).
-fn moving(value: f64, floor: f64) -> Cell {
-    Cell::from(if value.abs() < floor { 0.0 } else { value })
 }
 
 /// State at the end of each direction, from which another sweep starts.
@@ -241,10 +230,10 @@ fn final_states(ends: &[&End], floor: f64) -> Table {
             ("frequency", "Hz", &|end| end.frequency.into()),
             ("impacts", "", &|end| end.regime.to_string().into()),
             ("masses", "", &|end| end.masses().into()),
-            ("x1", "m", &|end| moving(end.state.x1, floor)),
-            ("v1", "m/s", &|end| moving(end.state.v1, floor)),
-            ("x2", "m", &|end| moving(end.state.x2, floor)),
-            ("v2", "m/s", &|end| moving(end.state.v2, floor)),
+            ("x1", "m", &|end| above_floor(end.state.x1, floor).into()),
+            ("v1", "m/s", &|end| above_floor(end.state.v1, floor).into()),
+            ("x2", "m", &|end| above_floor(end.state.x2, floor).into()),
+            ("v2", "m/s", &|end| above_floor(end.state.v2, floor).into()),
             ("phase", "rad", &|end| end.phase.into()),
         ],
     )

@@ -1,6 +1,6 @@
 //! Spectra, and frequency response functions with their band and coherence.
 
-use crate::analysis::frf::figures::{coherence_plot, complex_plane, locus, phase_plot};
+use crate::analysis::frf::figures::{COHERENT, coherence_plot, complex_plane, locus, phase_plot};
 use crate::measure::spectral::{Lines, SpectralResult};
 use crate::record::{Scaling, Spectrum};
 use crate::report::layout::{capital, lettered};
@@ -163,7 +163,7 @@ const LEAST_NAMED: f64 = 0.05;
 pub fn argand(title: &str, result: &SpectralResult) -> Option<Figure> {
     let Lines::Transfer(found) = &result.found else { return None };
     let (f, values, coherence) = (found.frf.axis.values(), &found.frf.values, &found.coherence);
-    let is_drawn = |k: &usize| values[*k].is_finite() && coherence.get(*k).is_none_or(|c| *c >= 0.5);
+    let is_drawn = |k: &usize| values[*k].is_finite() && coherence.get(*k).is_none_or(|c| *c >= COHERENT);
     let drawn: Vec<usize> = (0..f.len()).filter(is_drawn).collect();
     let least = LEAST_NAMED * drawn.iter().map(|k| values[*k].norm()).fold(0.0, f64::max);
     let large = |k: &usize| values[*k].norm() >= least;

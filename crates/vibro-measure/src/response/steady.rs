@@ -34,15 +34,16 @@ impl SteadyLine {
         let near = |k: usize| excitations.iter().any(|at| (k as f64 - at).abs() < OWN);
         let count = spectra.iter().map(Vec::len).max().unwrap_or(0);
         let candidates: Vec<usize> = (1..count.saturating_sub(1)).filter(|k| near(*k)).collect();
-        // Position, amplitude and step of each line that stands out.
-        let mut seen: Vec<(f64, f64, usize)> = Vec::new();
-        for (step, (lines, at)) in spectra.iter().zip(excitations).enumerate() {
+        // Position and amplitude of each line that stands out. Of a group within [`STILL`] no two are of one
+        // step: they have a lower line between them.
+        let mut seen: Vec<(f64, f64)> = Vec::new();
+        for (lines, at) in spectra.iter().zip(excitations) {
             let inside = candidates.iter().filter(|k| **k + 1 < lines.len() && (**k as f64 - at).abs() > OWN);
             for &k in inside.filter(|k| lines[**k] > lines[**k - 1] && lines[**k] >= lines[**k + 1]) {
                 let floor = noise::around(lines, k, noise::REACH, Some(window));
                 let line = interpolate(lines, k, Some(window), floor);
                 let clear = line.zip(floor).filter(|(line, floor)| line.amplitude > ABOVE * floor);
-                seen.extend(clear.map(|(line, _)| (line.position, line.amplitude, step)));
+                seen.extend(clear.map(|(line, _)| (line.position, line.amplitude)));
             }
         }
         seen.sort_by(|a, b| a.0.total_cmp(&b.0));

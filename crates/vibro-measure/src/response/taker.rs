@@ -139,15 +139,14 @@ impl Taker<'_> {
         let (x, f) = (*response.get(k)?, *force.get(k)?);
         let window = point.response.window;
         let noise = |values: &Values| noise::around(&values.magnitudes(), k, noise::REACH, window);
-        // A steady line is one of the measured signal, which the analyser divided.
-        let divided = (TAU * self.frequency(k as f64)).powi(self.sweep.analyser_integrated.into());
-        let steady = self.beside(self.position(excitation), window) / divided;
-        let (of_x, of_f) = (noise(&point.response.values)?.hypot(steady), noise(&point.force)?);
-        let relative = (of_x / x.norm()).hypot(of_f / f.norm());
         // The analyser's division at the frequency of the line is replaced by one at the frequency of the
         // sine.
         let undone =
             Complex64::new(0.0, TAU * self.frequency(k as f64)).powi(self.sweep.analyser_integrated.into());
+        // A steady line is one of the measured signal, before that division.
+        let steady = self.beside(self.position(excitation), window) / undone.norm();
+        let (of_x, of_f) = (noise(&point.response.values)?.hypot(steady), noise(&point.force)?);
+        let relative = (of_x / x.norm()).hypot(of_f / f.norm());
         let times = i32::from(self.sweep.analyser_integrated) + i32::from(self.times);
         let ratio = x / f * undone / Complex64::new(0.0, TAU * excitation).powi(times);
         let std = Some(relative * ratio.norm()).filter(|std| std.is_finite());

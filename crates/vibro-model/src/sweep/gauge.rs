@@ -187,9 +187,7 @@ impl Gauge {
             (total.value(*observable, mass), variance.max(0.0).sqrt())
         })
     }
-}
 
-impl Gauge {
     /// Standard deviation in m between cycles that would be equal if the motion had a period of one to four
     /// cycles, for each mass. A slow change of the amplitude adds next to nothing. 0 without earlier cycles.
     pub fn unrest(&self) -> [f64; 2] {

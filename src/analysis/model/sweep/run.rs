@@ -3,12 +3,12 @@
 use super::Moving;
 use crate::error::Result;
 use crate::model::portrait::{Portrait, PortraitOptions};
-use crate::model::sweep::{Plan, Point, Swept};
+use crate::model::sweep::{Plan, Point, Swept, in_phase};
 use crate::model::{Excitation, Motion, Regime, State};
 use crate::record::Direction;
 use rayon::prelude::*;
 use serde::Serialize;
-use std::f64::consts::{FRAC_PI_2, TAU};
+use std::f64::consts::TAU;
 
 /// Phases of the excitation at which the sweep is started, in cycles after that of the start.
 const PHASES: [f64; 4] = [0.0, 0.25, 0.5, 0.75];
@@ -33,7 +33,7 @@ pub(super) struct End {
 impl End {
     /// Whether the masses move in phase.
     pub fn masses(&self) -> Option<&'static str> {
-        self.relative_phase.map(|p| if p.abs() < FRAC_PI_2 { "in phase" } else { "antiphase" })
+        self.relative_phase.map(|phase| if in_phase(phase) { "in phase" } else { "antiphase" })
     }
 }
 
@@ -62,8 +62,8 @@ pub(super) struct Range {
 #[derive(Debug)]
 pub(super) struct Runs {
     legs: Vec<Leg>,
-    /// The sweeps from other phases, each with the same legs.
-    others: Vec<Vec<Leg>>,
+    /// Points of the sweeps from other phases, for each of the same legs.
+    others: Vec<Vec<Vec<Point>>>,
     over_force: bool,
 }
 
@@ -101,9 +101,9 @@ impl Runs {
         let mut done: Vec<_> = tasks.into_par_iter().map(run).collect();
         let shifted = done.split_off(sweeps.len());
         let legs = done.into_iter().collect::<Result<Vec<_>>>()?.concat();
-        let all = |runs: &[Result<Vec<Leg>>]| -> Option<Vec<Leg>> {
+        let all = |runs: &[Result<Vec<Leg>>]| -> Option<Vec<Vec<Point>>> {
             let legs = runs.iter().map(|run| run.as_ref().ok()).collect::<Option<Vec<_>>>()?;
-            Some(legs.into_iter().flatten().cloned().collect())
+            Some(legs.into_iter().flatten().map(|leg| leg.points.clone()).collect())
         };
         let others = shifted.chunks(sweeps.len()).filter_map(all).collect();
         Ok(Runs { legs, others, over_force: frequency.is_some() })
@@ -125,21 +125,20 @@ impl Runs {
         Swept { up: of(Direction::Up), down: of(Direction::Down) }
     }
 
-    /// Ranges in which the motion does not repeat within four cycles.
-    pub fn irregular(&self) -> Vec<Range> {
-        let floor = self.swept().floor();
+    /// Ranges in which the motion, where larger than `floor` (m), does not repeat within four cycles.
+    pub fn irregular(&self, floor: f64) -> Vec<Range> {
         self.ranges(|_, points, i| !points[i].is_regular(floor))
     }
 
-    /// Ranges in which a start at another phase leads to another regular motion.
-    pub fn by_chance(&self) -> Vec<Range> {
-        let floor = self.swept().floor();
+    /// Ranges in which a start at another phase leads to another regular motion; amplitudes below `floor` (m)
+    /// are alike.
+    pub fn by_chance(&self, floor: f64) -> Vec<Range> {
         let mut found = self.ranges(|leg, points, i| {
             let same = |other: &Point| {
                 let pairs = points[i].amplitudes().into_iter().zip(other.amplitudes());
                 pairs.into_iter().all(|(a, b)| (a - b).abs() <= (ALIKE * a.max(b)).max(floor))
             };
-            let others = || self.others.iter().filter_map(|legs| legs[leg].points.get(i));
+            let others = || self.others.iter().filter_map(|legs| legs[leg].get(i));
             points[i].is_regular(floor) && others().any(|p| p.is_regular(floor) && !same(p))
         });
         found.retain(|range| range.points >= FEWEST);
