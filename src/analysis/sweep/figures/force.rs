@@ -7,8 +7,10 @@ use crate::report::{AxisSpec, Figure, Plot, Series, Stroke};
 /// Amplitude of the force over excitation frequency; `None` where no sweep has its force. At a resonance a
 /// shaker's force drops, as the structure takes its stroke.
 pub fn force(title: &str, responses: &[Response]) -> Option<Figure> {
-    // From 0, so that a steady force is a level line and not its own scatter.
-    let y = AxisSpec::new("Force amplitude", "N").limits(0.0, f64::NAN);
+    let forces = responses.iter().flat_map(|r| &r.points).filter_map(|p| p.force);
+    let largest = forces.filter(|force| force.is_finite()).fold(0.0, f64::max);
+    // From 0, so that a steady force is a level line and not its own scatter; with room for its markers.
+    let y = AxisSpec::new("Force amplitude", "N").limits(0.0, 1.06 * largest);
     let mut plot = Plot::new(AxisSpec::new("Excitation frequency", "Hz"), y);
     for (i, response) in responses.iter().enumerate() {
         let known = response.points.iter().filter_map(|p| Some((p.excitation, p.force?, p.force_std)));
