@@ -400,7 +400,7 @@ fn tones(name: &str, found: &SpectralResult) -> Table {
 impl Analysis for Keys {
     const SECTION: &'static str = "spectrum";
     const TITLE: &'static str = "Spectra";
-    const FILES: Names = Names::Named(&["spectrum", "frf", "argand_frf"]);
+    const FILES: Names = Names::Named(&["spectrum", "frf", "argand_frf", "argand_spectrum"]);
 
     fn check(entry: &Entry<Keys>, _: &[Entry<Keys>]) -> Result<()> {
         entry.file.as_ref().ok_or_else(no_file)?;

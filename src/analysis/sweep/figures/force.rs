@@ -25,5 +25,6 @@ pub fn force(title: &str, responses: &[Response]) -> Option<Figure> {
         plot = plot.with(Series { marker, ..measured }.stroke(Stroke::Thin));
     }
     let caption = "Amplitude of the force at the excitation frequency. Bars: one standard uncertainty, where larger than the marker.";
-    (!plot.series.is_empty()).then(|| Figure::double(format!("Force, {title}")).panel(plot).caption(caption))
+    (!plot.series.is_empty())
+        .then(|| Figure::double(format!("Force, {title}")).height(60.0).panel(plot).caption(caption))
 }
