@@ -10,8 +10,8 @@ use rayon::prelude::*;
 use serde::Serialize;
 use std::f64::consts::TAU;
 
-/// Phases of the excitation at which the sweep is started, in cycles after that of the start.
-const PHASES: [f64; 4] = [0.0, 0.25, 0.5, 0.75];
+/// Phases of the excitation at which the sweep is started too, in cycles after that of the start.
+const OTHER_PHASES: [f64; 3] = [0.25, 0.5, 0.75];
 
 /// Cycles over which the motion at the end is read, and those that are drawn.
 const END: PortraitOptions = PortraitOptions { cycles: 60, samples: 200, shown: 4 };
@@ -73,7 +73,8 @@ type Sweep<'a> = &'a dyn Fn(&mut dyn Motion, Direction) -> Result<Vec<Point>>;
 impl Runs {
     /// Sweeps motions that `make` creates from an excitation and a shift of the phase at the start (rad),
     /// over the force at `frequency` (Hz) if that is given. A start from another phase that fails is left
-    /// out.
+    /// out. There is none where at most half of the points are regular: irregular motions cannot be told
+    /// from one another.
     pub fn of(
         make: impl Fn(&Excitation, f64) -> Result<Moving> + Sync,
         excitation: &Excitation,
@@ -97,16 +98,16 @@ impl Runs {
             let mut motion = make(&at(first), phase * TAU)?;
             directions.iter().map(|direction| leg(&mut *motion, *direction, &points)).collect()
         };
-        let tasks: Vec<_> = PHASES.iter().flat_map(|p| sweeps.iter().map(move |s| (*p, *s))).collect();
-        let mut done: Vec<_> = tasks.into_par_iter().map(run).collect();
-        let shifted = done.split_off(sweeps.len());
-        let legs = done.into_iter().collect::<Result<Vec<_>>>()?.concat();
-        let all = |runs: &[Result<Vec<Leg>>]| -> Option<Vec<Vec<Point>>> {
-            let legs = runs.iter().map(|run| run.as_ref().ok()).collect::<Option<Vec<_>>>()?;
-            Some(legs.into_iter().flatten().map(|leg| leg.points.clone()).collect())
+        let legs = sweeps.par_iter().map(|s| run((0.0, s))).collect::<Result<Vec<_>>>()?.concat();
+        let all = |phase: f64| -> Option<Vec<Vec<Point>>> {
+            let legs: Vec<_> = sweeps.par_iter().map(|s| run((phase, s)).ok()).collect::<Option<_>>()?;
+            Some(legs.into_iter().flatten().map(|leg| leg.points).collect())
         };
-        let others = shifted.chunks(sweeps.len()).filter_map(all).collect();
-        Ok(Runs { legs, others, over_force: frequency.is_some() })
+        let mut runs = Runs { legs, others: Vec::new(), over_force: frequency.is_some() };
+        if runs.mostly_regular() {
+            runs.others = OTHER_PHASES.into_par_iter().filter_map(all).collect();
+        }
+        Ok(runs)
     }
 
     /// The sweeps from the start.
@@ -123,6 +124,13 @@ impl Runs {
                 .map_or_else(Vec::new, |l| l.points.clone())
         };
         Swept { up: of(Direction::Up), down: of(Direction::Down) }
+    }
+
+    /// Whether more than half of the points are regular.
+    fn mostly_regular(&self) -> bool {
+        let floor = self.swept().floor();
+        let points = || self.legs.iter().flat_map(|leg| &leg.points);
+        2 * points().filter(|p| p.is_regular(floor)).count() > points().count()
     }
 
     /// Ranges in which the motion, where larger than `floor` (m), does not repeat within four cycles.
