@@ -262,9 +262,14 @@ impl Traces {
 pub fn find_channel<'a>(
     path: &Path,
     wanted: &str,
-    all: impl Iterator<Item = (&'a str, &'a str)> + Clone,
+    all: impl Iterator<Item = (&'a str, &'a str)>,
 ) -> Result<usize> {
-    let names = all.clone().map(|(name, _)| name);
+    let all: Vec<_> = all.collect();
+    find_among(path, wanted, &all)
+}
+
+fn find_among(path: &Path, wanted: &str, all: &[(&str, &str)]) -> Result<usize> {
+    let names = all.iter().map(|(name, _)| *name);
     let named = |is: &dyn Fn(&str) -> bool| -> Vec<usize> {
         names.clone().enumerate().filter(|(_, name)| is(name)).map(|(i, _)| i).collect()
     };
@@ -273,10 +278,10 @@ pub fn find_channel<'a>(
     if same.is_empty() {
         same = named(&|name| name.to_lowercase() == small);
     }
-    let n = all.clone().count();
-    let mut of_quantity = all.filter(|(_, quantity)| *quantity == small);
+    let n = all.len();
+    let mut of_quantity = all.iter().filter(|(_, quantity)| *quantity == small);
     let only = of_quantity.next().filter(|_| of_quantity.next().is_none());
-    let mut near = nearest(wanted, names.clone()).or(only.map(|(name, _)| name));
+    let mut near = nearest(wanted, names.clone()).or(only.map(|(name, _)| *name));
     let number = wanted.parse::<usize>().ok().filter(|i| (1..=n).contains(i));
     let list: Vec<String> =
         names.take(20).enumerate().map(|(i, name)| format!("{} {name:?}", i + 1)).collect();

@@ -103,12 +103,12 @@ impl<'a> Written<'a> {
                 let again = T::deserialize(Node::table(table, &span)).err().and_then(|fault| fault.span);
                 changed.is_some() && again.is_none_or(|span| span.start > at.end || span.end < at.start)
             };
-            self.error_for(fault.what, at.clone(), accepts)
+            self.error_for(fault.what, at.clone(), &accepts)
         })
     }
 
     /// Error for a fault at the bytes `span`. `accepts` tries a replacement text in place of the value.
-    fn error_for(&self, fault: FaultKind, span: Range<usize>, accepts: impl Fn(&str) -> bool) -> Error {
+    fn error_for(&self, fault: FaultKind, span: Range<usize>, accepts: &dyn Fn(&str) -> bool) -> Error {
         let line = line_at(self.text, span.start);
         let (stated, head) = (&self.text[span.clone()], uncommented(line));
         let error = |found: &str, expected: &str, hint: String| {

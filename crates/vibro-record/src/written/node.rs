@@ -4,6 +4,7 @@ use crate::kind::Kind;
 use serde::de::value::{MapAccessDeserializer, MapDeserializer, SeqDeserializer, StrDeserializer};
 use serde::de::{self, DeserializeOwned, Deserializer, Expected, IntoDeserializer, Unexpected, Visitor};
 use serde::forward_to_deserialize_any;
+use std::borrow::Cow;
 use std::fmt;
 use std::ops::Range;
 use toml::Spanned;
@@ -38,6 +39,24 @@ pub enum FaultKind {
 impl From<FaultKind> for Fault {
     fn from(what: FaultKind) -> Fault {
         Fault { what, span: None }
+    }
+}
+
+impl Fault {
+    /// An error without a place is one of the node that is read, not of a value nested in it: it gets the
+    /// place of the node, and `kind` as the expected kind. `key` is the node's text if it is a key.
+    fn at(mut self, span: Range<usize>, kind: Option<Kind>, key: Option<String>) -> Fault {
+        if self.span.is_none() {
+            self.span = Some(span);
+            self.what = match (self.what, kind, key) {
+                (FaultKind::WrongValue(of_type), kind, Some(name)) => {
+                    FaultKind::UnknownName(name, kind.unwrap_or(of_type))
+                }
+                (FaultKind::WrongValue(_), Some(kind), None) => FaultKind::WrongValue(kind),
+                (what, ..) => what,
+            };
+        }
+        self
     }
 }
 
@@ -100,50 +119,59 @@ impl<'de> Node<'de> {
         Node { value: DeValue::Table(rows), span: span.clone(), is_key: false }
     }
 
-    /// Reads the node with a visitor of the expected type. An error without a place is one of this node
-    /// itself, not of a value nested in it: it gets the place of the node, and `kind` as the expected kind.
+    /// Reads the node with a visitor of the expected type; errors get its place.
     fn read<V: Visitor<'de>>(self, kind: Option<Kind>, visitor: V) -> Result<V::Value, Fault> {
-        let span = self.span.clone();
-        let name = self.value.as_str().filter(|_| self.is_key).map(str::to_owned);
-        self.visit(visitor).map_err(|mut fault| {
-            if fault.span.is_none() {
-                fault.span = Some(span);
-                fault.what = match (fault.what, kind, name) {
-                    (FaultKind::WrongValue(of_type), kind, Some(name)) => {
-                        FaultKind::UnknownName(name, kind.unwrap_or(of_type))
-                    }
-                    (FaultKind::WrongValue(_), Some(kind), None) => FaultKind::WrongValue(kind),
-                    (what, ..) => what,
-                };
-            }
-            fault
-        })
+        let key = if self.is_key { self.value.as_str().map(str::to_owned) } else { None };
+        Plain::of(self.value).visit(visitor).map_err(|fault| fault.at(self.span, kind, key))
+    }
+}
+
+/// A value without its place.
+enum Plain<'de> {
+    Text(Cow<'de, str>),
+    Whole(i64),
+    Number(f64),
+    Truth(bool),
+    List(Vec<Node<'de>>),
+    Table(DeTable<'de>),
+    /// A date: no key expects one.
+    Other,
+}
+
+impl<'de> Plain<'de> {
+    fn of(value: DeValue<'de>) -> Plain<'de> {
+        match value {
+            DeValue::String(text) => Plain::Text(text),
+            DeValue::Integer(number) => match i64::from_str_radix(number.as_str(), number.radix()) {
+                Ok(number) => Plain::Whole(number),
+                // Too large for 64 bits: read as a float, it fails the range check of its key.
+                Err(_) => Plain::Number(number.as_str().parse().unwrap_or(f64::INFINITY)),
+            },
+            DeValue::Float(number) => number.as_str().parse().map_or(Plain::Other, Plain::Number),
+            DeValue::Boolean(truth) => Plain::Truth(truth),
+            DeValue::Datetime(_) => Plain::Other,
+            DeValue::Array(all) => Plain::List(all.into_iter().map(Node::of).collect()),
+            DeValue::Table(rows) => Plain::Table(rows),
+        }
     }
 
     fn visit<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Fault> {
-        match self.value {
-            DeValue::String(text) => visitor.visit_str(&text),
-            DeValue::Integer(number) => match i64::from_str_radix(number.as_str(), number.radix()) {
-                Ok(number) => visitor.visit_i64(number),
-                // Too large for 64 bits: read as a float, it fails the range check of its key.
-                Err(_) => visitor.visit_f64(number.as_str().parse().unwrap_or(f64::INFINITY)),
-            },
-            DeValue::Float(number) => match number.as_str().parse() {
-                Ok(number) => visitor.visit_f64(number),
-                Err(_) => Err(de::Error::invalid_type(Unexpected::Other(number.as_str()), &visitor)),
-            },
-            DeValue::Boolean(truth) => visitor.visit_bool(truth),
-            DeValue::Datetime(_) => Err(de::Error::invalid_type(Unexpected::Other("a date"), &visitor)),
-            DeValue::Array(all) => {
-                let mut all = SeqDeserializer::new(all.into_iter().map(Node::of));
+        match self {
+            Plain::Text(text) => visitor.visit_str(&text),
+            Plain::Whole(number) => visitor.visit_i64(number),
+            Plain::Number(number) => visitor.visit_f64(number),
+            Plain::Truth(truth) => visitor.visit_bool(truth),
+            Plain::List(all) => {
+                let mut all = SeqDeserializer::new(all.into_iter());
                 let read = visitor.visit_seq(&mut all)?;
                 all.end().map(|()| read)
             }
-            DeValue::Table(rows) => {
+            Plain::Table(rows) => {
                 let mut rows = rows_of(rows);
                 let read = visitor.visit_map(&mut rows)?;
                 rows.end().map(|()| read)
             }
+            Plain::Other => Err(de::Error::invalid_type(Unexpected::Other("a date"), &visitor)),
         }
     }
 }
