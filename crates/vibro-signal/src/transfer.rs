@@ -130,16 +130,12 @@ fn low(coherence: &[f64], lines: usize) -> Option<Finding> {
 
 /// The function from the first channel of `averages` to another.
 ///
-/// Random errors as in Bendat & Piersol, Random Data (4th ed. 2010), table 9.6: ε(
-/// H
-/// ) = √(1−γ²)/(
-/// γ
-/// √(2n)), and arcsin ε for the phase in rad. The magnitude of Hv is a root of B/A without C, and with the
-/// variances of A and B (1/n) and their covariance (γ²/n) from the same table ε(
-/// Hv
-/// ) = √(1−γ²)/√(2n). Here n is the number of independent segments less one, which H itself uses up. Fewer
-/// than 7 averages keep their standard deviations, with a finding: these are unbiased, but themselves
-/// uncertain. One average alone has neither a coherence, which would always be 1, nor a standard deviation.
+/// Random errors as in Bendat & Piersol, Random Data (4th ed. 2010), table 9.6: ε(|H|) = √(1−γ²)/(|γ|√(2n)),
+/// and arcsin ε for the phase in rad. The magnitude of Hv is a root of B/A without C, and with the variances
+/// of A and B (1/n) and their covariance (γ²/n) from the same table ε(|Hv|) = √(1−γ²)/√(2n). Here n is the
+/// number of independent segments less one, which H itself uses up. Fewer than 7 averages keep their standard
+/// deviations, with a finding: these are valid, but themselves uncertain. One average alone has neither a
+/// coherence, which would always be 1, nor a standard deviation.
 ///
 /// # Errors
 /// For fewer than two independent averages of segments that overlap, and if there are no products with that

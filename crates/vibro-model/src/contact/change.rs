@@ -41,7 +41,7 @@ impl Compliant {
             }
             Mark::SpringActs | Mark::SpringFree => {
                 self.spring_acts = mark == Mark::SpringActs;
-                // The force of the spring's damper jumps, and may change the stage of the contact.
+                // The damper's force may jump, and with it the stage of the contact.
                 self.find_stage();
                 Event::Switch
             }

@@ -11,8 +11,9 @@ use vibro_record::Result;
 
 /// Equations of impacts at the phases θᵢ with the impulses Jᵢ, tᵢ = θᵢ/ω, T = 2πq/ω:
 ///
-/// gap Eᵢ = Δ − Re(Xe^{iθᵢ}) + Σⱼ Jⱼχ(tᵢ − tⱼ) = 0 and velocity Fᵢ = Jᵢ/(M(1+R)) − ȧ(tᵢ) + Σⱼ Jⱼχ̇(tᵢ − tⱼ)
-/// = 0,
+/// gap Eᵢ = Δ − Re(Xe^{iθᵢ}) + Σⱼ Jⱼχ(tᵢ − tⱼ) = 0 and
+///
+/// velocity Fᵢ = Jᵢ/(M(1+R)) − ȧ(tᵢ) + Σⱼ Jⱼχ̇(tᵢ − tⱼ) = 0,
 ///
 /// where a = Re(Xe^{iωt}), χ = χ₁ + χ₂ (periodic Green's functions over T; Babitsky 1998), and χ̇ for j = i
 /// is taken just before the impulse. For p = 1 these are the two conditions of the closed form. The
