@@ -21,7 +21,8 @@ fn flow(rig: &Rig, t: f64) -> Matrix4<f64> {
 /// ∇g is the gradient of the gap, D the matrix of the velocity change, f⁻ and f⁺ the rates of the state just
 /// before and just after.
 ///
-/// The determinant of S is R². Its elements grow like 1/vᵣ, the approach speed, when the impact grazes.
+/// The determinant of S is R². Its elements grow like 1/vᵣ, with the approach speed vᵣ, when the impact
+/// grazes.
 fn saltation(rig: &Rig, before: &[f64; 4], after: &[f64; 4]) -> Matrix4<f64> {
     let mut jump = Matrix4::identity();
     let [first, second] = rig.masses().map(|mass| rig.exchange() / mass);

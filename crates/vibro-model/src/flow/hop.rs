@@ -55,10 +55,10 @@ impl Flight {
     /// The landing of a short flight that begins at contact; `None` where the series proves none within
     /// `duration` (s).
     ///
-    /// Write the gap as g = g₀ + t q(t), where g₀ is only rounding. q falls while −g̈/2 is larger than the sum
-    /// of |gₙ|(n − 1)tⁿ⁻²/n! from n = 3 on, with the n-th derivative gₙ. If q falls up to 1.25 times the flight
-    /// time 2w/(−g̈) of a constant g̈, and is below 0 there, q has one root before, and g is positive up to it.
-    /// The truncation Mtᴺ/N! of N terms must be below `rounding` (m).
+    /// Write the gap as g = g₀ + t q(t), where g₀ is only rounding. q falls while −g̈/2 is larger than the
+    /// sum of |gₙ|(n − 1)tⁿ⁻²/n! from n = 3 on, with the n-th derivative gₙ at the start. If q falls up to
+    /// 1.25 times the flight time 2w/(−g̈) of a constant g̈, and is below 0 there, q has one root before, and
+    /// g is positive up to it. The truncation Mtᴺ/N! of N terms must be below `rounding` (m).
     #[inline]
     pub(super) fn hop(&self, duration: f64, rounding: f64) -> Option<Landing> {
         let [first, second] = &self.free;
