@@ -23,7 +23,7 @@ impl Body {
         Complex64::new(self.stiffness - self.mass * omega * omega, self.damping * omega).inv()
     }
 
-    /// Its free motion; a wall stays at rest.
+    /// Free motion of the body; a wall stays at rest.
     pub fn oscillator(&self) -> Oscillator {
         if self.mass == f64::INFINITY {
             return Oscillator::new(1.0, 0.0, 0.0);

@@ -1,4 +1,5 @@
-//! A slow continuous sweep of the frequency, in steps fine enough to be negligible.
+//! Frequency sweep at a constant rate, in steps of constant frequency that are short enough to be
+//! negligible.
 
 use super::motion::{Motion, Piece};
 use super::scales;
@@ -106,7 +107,7 @@ mod tests {
             motion.state()
         };
         let (coarse, fine) = (state(1e-3), state(1e-7));
-        // A lasting force deviation of F₀·1e-3 moves mass 1 at most as much as at resonance, F₀·1e-3/(c₁Ω₁).
+        // A constant force error of F₀·1e-3 moves mass 1 at most as much as at resonance: F₀·1e-3/(c₁Ω₁).
         let rig = Rig::thesis();
         let bound = 0.1 * 1e-3 / (rig.c1 * (rig.k1 / rig.m1).sqrt());
         assert!((coarse.x1 - fine.x1).abs() < bound, "{coarse:?} {fine:?}");

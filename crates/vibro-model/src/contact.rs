@@ -1,7 +1,8 @@
 //! Compliant contact: its laws, the restitution they give, and the motion of the rig with them.
 //!
 //! With the indentation δ = x₁ − x₂ − Δ > 0 the masses push each other apart with a force F that never pulls:
-//! - Kelvin–Voigt: F = k₃δ + c₃δ̇, cut at 0: one more linear mode, solved exactly;
+//! - Kelvin–Voigt: F = k₃δ + c₃δ̇, cut at 0: during contact the rig is another linear system, solved
+//!   exactly;
 //! - Hertz: F = kδ^{3/2}; Hunt–Crossley: F = kδⁿ(1 + αδ̇), cut at 0: integrated during the contact.
 //!
 //! ```

@@ -31,7 +31,7 @@ pub struct Mark {
 pub enum End {
     /// The end of the range is reached.
     Range,
-    /// An impact vanishes: beyond it its impulse would have to pull.
+    /// The impulse of an impact falls to zero; beyond this point it would have to be negative (pull).
     Grazing,
     /// The branch is a closed curve: it came back to its start.
     Closed,
@@ -59,9 +59,9 @@ const MOST_SWINGS: f64 = 1000.0;
 /// Follows the branch of `start` in both directions while the value of `over` is in `low..=high` (SI units):
 /// the frequency, the force, or a value of the rig.
 ///
-/// Steps along the branch have at most the length `step` (0.05 is fine). It combines phases (rad), impulses
-/// (over M(1 + R)ω times the gap or amplitude) and the varied value (pseudo-arclength; H. B. Keller 1977):
-/// its logarithm, a gap over the gap or amplitude at the start, a restitution itself.
+/// The length of a step combines (pseudo-arclength; H. B. Keller 1977): phases in rad; impulses over M(1 +
+/// R)ω times the gap or amplitude; and the varied value. This value enters as its logarithm, a gap over the
+/// gap or amplitude at the start, a restitution unchanged.
 ///
 /// # Errors
 /// If the range or the step is impossible or does not hold the start; if a mass swings more than 1000 times

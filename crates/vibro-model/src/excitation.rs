@@ -65,7 +65,7 @@ pub struct Pulses {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Sines {
-    /// The sines; cycles are those of the first one.
+    /// The sines; the cycle is the period of the first one.
     pub parts: Vec<Part>,
 }
 
@@ -131,7 +131,7 @@ impl Excitation {
         self.first().1
     }
 
-    /// Frequency and size, of several sines the first one's.
+    /// Frequency and size; of several sines, those of the first one.
     fn first(&self) -> (f64, f64) {
         match self {
             Excitation::Sine(sine) => (sine.frequency, sine.force),

@@ -17,10 +17,12 @@ fn flow(rig: &Rig, t: f64) -> Matrix4<f64> {
     phi
 }
 
-/// Saltation matrix S = D + (f⁺ − D f⁻)nᵀ/(nᵀf⁻) of an impact, with n = ∇g, the velocity change D, and the
-/// rate f of the state just before and just after (Müller 1995; Leine and Nijmeijer 2004).
+/// Saltation matrix S = D + (f⁺ − D f⁻)nᵀ/(nᵀf⁻) of an impact (Müller 1995; Leine and Nijmeijer 2004). n =
+/// ∇g is the gradient of the gap, D the matrix of the velocity change, f⁻ and f⁺ the rates of the state just
+/// before and just after.
 ///
-/// Its determinant is R². Its elements grow like 1/vᵣ when the impact grazes.
+/// The determinant of S is R². Its elements grow like 1/vᵣ, with the approach speed vᵣ, when the impact
+/// grazes.
 fn saltation(rig: &Rig, before: &[f64; 4], after: &[f64; 4]) -> Matrix4<f64> {
     let mut jump = Matrix4::identity();
     let [first, second] = rig.masses().map(|mass| rig.exchange() / mass);
@@ -129,7 +131,7 @@ mod tests {
 
     #[test]
     fn the_floor_lies_below_the_smallest_singular_value() {
-        // Independent entries: all matrices differ.
+        // Random matrices with independent elements.
         let mut noise = vibro_math::Noise::new(20_261_120);
         let mut next = || noise.uniform() - 0.5;
         let mut closest: f64 = 0.0;

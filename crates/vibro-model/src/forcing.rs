@@ -9,10 +9,10 @@ use std::f64::consts::TAU;
 use std::mem::discriminant;
 use vibro_record::{Error, Result};
 
-/// 2π − [`TAU`]: the rounding error of [`TAU`].
+/// 2π − [`TAU`]: the rounding error of the constant.
 const TAU_ERROR: f64 = 2.449_293_598_294_706_4e-16;
 
-/// Error of the phase in cycles after thousands of flights: some thousand roundings.
+/// Error of the phase in cycles after thousands of flights: several thousand roundings.
 const PHASE_ERROR: f64 = 1e-12;
 
 /// Sudden change of an excitation.

@@ -4,12 +4,12 @@ use vibro_math::Oscillator;
 use vibro_record::{Error, Result};
 
 /// χ(t) = e^{−bt}[sin λt + e^{−bT} sin λ(T − t)] / (mλ(1 + e^{−2bT} − 2e^{−bT} cos λT)) for 0 ≤ t ≤ T, in
-/// m/(N s).
+/// m/(N s), with the decay rate b in 1/s and the damped natural frequency λ in rad/s.
 ///
 /// Babitsky, *Theory of Vibro-Impact Systems* (1998); Rosenwasser (1969). Computed here as the free motion
-/// that returns after T to its start, with a velocity lower by 1/m: (χ, χ̇)(0⁺) = (I − Φ(T))⁻¹(0, 1/m). This
-/// form holds at any damping. Where the period T is short against the natural period, its relative error is
-/// about ε/(ΩT)².
+/// that returns after T to its start, with a velocity lower by 1/m: (χ, χ̇)(0⁺) = (I − Φ(T))⁻¹(0, 1/m),
+/// where Φ is the matrix of the free motion. This form holds at any damping. Where T is short against the
+/// natural period 2π/Ω, its relative error is about ε/(ΩT)².
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Green {
     pub(crate) oscillator: Oscillator,
@@ -47,8 +47,8 @@ impl Green {
         }
         let b = oscillator.decay();
         let scale = 1.0 / (m * determinant);
-        // 1 − C and 1 − e^{−2bT} are computed directly, without cancellation: near a lightly damped resonance
-        // C and e^{−bT} are both near 1.
+        // 1 − C, with C = e^{−bT} cos λT, and 1 − e^{−2bT} are computed directly, without cancellation: near
+        // a lightly damped resonance C and e^{−bT} are both near 1.
         let lost_twice = -(-2.0 * b * period).exp_m1();
         Ok(Green {
             oscillator,
@@ -69,7 +69,8 @@ impl Green {
 mod tests {
     use super::*;
 
-    /// Slow reference: impulse responses S(t + nT)/m of all past impulses, summed until they have decayed.
+    /// Slow reference: the sum of the impulse responses S(t + nT)/m to all past impulses, until they have
+    /// decayed.
     fn sum(m: f64, oscillator: Oscillator, period: f64, t: f64) -> (f64, f64) {
         let mut total = (0.0, 0.0);
         for n in (0..40_000).rev() {

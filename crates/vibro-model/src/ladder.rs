@@ -1,12 +1,14 @@
 //! The model ladder: the simplest model that answers a question about a scene well enough.
 //!
-//! From the simplest model to the richest: the motion without impacts, one impact a cycle in closed form, the
-//! same corrected for the duration of the contact, exact flights between rigid impacts, exact flights with a
-//! contact of spring and damper, contacts of curved bodies, a mass that is loose on its spring. A rung must
-//! pass the validity checks of its own theory, and its answer is compared with the next rung and with the
-//! next one that follows the motion in time; the lowest that passes is chosen. Computing time does not decide
-//! (all rungs take µs to ms): parameters that cannot be identified do. Where one is needed and unknown,
-//! nothing is chosen, and the answer over its range is given instead.
+//! From the simplest model to the richest: the motion without impacts, one impact a cycle in closed form,
+//! the same corrected for the duration of the contact, exact flights between rigid impacts, exact flights
+//! with a contact of spring and damper, contacts of curved bodies, a mass that is loose on its spring. A
+//! rung must pass the validity checks of its own theory. Its answer is compared with the next rung and with
+//! the next one that follows the motion in time; the lowest that passes is chosen.
+//!
+//! Computing time is no criterion (all rungs take µs to ms); unknown parameters are. Where a rung needs a
+//! parameter that is unknown, nothing is chosen, and the answer over the range of that parameter is given
+//! instead.
 //!
 //! ```
 //! use vibro_model::ladder::{Model, Question, choose};
@@ -45,7 +47,7 @@ use question::Answer;
 use serde::Serialize;
 use vibro_record::{Error, Finding, Result};
 
-/// The rung that is good enough for a scene, and how that was found.
+/// The lowest rung that is good enough for a scene, with the answers and checks that led to it.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct Choice {
     /// Excitation frequency in Hz.
@@ -56,7 +58,7 @@ pub struct Choice {
     pub rungs: Vec<Rung>,
     /// Parameters that must be known before a rung can be chosen.
     pub needs: Vec<Need>,
-    /// The change of the chosen answer at the next rung that follows the motion.
+    /// Change of the chosen answer to that of the next rung that follows the motion in time.
     pub audit: Option<Change>,
     /// Change of the answer with curved bodies (exponent 1.5) of the same contact duration and restitution,
     /// where a contact of spring and damper, or the correction for one, was chosen.
@@ -80,7 +82,7 @@ pub struct Choice {
 pub struct Sensitivity {
     /// k₃ in N/m.
     pub stiffness: f64,
-    /// Contact duration as part of the cycle.
+    /// Contact duration as a fraction of the cycle.
     pub share: f64,
     /// The answer for x₁ and x₂; for impact quantities the same number twice.
     pub answer: [f64; 2],
@@ -145,8 +147,8 @@ pub fn choose(scene: &Scene, frequency: f64, question: &Question) -> Result<Choi
     chosen(scene, frequency, question, true)
 }
 
-/// As [`choose`]; with `bend`, a chosen contact of spring and damper is compared with curved bodies, and the
-/// answer with those at both ends of the gap's uncertainty.
+/// As [`choose`]. With `bend`, a chosen contact of spring and damper is compared with curved bodies, and the
+/// chosen answer with the answers at both ends of the gap's uncertainty.
 fn chosen(scene: &Scene, frequency: f64, question: &Question, bend: bool) -> Result<Choice> {
     question.check()?;
     let Some(excitation) = &scene.excitation else {

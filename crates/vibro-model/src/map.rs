@@ -90,8 +90,8 @@ pub struct Cell {
     pub spectral_radius: Option<f64>,
 }
 
-/// Share of the cycles of a cell before those from which the regime is judged, for a motion that has not
-/// settled.
+/// Fraction of a cell's cycles that count as transient if the motion has not settled earlier; its regime is
+/// judged from the remaining cycles.
 const SETTLING_SHARE: f64 = 0.6;
 /// A cell ends early if the motion approaches a stable one, and its last repetitions differ by less than
 /// this.

@@ -58,8 +58,8 @@ pub trait Motion {
     /// Present state; if an event happens now, the state after it.
     fn state(&self) -> State;
 
-    /// Phase in 0..2π of the excitation's cycle: a sine force is F₀ cos(phase), an impulse falls on phase 0
-    /// and a pulse begins there; once they have come the phase is above 0. So a motion started from this
+    /// Phase in 0..2π of the excitation's cycle: a sine force is F₀ cos(phase), an impulse or the start of a
+    /// pulse is at phase 0. Once it has been applied, the phase is above 0. So a motion started from this
     /// state and phase continues this one, with two exceptions: during a pulse in which the frequency was
     /// changed, and for several sines whose frequencies are not multiples of the first.
     fn phase(&self) -> f64;

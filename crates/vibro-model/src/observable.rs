@@ -18,10 +18,10 @@ pub enum Observable {
     /// Half the peak-to-peak of a displacement trace in m.
     #[serde(rename = "peak")]
     HalfPeakToPeak,
-    /// Speed in m/s with which the masses meet: of several impacts in a cycle the fastest, the mean over the
-    /// cycles that have one; 0 without impacts.
+    /// Approach speed in m/s of the fastest impact of a cycle, as the mean over the cycles with impacts; 0
+    /// without impacts.
     ImpactSpeed,
-    /// Impulse in N s of that impact.
+    /// Impulse in N s of the fastest impact of a cycle, as the mean over the cycles with impacts.
     Impulse,
 }
 

@@ -142,9 +142,9 @@ impl Orbit {
             .min_by(|a, b| phase_distance(a).total_cmp(&phase_distance(b)))
     }
 
-    /// Whether the motion can be measured ([`Validity::real`]), and still can where the gap differs by up
-    /// to `gap_uncertainty` (m): its [`Validity::grazing_distance`] is larger, and so say the verdicts on
-    /// the orbits with the gap at both ends of the uncertainty and half-way to them.
+    /// Whether the motion can be measured ([`Validity::real`]), and still can where the gap differs by up to
+    /// `gap_uncertainty` (m). For this its [`Validity::grazing_distance`] must be larger, and the orbits
+    /// with the gap at both ends of the uncertainty and half-way to them must be measurable, too.
     pub fn robust(&self, gap_uncertainty: f64) -> bool {
         if !self.validity.real() || self.validity.grazing_distance <= gap_uncertainty {
             return false;
@@ -175,7 +175,7 @@ impl Orbit {
 /// All motions at one frequency.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Orbits {
-    /// One for each real root of the impact conditions, in the order of [`orbits_of`]; its verdicts tell
+    /// One for each real root of the impact conditions, in the order of [`orbits_of`]; its verdicts state
     /// whether the motion can be measured.
     pub orbits: Vec<Orbit>,
     /// The motion without impacts.

@@ -31,7 +31,8 @@ pub enum Parameter {
     /// Frequency of the excitation.
     #[serde(skip_deserializing)]
     Frequency,
-    /// Force amplitude F₀; where each point has its own measured force, their median, all scaled together.
+    /// Force amplitude F₀. Where each point has its own measured force, the median of these forces; a change
+    /// scales them all.
     Force,
     /// Impulse of each blow.
     #[serde(skip_deserializing)]

@@ -126,7 +126,7 @@ impl Samples {
     pub fn take(&mut self, piece: &Piece<'_>) {
         loop {
             let time = self.first + self.step * self.time.len() as f64;
-            // Excludes the end: a time within 1e-6 of a step before it is the end but for rounding.
+            // The end is excluded: a time within 1e-6 of a step before it equals the end up to rounding.
             if time >= piece.start + piece.duration || time > self.end - 1e-6 * self.step {
                 return;
             }

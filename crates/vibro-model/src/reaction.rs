@@ -14,8 +14,8 @@ pub struct Reaction {
     pub peak: Option<f64>,
     /// Root mean square in N over the whole time; `None` for rigid impacts.
     pub rms: Option<f64>,
-    /// Impulse in N s a cycle of the excitation, with the force between masses that rest against each other;
-    /// `None` where they rest against a wall.
+    /// Impulse in N s per cycle of the excitation, including the force between masses that rest against each
+    /// other; `None` where they rest against a wall.
     pub impulse: Option<f64>,
 }
 
@@ -129,7 +129,8 @@ impl Tally {
         m2 * (to.v2 - from.v2) + c2 * (to.x2 - from.x2) + k2 * way
     }
 
-    /// The force over all pieces, which have the length of `cycles`.
+    /// Peak, root mean square and impulse per cycle over all pieces added, which together last `cycles`
+    /// cycles.
     pub fn read(&self, cycles: u32) -> Reaction {
         let known = |value: f64| self.law.map(|_| value);
         let impulse = Some(self.impulse / f64::from(cycles)).filter(|j| j.is_finite());
@@ -154,7 +155,7 @@ mod tests {
         motion
             .advance(end, &mut |piece| {
                 tally.take(&piece);
-                // Plain trapezes.
+                // Trapezoidal rule with 400 panels.
                 let h = piece.duration / 400.0;
                 let x2 = |i: i32| piece.path.state(h * f64::from(i)).x2;
                 way += (0..400).map(|i| h * f64::midpoint(x2(i), x2(i + 1))).sum::<f64>();
@@ -187,7 +188,8 @@ mod tests {
         ];
         for mut motion in giving.into_iter().chain(at_once) {
             let (found, taken) = seen(&mut *motion, 20.0, 7);
-            // Trapezes of a 400th of a flight of at most half a cycle: error (π/400)²/12 = 5e-6.
+            // Trapezoidal rule with panels of 1/400 of a flight of at most half a cycle: error (π/400)²/12 =
+            // 5e-6.
             let error = (found.impulse.unwrap() / taken - 1.0).abs();
             assert!(error < 1e-5, "{error} {found:?} {taken}");
             assert_eq!(found.peak.is_some(), motion.law().is_some());

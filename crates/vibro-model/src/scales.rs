@@ -17,8 +17,8 @@ const LARGEST: f64 = 1e50;
 /// Most swings, or decays by e, of a mass in an excitation cycle: about half of the digits of its phase are
 /// left.
 const MOST_SWINGS: f64 = 1e7;
-/// Most impacts and other events in a cycle, or in a swing where that is shorter: until its speeds fall to ε
-/// of the first, a chatter with R = 0.996 takes 36/(1 − R) = 9000. A million events take a second.
+/// Most impacts and other events in a cycle, or in a swing where that is shorter. A chatter with R = 0.996
+/// takes 36/(1 − R) = 9000 impacts until its speeds fall to ε of the first. A million events take a second.
 pub(super) const MOST_EVENTS: f64 = 1e4;
 /// Fewest swings in which a motion can settle: with a damping ratio of 1 %, transients fall to e⁻¹.
 const SWINGS: f64 = 16.0;
@@ -236,7 +236,8 @@ mod tests {
             motion.counts().flights
         };
         assert_eq!(flights(1e-3, 1e20), flights(5e-24, 0.5));
-        // At forces between these, there may be more bounces than are followed: 50 000 a cycle.
+        // At forces between these there may be more bounces (50 000 a cycle) than the 10 000 that are
+        // followed.
         let mut motion = Simulation::new(&rig, &Sine { force: 1e13, frequency: 11.0 }).unwrap();
         let said = motion.run(20.0 / 11.0, |_| {}).unwrap_err().to_string();
         assert!(said.starts_with("more than 200000 impacts"), "{said}");

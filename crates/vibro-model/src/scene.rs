@@ -51,7 +51,7 @@ pub struct ContactKeys {
     pub exponent: Option<f64>,
 }
 
-/// Buffer behind the loose mass 1: its spring and damper act in compression only.
+/// Buffer of a loose mass 1, on its side away from mass 2: spring and damper act in compression only.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields, expecting = "a table")]
 pub struct Buffer {

@@ -26,8 +26,8 @@ pub const GRAZING_SPEED: f64 = 1e-3;
 
 /// Most legs in one call of [`Simulation::run`]: about ten seconds of work.
 const MOST_LEGS: f64 = 2e7;
-/// A call of [`Simulation::run`] may have as many events as this many cycles, however short it is: it may
-/// begin with a long chatter.
+/// The limit on the events of a call of [`Simulation::run`] allows for at least this many cycles: a short
+/// call may begin with a long chatter.
 const LEAST_BUDGET_CYCLES: f64 = 10.0;
 
 /// Motion of both masses in a leg.
@@ -294,8 +294,8 @@ impl Simulation {
     /// [`Event::Reached`].
     ///
     /// # Errors
-    /// As [`Simulation::fly`]; if more than 1e8 cycles are asked for, or more than 10 000 legs a cycle or 20
-    /// million legs are needed.
+    /// As [`Simulation::fly`]; if the call covers more than 1e8 cycles, or needs more than 20 million legs,
+    /// or more than 10 000 legs a cycle (or a swing, where that is shorter).
     pub fn run(&mut self, until: f64, mut visit: impl FnMut(&Leg)) -> Result<()> {
         let cycles = (until - self.time) * self.frequency();
         check_work(cycles)?;

@@ -275,7 +275,7 @@ impl Swept {
         STILL * all.fold(0.0, f64::max)
     }
 
-    /// Sets amplitudes below [`Swept::floor`] to 0: they are rounding, or the rest of an old motion.
+    /// Sets amplitudes below [`Swept::floor`] to 0: they are rounding, or the remains of an earlier motion.
     pub fn without_dust(mut self) -> Swept {
         let floor = self.floor();
         for p in self.up.iter_mut().chain(&mut self.down) {

@@ -9,7 +9,7 @@ use std::f64::consts::PI;
 use vibro_record::units::notation::shortest;
 use vibro_record::{Error, Result};
 
-/// Highest order: beyond it rounding and ringing, not the corner, decide what comes out.
+/// Highest order: above it, rounding and ringing dominate the output.
 const MOST: usize = 16;
 
 /// One section, H(z) = (b₀ + b₁z⁻¹ + b₂z⁻²)/(1 + a₁z⁻¹ + a₂z⁻²).
@@ -21,8 +21,8 @@ struct Section {
 
 /// A filter for one sampling rate.
 ///
-/// Corners are where one pass lets through 1/√2 of the amplitude. [`Filter::zero_phase`] passes twice, so
-/// that the corner is then at one half, and the order counts twice.
+/// At the corner frequency one pass has a gain of 1/√2 (−3 dB). [`Filter::zero_phase`] passes twice: its
+/// gain at the corner is one half, and its order is doubled.
 ///
 /// ```
 /// use vibro_signal::filter::Filter;
@@ -35,7 +35,7 @@ struct Section {
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Filter {
-    /// What it lets pass, and its corners.
+    /// Kind, order and corner of the filter, as printed.
     name: String,
     rate: f64,
     sections: Vec<Section>,
@@ -71,7 +71,7 @@ impl Filter {
         Ok(Filter { name: format!("exponential smoothing, corner {} Hz", shortest(corner)), rate, sections })
     }
 
-    /// Complex factor of one pass on a sine of `frequency` Hz.
+    /// Complex gain of one pass for a sine of `frequency` Hz.
     pub fn response(&self, frequency: f64) -> Complex64 {
         let z = Complex64::cis(-2.0 * PI * frequency / self.rate);
         let one = |s: &Section| (s.b[0] + z * (s.b[1] + z * s.b[2])) / (1.0 + z * (s.a[0] + z * s.a[1]));

@@ -30,7 +30,7 @@ const SECOND: f64 = 0.07;
 const RISE: f64 = 2.0;
 /// Threshold for noise in its standard deviations: a sample exceeds 6σ by chance once in 10⁹.
 const SIGMAS: f64 = 6.0;
-/// Time in s within which the hammer bounces: nobody strikes again so soon.
+/// A further contact within this time in s is a bounce of the hammer, not a new blow.
 const BOUNCE: f64 = 0.1;
 /// Least power of the force at a line over the power of its noise (10 dB). A line below it has no response
 /// function.

@@ -109,7 +109,7 @@ pub struct Integrated {
     /// Seconds at both ends in which the high-pass has not settled.
     pub edge: f64,
     /// Remaining drift between the edges, in the unit of the trace: the change of the mean from the first
-    /// period to the last, or without a period that of a straight line through the values.
+    /// period to the last, or without a period the change of a fitted straight line.
     pub drift: f64,
 }
 
@@ -304,8 +304,8 @@ mod tests {
             let truth = Complex64::new(0.0, -1e-3);
             assert!((sine / truth - 1.0).norm() < 0.01, "{f} Hz: {sine}");
             // Integrated white noise above the corner f_c has the variance σ²/(2π² f_c · rate), since
-            // ∫df/(2πf)² = 1/(4π² f_c) and its density is 2σ²/rate; the difference of
-            // two uncorrelated samples has √2 times its root, and that of two means over a period less.
+            // ∫df/(2πf)² = 1/(4π² f_c) and its density is 2σ²/rate. The difference of two uncorrelated
+            // samples has √2 times this standard deviation, that of two means over a period less.
             let left = 0.01 * amplitude / (2.0 * PI * PI * how.corner * rate).sqrt();
             assert!(found.drift.abs() < 4.0 * 2f64.sqrt() * left, "{f} Hz: {}", found.drift);
         }

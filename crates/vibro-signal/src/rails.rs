@@ -2,8 +2,8 @@
 
 /// Fewest equal samples in a row at an extreme that count as clipped.
 const CLIPPED: usize = 3;
-/// Steps of the converter by which the round top of a sine, three or more equal samples, may fall to its
-/// neighbours: (5/3)² for three, and noise.
+/// Largest fall, in steps of the converter, from a run of three or more equal samples at the crest of a sine
+/// to its neighbours, if the sine is not clipped: (5/3)² for a run of three, and noise.
 const ROUNDED: f64 = 8.0;
 /// Fewest steps of the converter from the signal's level to its extreme, assumed where a record shows only
 /// few different values.
@@ -71,9 +71,9 @@ impl Rails {
         self.ends.map(|end| end.value)
     }
 
-    /// Ends of the range at which the signal is clipped, with their number of samples. A signal that rests as
-    /// often elsewhere is held between its samples, not clipped. `reach` is its largest distance from its own
-    /// level, to be given where few of its values are known; else infinite.
+    /// Ends of the range at which the signal is clipped, with their number of samples. A signal that has as
+    /// many flat runs at other levels comes from a sample-and-hold, and is not clipped. `reach` is the
+    /// largest distance of the signal from its own level if few of its values are known, else infinite.
     pub fn clipped(&self, reach: f64) -> impl Iterator<Item = (f64, usize)> {
         let mut all = *self;
         all.leave(f64::NAN);

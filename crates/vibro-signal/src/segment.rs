@@ -18,7 +18,8 @@ pub struct Segments {
 }
 
 impl Segments {
-    /// Segments of `length` samples, each of which shares the part `overlap` (0 to below 1) with the next.
+    /// Segments of `length` samples, each of which shares the fraction `overlap` (0 to below 1) with the
+    /// next.
     ///
     /// # Errors
     /// If the length is below 8 samples, or the overlap leaves no step from one segment to the next.
@@ -60,8 +61,9 @@ impl<'a> Batches<'a> {
         Batches { traces, segments, frames: 0, ranges }
     }
 
-    /// Fills `batch`, one `Vec` a channel that starts with the samples from [`Batches::carry`], up to a full
-    /// batch (and less than a block of the file more) or the end. Returns the number of whole segments in it.
+    /// Fills `batch`, one `Vec` for each channel, which starts with the samples from [`Batches::carry`],
+    /// until it is full (and by up to a block of the file more) or the file ends. Returns the number of
+    /// whole segments in it.
     ///
     /// # Errors
     /// If the file cannot be read, or a sample is missing.

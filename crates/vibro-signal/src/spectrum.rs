@@ -103,10 +103,10 @@ pub fn averaged(
 const FEWEST: f64 = 17.0;
 
 /// Relative standard deviation of each averaged line, for noise: 1/√n for powers of n independent segments,
-/// half of that for amplitudes, and √2 times as much for the two real lines (Bendat & Piersol, Random Data,
-/// 4th ed. 2010, eq. 8.158). A sine well above the noise scatters less. NaN for fewer than 17 independent
-/// segments: by the gamma distribution of their mean, ±1.96 standard deviations around the power found would
-/// hold the truth in less than 92 %.
+/// half of that for amplitudes. The lines at 0 Hz and at half the sampling rate are real and have √2 times
+/// as much (Bendat & Piersol, Random Data, 4th ed. 2010, eq. 8.158). A sine well above the noise scatters
+/// less. NaN for fewer than 17 independent segments: by the gamma distribution of their mean, ±1.96 standard
+/// deviations around the power found would hold the truth in less than 92 % of all cases.
 pub fn scatter(averages: &Averages, scaling: Scaling) -> Vec<f64> {
     let n = if averages.effective < FEWEST { f64::NAN } else { averages.effective };
     let order = if matches!(scaling, Scaling::Peak | Scaling::Rms) { 0.5 } else { 1.0 };

@@ -13,7 +13,7 @@ use std::f64::consts::TAU;
 use vibro_record::units::Unit;
 use vibro_record::{Axis, Error, Finding, Frf, Meta, Result, Scaling, Spectrum, Values};
 
-/// Below this part of the largest power a line holds no excitation or response, only rounding.
+/// At a line below this fraction of the largest power, excitation or response is only rounding.
 const NOTHING: f64 = 1e-28;
 
 /// From this many independent averages on, ±1.96 standard deviations hold the truth in 92 to 98 % of all
@@ -131,10 +131,10 @@ fn low(coherence: &[f64], lines: usize) -> Option<Finding> {
 /// The function from the first channel of `averages` to another.
 ///
 /// Random errors as in Bendat & Piersol, Random Data (4th ed. 2010), table 9.6: ε(|H|) = √(1−γ²)/(|γ|√(2n)),
-/// and the phase's arcsin ε. The magnitude of Hv is a root of B/A without C, and with the variances of A and
-/// B (1/n) and their covariance (γ²/n) from the same table ε(|Hv|) = √(1−γ²)/√(2n). One of the n averages is
-/// spent on H itself; n counts independent segments. Few averages (below 7) keep their standard deviations,
-/// with a finding: they are right, but are themselves known poorly. One average alone has neither a
+/// and arcsin ε for the phase in rad. The magnitude of Hv is a root of B/A without C, and with the variances
+/// of A and B (1/n) and their covariance (γ²/n) from the same table ε(|Hv|) = √(1−γ²)/√(2n). Here n is the
+/// number of independent segments less one, which H itself uses up. Fewer than 7 averages keep their standard
+/// deviations, with a finding: these are valid, but themselves uncertain. One average alone has neither a
 /// coherence, which would always be 1, nor a standard deviation.
 ///
 /// # Errors
@@ -165,7 +165,7 @@ pub fn transfer(
             Estimator::H2 => yy / xy.conj(),
             Estimator::Hv => xy / xy.norm() * (yy / xx).sqrt(),
         };
-        // Rounding may take the coherence a hair above 1.
+        // Rounding may put the coherence slightly above 1.
         let coherence = if alone { f64::NAN } else { (xy.norm_sqr() / (xx * yy)).min(1.0) };
         if empty(xx, yy) || !h.is_finite() { (NOWHERE, f64::NAN) } else { (h, coherence) }
     };
@@ -202,7 +202,7 @@ pub fn transfer(
 
 /// Refuses fewer than two independent averages of segments that overlap.
 fn enough(averages: &Averages) -> Result<()> {
-    // Sums of squares may take two segments that do not overlap a hair below.
+    // Rounding may put the effective number of two segments without overlap slightly below 2.
     if averages.count == 1 || averages.effective >= LEAST - 1e-9 {
         return Ok(());
     }

@@ -49,7 +49,7 @@ pub struct Averages {
     pub squares: f64,
     /// Mean of |X|² for each channel.
     pub auto: Vec<Vec<f64>>,
-    /// Mean of conj(X₀) X for each channel after the first, where products were asked for.
+    /// Mean of conj(X₀) X for each channel after the first, where products were requested.
     pub cross: Vec<Vec<Complex64>>,
     /// The range of each channel; empty where it was not determined.
     pub ranges: Vec<Rails>,

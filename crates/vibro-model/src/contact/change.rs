@@ -6,12 +6,14 @@ use crate::forcing::Tick;
 use crate::impact::Impact;
 use crate::motion::{Event, Piece};
 
-/// Separation speed in m/s below which pressed masses stay together after a rebound, which ends a chatter. A
-/// larger speed leaves out more rebounds: at a pressing acceleration a, the last 2·1e-9/(a(1 − R)) s.
+/// Separation speed in m/s below which pressed masses stay together after a rebound, which ends a chatter.
+/// The rebounds left out would last 2·1e-9/(a(1 − R)) s in total, at a pressing acceleration a in m/s². A
+/// larger limit leaves out more of them.
 const REST_SPEED: f64 = 1e-9;
 
 impl Compliant {
-    /// Applies the change that begins at a root of a watched quantity, and returns its event.
+    /// Applies `mark` to the contact stage, the velocities or the spring of mass 1, and returns the event to
+    /// report.
     pub(super) fn mark(&mut self, mark: Mark) -> Event {
         match mark {
             Mark::Meets if self.law.is_none() => self.rebound(),
@@ -39,14 +41,14 @@ impl Compliant {
             }
             Mark::SpringActs | Mark::SpringFree => {
                 self.spring_acts = mark == Mark::SpringActs;
-                // The damper's force changes in a step.
+                // The damper's force may jump, and with it the stage of the contact.
                 self.find_stage();
                 Event::Switch
             }
         }
     }
 
-    /// The impact that begins at the present state; its impulse is still 0.
+    /// The impact that begins at the present state, with its impulse still 0.
     fn met(&self) -> Impact {
         let (time, phase) = (self.time, self.drive.phase);
         Impact { time, phase, approach_velocity: self.state.approach(), impulse: 0.0 }

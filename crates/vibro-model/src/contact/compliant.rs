@@ -1,5 +1,5 @@
-//! Any motion of the rig with a compliant contact, or with a mass 1 that is loose on its spring. It is
-//! followed from event to event: exactly in linear modes, by integration in contacts that are not linear.
+//! Any motion of the rig with a compliant contact, or with a mass 1 that is loose on its spring. The motion
+//! is followed from event to event: exactly in linear modes, by integration in contacts that are not linear.
 
 use super::modes::Modes;
 use super::still::Still;
@@ -48,7 +48,7 @@ pub(super) enum Mark {
     SpringFree,
 }
 
-/// A motion with a compliant contact: its present state and its excitation.
+/// A motion with a compliant contact or a loose mass 1: its present state and its excitation.
 ///
 /// Flights and Kelvin–Voigt contacts are linear modes, exact to rounding; Hertz and Hunt–Crossley contacts
 /// are integrated with a relative error of 1e-13 a step. The rig's restitution is not used: the contact law
@@ -91,11 +91,11 @@ impl Compliant {
     /// A motion with a loose mass 1. Its contact with mass 2 is a spring and a damper, or a rigid impact with
     /// the rig's restitution.
     ///
-    /// Behind mass 1, on the side away from mass 2, its spring and damper are a buffer that begins `gap` (m)
-    /// away from its rest: the force on mass 1 is −k₁(x₁ + gap) − c₁v₁ for x₁ < −gap and none elsewhere, or
-    /// −c₁v₁ there with [`Buffer::damper_always`]. Pieces end with `Switch` where the buffer begins or ceases
-    /// to act. With rigid impacts they also end with `Impact`, with `Stick` where the masses have chattered
-    /// to rest against each other, and with `Release` where they cease to move together.
+    /// The spring and damper of mass 1 are a buffer on its side away from mass 2, `gap` (m) from its rest
+    /// position: the force on mass 1 is −k₁(x₁ + gap) − c₁v₁ for x₁ < −gap and none elsewhere, or −c₁v₁
+    /// there with [`Buffer::damper_always`]. Pieces end with `Switch` where the buffer begins or ceases to
+    /// act. With rigid impacts they also end with `Impact`, with `Stick` where the masses have chattered to
+    /// rest against each other, and with `Release` where they cease to move together.
     ///
     /// ```
     /// use vibro_model::{Buffer, Compliant, Event, Excitation, Motion, Rig, Sine, State};

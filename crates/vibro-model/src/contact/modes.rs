@@ -8,7 +8,7 @@ use crate::scene::Buffer;
 /// All linear modes of a rig, each without and with the spring and damper of mass 1 acting.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Modes {
-    /// Apart; the index is whether the spring of mass 1 acts.
+    /// Masses apart. In this array and the next two, index 1 is with the spring of mass 1 acting.
     pub apart: [Linear; 2],
     /// In contact through a spring and a damper.
     pub pushing: [Linear; 2],

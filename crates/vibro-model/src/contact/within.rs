@@ -27,7 +27,7 @@ pub(super) struct Within {
     speed: f64,
     /// Time scale of the contact in s, computed as for a rebound without losses.
     scale: f64,
-    /// First step to try next, in s.
+    /// Step in s that the next integration tries first.
     next: f64,
 }
 
@@ -86,7 +86,7 @@ impl Within {
         Ok(step)
     }
 
-    /// Time in s in the step at which the surfaces separate.
+    /// Time in s from the start of the step at which the surfaces separate.
     pub fn first_fall(&self, step: &Step<SIZE>) -> Option<f64> {
         step.first_fall(&[1.0, 0.0, -1.0, 0.0, 0.0], -self.gap)
     }

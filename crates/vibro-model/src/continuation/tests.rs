@@ -23,8 +23,9 @@ fn the_branch_of_one_impact_a_cycle_is_the_closed_form_through_its_folds() {
             let closed = orbits(&rig, force, point.sine.frequency).unwrap().orbits;
             let off = |o: &Orbit| (o.impulse / beat.impulse - 1.0).abs();
             let off = closed.iter().map(off).fold(f64::INFINITY, f64::min);
-            // Newton's last step is below 1e-10, and its error is the square of that; near a fold rounding is
-            // amplified by the sensitivity.
+            // Newton's last step is below 1e-10, and the error after it is the square of that. Near a fold
+            // and near grazing, the rounding of the amplitude changes J relatively by up to
+            // amplitude/grazing distance.
             let amplified = 1.0 + point.peak_to_peak[0] / point.validity.grazing_distance.max(1e-12);
             assert!(off < 1e-12 * amplified, "{off} {beat:?} at {}", point.sine.frequency);
         }
@@ -131,8 +132,8 @@ fn the_published_impact_oscillator_grazes_where_its_stop_touches() {
 
 #[test]
 fn two_impacts_in_two_cycles_turn_back_where_one_impact_flips() {
-    // Between the two flips of one impact a cycle there is the motion of twice the period; its branch is
-    // closed, with its two impacts in either order.
+    // Between the two flips of the motion with one impact a cycle there is a motion of twice the period. Its
+    // branch is closed: it passes through its two impacts in either order.
     let rig = Rig { restitution: 0.9, ..Rig::thesis() };
     let sine = Sine { force: 0.9, frequency: 6.3 };
     let start = crate::search(&rig, &sine, 2, 2).unwrap().remove(0);
@@ -148,8 +149,8 @@ fn two_impacts_in_two_cycles_turn_back_where_one_impact_flips() {
     assert!(double.len() == 2 && single.len() >= 2, "{double:?} {single:?}");
     for flip in double {
         let off = single.iter().map(|f| (f / flip - 1.0).abs()).fold(1.0, f64::min);
-        // The branch turns back with zero slope: where the halves differ by at most 1e-2, the error of the
-        // frequency is that squared.
+        // The branch turns back with zero slope: where the halves of the period differ by at most 1e-2, the
+        // relative error of the flip's frequency is that squared.
         assert!(off < 1e-4, "{flip} {single:?}");
     }
 }

@@ -69,7 +69,7 @@ impl Walk<'_> {
     fn scene(&self, z: &DVector<f64>) -> (Rig, Sine) {
         let (mut rig, mut sine) = (self.start.rig, self.start.sine);
         let (least, most) = self.over.limits();
-        // A step may leave the allowed range, which the rig must not.
+        // A Newton step may leave the allowed range; the value in the rig is kept within it.
         let value = self.value(z[z.len() - 1]).clamp(least, most);
         match self.over {
             Parameter::Frequency => sine.frequency = value,
@@ -106,14 +106,14 @@ impl Walk<'_> {
         z.rows(0, z.len() - 1).into_owned()
     }
 
-    /// Residuals of the equations, and their Jacobian; its last column is the derivative by the coordinate of
-    /// the varied parameter.
+    /// Residuals of the equations, and their Jacobian. Its last column is the derivative with respect to the
+    /// coordinate of the varied parameter.
     fn evaluate(&self, z: &DVector<f64>) -> Result<(DVector<f64>, DMatrix<f64>)> {
         let n = z.len() - 1;
         let (left, jacobian) = self.system(z)?.evaluate(&Self::inner(z));
         let mut all = DMatrix::zeros(n + 1, n + 1);
         all.view_mut((0, 0), (n, n)).copy_from(&jacobian);
-        // Central difference; the corrector's result does not depend on its error.
+        // Central difference. Its error slows the corrector's convergence, but does not change the result.
         let h = 1e-6;
         let at = |place: f64| -> Result<DVector<f64>> {
             let mut moved = z.clone();

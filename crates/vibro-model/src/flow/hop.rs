@@ -3,12 +3,12 @@
 
 use super::{Flight, Free, Landing, State};
 
-/// Longest flight for 20 terms, times the fastest rate: they leave out (1.3)²⁰/20! = 8e-17 of a displacement.
-/// Each flight is also checked against its own rounding.
+/// Longest flight, times the fastest rate, for a series of 20 terms: the remainder is (1.3)²⁰/20! = 8e-17 of
+/// a displacement. Each flight is also checked against its own rounding.
 const LONGEST: f64 = 1.3;
-/// The same for 11 terms: they leave out (0.2)¹¹/11! = 5e-16 of a displacement.
+/// The same for 11 terms: the remainder is (0.2)¹¹/11! = 5e-16 of a displacement.
 const SHORT: f64 = 0.2;
-/// The same for 6 terms: they leave out (0.003)⁶/6! = 1e-18 of a displacement, and 2e-15 of a speed.
+/// The same for 6 terms: the remainder is (0.003)⁶/6! = 1e-18 of a displacement, and 2e-15 of a speed.
 const SHORTEST: f64 = 0.003;
 
 /// Weights 1/n! of a Taylor series.
@@ -23,8 +23,8 @@ const fn weights<const N: usize>() -> [f64; N] {
 }
 
 impl Free {
-    /// Displacement and its derivatives at the start, over n!, and a bound on the next derivative for all
-    /// later times.
+    /// Displacement and its derivatives at the start, each over n!, and a bound on the next derivative for
+    /// all later times.
     #[inline]
     fn terms<const N: usize>(&self) -> ([f64; N], f64) {
         let mut last = [self.x, self.v];
@@ -55,10 +55,10 @@ impl Flight {
     /// The landing of a short flight that begins at contact; `None` where the series proves none within
     /// `duration` (s).
     ///
-    /// Write the gap as g = g₀ + t q(t), where g₀ is only rounding. q falls where −g̈/2 outweighs Σ|gₙ|(n −
-    /// 1)tⁿ⁻²/n! from n = 3 on. If it falls up to 2.5 times the flight of a constant g̈, and is below 0
-    /// there, q has one root before, and g was positive up to it. The truncation Mtᴺ/N! of N terms must be
-    /// below `rounding` (m).
+    /// Write the gap as g = g₀ + t q(t), where g₀ is only rounding. q falls while −g̈/2 is larger than the
+    /// sum of |gₙ|(n − 1)tⁿ⁻²/n! from n = 3 on, with the n-th derivative gₙ at the start. If q falls up to
+    /// 1.25 times the flight time 2w/(−g̈) of a constant g̈, and is below 0 there, q has one root before, and
+    /// g is positive up to it. The truncation Mtᴺ/N! of N terms must be below `rounding` (m).
     #[inline]
     pub(super) fn hop(&self, duration: f64, rounding: f64) -> Option<Landing> {
         let [first, second] = &self.free;
@@ -90,7 +90,7 @@ impl Flight {
         let left = (first + second + forced) * const { weights::<N>()[N - 1] / N as f64 };
         let mut gap: [f64; N] = std::array::from_fn(|n| two[n] - one[n]);
         gap[0] += self.gap;
-        // Powers of the time from the third term on, and their part in the rate of q.
+        // Powers of the time from the third term on, and the bound on what these terms add to the rate of q.
         let (mut power, mut bends) = (1.0, 0.0);
         for (n, term) in gap.iter().enumerate().skip(3) {
             power *= longest;
@@ -102,7 +102,7 @@ impl Flight {
         {
             return None;
         }
-        // Newton's method from the flight of a constant jerk: after a step of 1e-8 the error is 1e-16.
+        // Newton's method from the flight time of a constant jerk: after a step of 1e-8 the error is 1e-16.
         let mut time = 2.0 * w / pressed * (1.0 + 4.0 * gap[3] * w / (pressed * pressed));
         for _ in 0..6 {
             let (value, rate) = at(&gap, time);

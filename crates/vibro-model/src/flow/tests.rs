@@ -125,7 +125,7 @@ impl Exponentials {
         f64::EPSILON * (self.gap + self.terms.iter().map(term).sum::<f64>())
     }
 
-    /// Number of the first sample with a closed gap, among those at `from`·dt to `last`·dt.
+    /// Index of the first sample with a closed gap, among those at `from`·dt to `last`·dt.
     fn first_closed(&self, dt: f64, from: usize, last: usize) -> Option<usize> {
         // From sample to sample each term is multiplied by a constant, which saves the exponentials.
         let mut terms: Vec<_> = self.terms.iter().map(|(a, rate)| (*a, (rate * dt).exp())).collect();
@@ -141,7 +141,7 @@ impl Exponentials {
 
 #[test]
 fn no_contact_is_missed_or_invented_in_ten_thousand_flights() {
-    // Dense sampling as the oracle: 50 µs apart, where the gap's frequencies are below 16 Hz.
+    // Dense sampling as the oracle: samples 50 µs apart, and frequencies of the gap below 16 Hz.
     let (mut noise, duration, dt) = (Noise::new(2_024), 0.5, 5e-5);
     let (mut hits, mut misses, mut between) = (0, 0, 0);
     for run in 0..10_000 {

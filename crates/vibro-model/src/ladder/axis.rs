@@ -31,7 +31,7 @@ pub struct Summary {
     pub model: Model,
     /// Median time of an answer in ns.
     pub cost_ns: Option<f64>,
-    /// Largest change of its answer at the rungs above, over the points at which it is valid.
+    /// Largest change from its answer to those of the rungs above, over the points at which it is valid.
     pub error: Option<f64>,
     /// Whether it is valid at each point.
     pub valid: bool,
@@ -54,7 +54,7 @@ pub struct Stretch {
     pub chosen: Option<Model>,
     /// Parameters that must be known before one can be chosen.
     pub needs: Vec<Need>,
-    /// The largest change of the chosen answer at the next rung that follows the motion.
+    /// Largest change of the chosen answer to that of the next rung that follows the motion in time.
     pub audit: Option<Change>,
     /// Frequency in Hz of the largest change.
     pub worst_at: Option<f64>,

@@ -11,8 +11,8 @@ use crate::law::conversion;
 use std::f64::consts::PI;
 use vibro_record::{Finding, Result};
 
-/// Longest and shortest contact, as parts of the cycle, of the stiffnesses tried. With much softer contacts
-/// the masses would hardly part; the shortest contacts act like rigid impacts.
+/// Longest and shortest contact, as fractions of the cycle, for which stiffnesses are tried. With much
+/// softer contacts the masses would hardly part; the shortest contacts act like rigid impacts.
 const SHARES: (f64, f64) = (0.1, 1e-4);
 /// Most decades of stiffness tried.
 const DECADES: i32 = 7;
@@ -68,7 +68,7 @@ impl<'a> Climb<'a> {
         }
     }
 
-    /// A rung with its changes at the rungs above, and whether it is good enough.
+    /// A rung with the changes to the answers of the rungs above, and whether it is good enough.
     fn rung(&self, model: Model) -> Rung {
         let (scene, question) = (self.stage.scene, self.stage.question);
         let mut rung = self.of(model).clone();
@@ -87,7 +87,8 @@ impl<'a> Climb<'a> {
                 Model::ClosedForm | Model::SoftCorrected | Model::Restitution => {
                     still && (!rung.changes.is_empty() || self.is_lawless())
                 }
-                // Only another law lies above a stated one: its answer does not decide.
+                // The rung above differs only in its contact law. The scene states this law, so that answer
+                // does not decide.
                 Model::KelvinVoigt | Model::HuntCrossley => true,
                 Model::LooseMass => keys(scene).stiffness.is_some(),
             };
@@ -168,7 +169,8 @@ impl<'a> Climb<'a> {
         }
     }
 
-    /// Computes the answers over unknown stiffnesses, and chooses the lowest valid rung if all of them agree.
+    /// Computes the answers over a range of stiffnesses, and chooses the lowest valid rung if all of them
+    /// agree.
     fn without_stiffness(&self, choice: &mut Choice) {
         let lowest = [Model::ClosedForm, Model::Restitution, Model::LooseMass];
         let base = lowest.into_iter().find(|model| self.of(*model).valid).filter(|m| self.is_known(*m));
@@ -185,7 +187,7 @@ impl<'a> Climb<'a> {
     fn sensitivity(&self, base: &Answer) -> Option<Vec<Sensitivity>> {
         let (scene, frequency) = (self.stage.scene, self.stage.excitation.frequency());
         let mass = scene.rig.reduced_mass();
-        // Undamped contact duration π√(M/k) as part of the cycle, times √k.
+        // `half`/√k is the undamped contact duration π√(M/k) as a fraction of the cycle.
         let half = PI * mass.sqrt() * frequency;
         let [low, high] = [SHARES.0, SHARES.1].map(|s| 2.0 * (half / s).log10());
         let low = low.ceil() as i32;

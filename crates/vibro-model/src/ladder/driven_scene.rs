@@ -10,7 +10,7 @@ use vibro_record::{Error, Result};
 /// Exponent of the force over the indentation of two curved bodies (Hertz).
 pub const HERTZ: f64 = 1.5;
 
-/// Result of `work` and its computing time in ns; NaN where there is no clock.
+/// Result of `work` and its computing time in ns; NaN on WebAssembly, which has no clock.
 pub fn timed<T>(work: impl FnOnce() -> T) -> (T, f64) {
     let begun = (!cfg!(target_family = "wasm")).then(Instant::now);
     let done = work();

@@ -17,7 +17,7 @@ use vibro_record::{Error, Finding, Result};
 
 /// Longest period, in cycles, of the motions with one impact that are computed in closed form.
 pub(crate) const MOST_CYCLES: u32 = 6;
-/// Cycles followed in all after which the search starts from no further state; it bounds the computing time.
+/// Total simulated cycles after which no further start state is tried; it bounds the computing time.
 const MOST_FOLLOWED: u32 = 40_000;
 /// Relative reduction of the speeds for a start near an orbit.
 const BESIDE: f64 = 0.02;
@@ -54,8 +54,8 @@ impl KnownMotion {
         KnownMotion { pattern: reading.regime, model, answer: value, spread, stable: true, rare }
     }
 
-    /// Whether it may be the motion of `reading`: both have no impacts, or their answers agree within what is
-    /// allowed.
+    /// Whether this may be the motion of `reading`: both have no impacts, or their answers agree within
+    /// tolerance, noise floor or standard errors.
     fn may_be(&self, reading: &Reading, question: &Question) -> bool {
         let still = reading.regime == Regime::NoImpact && self.pattern == Regime::NoImpact;
         let own = Answer { spread: self.spread, ..Answer::exact(self.answer) };
@@ -88,7 +88,7 @@ pub struct Motions {
     pub on: CurrentMotion,
     /// Smallest distance in m between mass 1 without impacts and mass 2; `None` without a closed form.
     pub clearance: Option<f64>,
-    /// The sweep along which the rig came to this excitation, where a history is stated.
+    /// Sweep that led the rig to this excitation; `None` without a history.
     pub way: Option<Approach>,
     /// Start states from which other motions were searched; `None` without a search.
     pub followed: Option<Followed>,
@@ -143,7 +143,7 @@ impl Motions {
                 break;
             }
             let started = Simulation::from_state(rig, excitation, state, phase).and_then(at_phase_0);
-            // From some states the motion cannot be followed.
+            // A state from which the simulation fails is skipped.
             let Ok(reading) = started.and_then(|mut motion| reader.read(&mut motion)) else { continue };
             (followed, cycles) = (followed + 1, cycles + reading.cycles);
             self.add(&reading, stage.question);
@@ -151,8 +151,8 @@ impl Motions {
         self.followed = Some(Followed { states: followed, of });
     }
 
-    /// Sets the present motion to open, and lists `rest`, if a compliant contact from rest reaches another
-    /// motion than the one of its `answer`.
+    /// If a compliant contact reaches from rest another motion than that of its `answer`, lists this motion
+    /// and sets the present motion to open.
     pub fn differs(&mut self, answer: &Answer, rest: &Reading, model: Model, question: &Question) {
         if rest.end == Settling::Under || !answer.steady || answer.agrees(&rest.answer, question, APART) {
             return;
@@ -161,7 +161,7 @@ impl Motions {
         let found = KnownMotion::followed(rest, model, false);
         let same = |known: &&mut KnownMotion| known.pattern == found.pattern && known.may_be(rest, question);
         match self.known.iter_mut().find(same) {
-            // With a compliant contact it is reached from rest, so it is not rare.
+            // The compliant contact reaches it from rest, so it is not rare.
             Some(known) => known.rare = false,
             None => self.known.push(found),
         }
@@ -249,7 +249,7 @@ impl Motions {
     }
 }
 
-/// Number of motions among which only the history can decide.
+/// Number of motions that are not rare. If there are several, only the history can select one.
 fn common(known: &[KnownMotion]) -> usize {
     known.iter().filter(|m| !m.rare).count()
 }
@@ -284,9 +284,9 @@ fn speed(orbit: &Orbit) -> f64 {
 }
 
 /// Largest [`distance`] from its orbit at which the impact of a settled motion may lie; `fine` is the
-/// relative deviation of its state once a cycle. Both masses deviate, by this part of their largest motion,
-/// about twice that at the impact: hence 4. The impact is early or late by the deviation over the approach
-/// speed, which shifts the phase, and the speeds by as much again.
+/// relative deviation of its state once a cycle. Each of both masses deviates by this fraction of its
+/// largest motion, and by about twice that at the impact: hence the factor 4. The impact is early or late by
+/// the deviation over the approach speed, which shifts the phase, and the speeds by as much again.
 fn reach(fine: f64, orbit: &Orbit) -> f64 {
     let moves = orbit.peak_to_peak[0].max(orbit.peak_to_peak[1]) * TAU * orbit.frequency;
     let size = moves.max(speed(orbit));

@@ -12,7 +12,7 @@ const FINEST: f64 = 1e-4;
 /// Amplitude, relative to the largest, below which changes of a mass are related to the largest amplitude
 /// instead of its own.
 const STILL: f64 = 1e-3;
-/// Change between two rungs, in standard errors of means over motions that do not repeat, that may be chance.
+/// Change between two rungs that may be chance, in standard errors of means over motions that do not repeat.
 const SAME: f64 = 2.0;
 /// Distance, in standard errors, beyond which two means belong to two motions. A normal deviate lies outside
 /// ±z with a probability below e^{−z²/2}. A search compares some thirty pairs, so one motion is taken for two
@@ -85,8 +85,8 @@ impl Answer {
         Answer { value, spread: [0.0; 2], steady: true }
     }
 
-    /// The larger ratio, of both masses, of the standard error to the tolerance or the noise floor, whichever
-    /// allows more.
+    /// Standard error over the tolerance or the noise floor, whichever allows more; the larger ratio of both
+    /// masses.
     pub fn unsure(&self, question: &Question) -> f64 {
         let largest = self.value[0].abs().max(self.value[1].abs());
         let part = |i: usize| {

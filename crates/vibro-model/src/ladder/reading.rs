@@ -14,8 +14,8 @@ use vibro_record::Result;
 const BLOCK: u32 = 60;
 /// Most multiples of [`BLOCK`] in a block, for slowly decaying motions.
 const MULTIPLE: f64 = 50.0;
-/// Shortest block, over the longest time in which free motion falls by e: shorter ones would not show the
-/// remaining decay.
+/// Shortest block, as a fraction of the longest time constant of the free decay (to 1/e): shorter blocks
+/// would not show the remaining decay.
 const DECAY: f64 = 0.3;
 /// Fewest and most blocks followed; the fewest where a cycle holds many swings of a mass.
 const BLOCKS: (usize, usize) = (6, 64);
@@ -23,20 +23,20 @@ const BLOCKS: (usize, usize) = (6, 64);
 pub const MOST_CYCLES: f64 = BLOCK as f64 * MULTIPLE * BLOCKS.1 as f64;
 /// Most blocks of motions whose contacts are integrated: about a second of computing.
 pub const BRIEF: usize = 12;
-/// Most swings of the faster mass that are followed, with at least the fewest blocks: the most blocks of 60
-/// cycles, with five swings in a cycle.
+/// Most swings of the faster mass that are followed, unless the fewest blocks hold more: 64 blocks of 60
+/// cycles with five swings a cycle.
 const SWINGS: f64 = 5.0 * 60.0 * 64.0;
-/// A motion has settled where its remaining change is below this part of the tolerance. Tolerances above this
-/// count as this.
+/// A motion has settled where its remaining change is below this fraction of the tolerance. For this test a
+/// tolerance above 2 % counts as 2 %.
 const SETTLED: f64 = 0.02;
-/// A mass that moves less than this part of the other one's motion is judged by this part of that motion.
+/// A mass that moves less than this fraction of the larger motion is judged relative to this fraction of it.
 const NOTHING: f64 = 1e-3;
 /// Longest pattern that the states are tested for, in cycles.
 const LONGEST: usize = 32;
 /// Relative difference of states that may come from rounding and from integration errors.
 const ROUNDING: f64 = 1e-11;
-/// Standard deviations of von Neumann's ratio below its expectation that mean a drift: fewer than one in a
-/// hundred steady motions reach it.
+/// A von Neumann ratio this many standard deviations below its expectation means a drift: fewer than one in
+/// a hundred steady motions reach it.
 const DRIFT: f64 = 2.5;
 
 /// The observable of a motion, its pattern, and how it ended.
@@ -290,7 +290,7 @@ fn still(values: &[[f64; 2]], fine: f64) -> bool {
     (0..2).all(|i| {
         let (before, last) = ((b[i] - a[i]).abs(), (c[i] - b[i]).abs());
         let ratio = if before > 0.0 { (last / before).min(0.999) } else { 0.0 };
-        // One step may be small by chance: the larger of the two counts.
+        // One of two steps may be small by chance: the larger one counts.
         let left = before.max(last) * (ratio / (1.0 - ratio)).max(1.0);
         left <= fine * c[i].abs().max(NOTHING * largest)
     })

@@ -141,13 +141,14 @@ pub struct Rung {
     /// Computing time in ns of its answer on this machine, for simulated motions until they settle. `None`
     /// without an answer.
     pub cost_ns: Option<f64>,
-    /// Largest relative change of its answer at two rungs above: the next one with an answer, and the next
-    /// one that follows the motion. `None` where there is none.
+    /// Largest relative change from its answer to those of two rungs above: the next one with an answer, and
+    /// the next one that follows the motion in time. `None` where there is none.
     pub error: Option<f64>,
     /// Whether the validity checks of its own theory pass.
     pub valid: bool,
-    /// Whether it is good enough: valid, with an answer as accurate as required, which changes within what is
-    /// allowed at the rungs above, or over all stiffnesses of a contact of unknown stiffness.
+    /// Whether it is good enough: valid, with an answer that is known as accurately as required. The rungs
+    /// above change this answer by no more than allowed, nor do all stiffnesses tried where the stiffness is
+    /// unknown.
     pub sufficient: bool,
     /// Whether its answer comes from a motion that has settled, or is a mean over one that does not repeat.
     pub settled: bool,
@@ -162,7 +163,7 @@ pub struct Rung {
     pub answer: Option<[f64; 2]>,
     /// Standard error of the answer, where it is a mean over a motion that does not repeat; else 0.
     pub spread: [f64; 2],
-    /// The changes of its answer at the rungs above; `error` is the largest.
+    /// Changes from its answer to those of the rungs above; `error` is the largest.
     pub changes: Vec<Change>,
 }
 

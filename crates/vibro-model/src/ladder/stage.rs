@@ -166,8 +166,8 @@ impl DrivenScene<'_> {
         self.contact(Model::HuntCrossley, motions, curved(self.scene, speed)?)
     }
 
-    /// Contact of curved bodies with the duration and the restitution of the stated spring: shows how much
-    /// the exponent matters where none is stated.
+    /// Contact of curved bodies with the duration and the restitution of the stated spring. It shows how
+    /// much the exponent matters where none is stated.
     pub fn curved_alike(&self, motions: &Motions) -> Found {
         let speed = motions.speed()?;
         let stiffness = keys(self.scene).stiffness.ok_or_else(|| Finding::note("impacts-missing"))?;

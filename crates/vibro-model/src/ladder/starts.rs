@@ -139,7 +139,7 @@ mod tests {
             let rig = Rig { m2, gap, ..Rig::thesis() };
             let all: Vec<State> = starts(&rig, &sine).map(|s| s.0).collect();
             assert_eq!(all.len(), STARTS as usize);
-            // Overlapping and moving walls are refused.
+            // `from_state` refuses overlapping masses and a moving wall.
             assert!(all.iter().all(|s| Simulation::from_state(&rig, &sine, *s, 0.0).is_ok()));
             // x₁ may have one sign only: it cannot lie far beyond the contact.
             assert!(all.iter().any(|s| s.v1 > 0.0) && all.iter().any(|s| s.v1 < 0.0));

@@ -53,8 +53,9 @@ fn change(choice: &Choice, from: Model, to: Model) -> f64 {
     choice.rung(from).changes.iter().find(|c| c.at == to).unwrap().change
 }
 
-/// Impact speed in m/s of scene B from the quadratic (C² + (P/ω)²)J² + 2ΔCJ + Δ² − A² = 0 with C +
-/// t*/(M(1+R)) in place of C (Babitsky's periodic Green's functions; no acceleration within the contact).
+/// Impact speed in m/s of scene B from the quadratic (C² + (P/ω)²)J² + 2ΔCJ + Δ² − A² = 0, with C +
+/// t*/(M(1+R)) in place of C, for the delay t* in s (Babitsky's periodic Green's functions; no acceleration
+/// within the contact).
 fn plain_speed(delay: f64) -> f64 {
     let rig = Rig::thesis();
     let (omega, period) = (TAU * hz(2.1), 1.0 / hz(2.1));
@@ -92,7 +93,7 @@ fn scene_b_takes_the_corrected_closed_form() {
 #[test]
 fn a_stiff_contact_is_corrected_to_a_five_thousandth() {
     let choice = scene_b(Some(1e8));
-    // Share in contact and change fall with √k₃: −20.9 %/10 is just above 2 %.
+    // Share in contact and change fall as 1/√k₃: −20.9 %/10 is just above 2 %.
     assert_eq!(choice.chosen, Some(Model::SoftCorrected));
     let audit = choice.audit.unwrap();
     assert!(audit.at == Model::KelvinVoigt && audit.change.abs() < 2.5e-4, "{audit:?}");

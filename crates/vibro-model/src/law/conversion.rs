@@ -180,7 +180,7 @@ mod tests {
         for r in [0.99, 0.7, 0.3, 0.05] {
             let a = loss(r).unwrap();
             let right = ((1.0 + a) / (1.0 - r * a)).ln();
-            // For αv near 1/R, 1 − Rαv is a small difference with a rounding of 1.
+            // For αv near 1/R, 1 − Rαv is a small difference that keeps the rounding error of 1.
             assert!(
                 (a * (1.0 + r) - right).abs() < 8.0 * f64::EPSILON * (1.0 + a + 1.0 / (1.0 - r * a)),
                 "{r}"

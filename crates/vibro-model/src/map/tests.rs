@@ -34,8 +34,8 @@ fn cells_are_the_simulation_and_the_orbit() {
                 assert_eq!(cell.regime, Some(long.regime), "{rig:?} {sine:?}");
                 let orbit = PeriodicOrbit::from_strikes(&rig, &sine, cycles, &long.strikes).unwrap();
                 let (found, exact) = (cell.spectral_radius.unwrap(), orbit.spectral_radius().unwrap());
-                // The radius is that of the orbit itself where the cell has not settled, else from states
-                // within 1e-6 of it.
+                // The radius is that of the pattern's periodic orbit or, if this orbit is not found, of
+                // states within 1e-6 of it.
                 assert!((found / exact - 1.0).abs() < 1e-3, "{found} {exact} {rig:?} {sine:?}");
                 settled += 1;
             }
@@ -50,7 +50,8 @@ fn one_settled_cell_has_the_radius_of_the_closed_form() {
     let cell = cell(&rig, &sine.into(), 400);
     let orbit = orbits(&rig, sine.force, sine.frequency).unwrap().orbits.remove(0);
     assert_eq!(cell.regime, Some(Regime::Periodic { impacts: 1, cycles: 1 }));
-    // The state is within 1e-6 of the orbit, whose radius is below 1 by a tenth.
+    // Both are the radius of the same periodic orbit; the tolerance also allows for a state within 1e-6 of
+    // it.
     assert!((cell.spectral_radius.unwrap() - orbit.spectral_radius().unwrap()).abs() < 1e-4);
     // Without impacts: e^{−bT} of the more lightly damped mass.
     let quiet = super::cell(&rig, &Sine { force: 0.001, frequency: 12.0 }.into(), 40);

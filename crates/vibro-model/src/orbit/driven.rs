@@ -61,7 +61,7 @@ impl PulseResponse {
     ) -> Result<PulseResponse> {
         let unit = Green::new(m, oscillator, cycle)?;
         let (c, s) = oscillator.kernels(width);
-        // (I − Φ)⁻¹ applied to (0, S(w)) gives the Green's function, applied to (∫S, 0) its companion.
+        // (I − Φ)⁻¹ is applied to (0, S(w)), which gives the Green's function, and to (∫S, 0).
         let area = ramp(&oscillator, width, c, s);
         let (less, determinant) = oscillator.closing(cycle);
         let (_, sine) = oscillator.kernels(cycle);

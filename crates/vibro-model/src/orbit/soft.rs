@@ -96,7 +96,7 @@ pub struct Softened {
     pub fundamental: [f64; 2],
     /// Relative change of the impulse. Where it is too large to neglect, the contact's stiffness matters.
     pub change: f64,
-    /// Contact duration as part of the period.
+    /// Contact duration as a fraction of the period.
     pub share: f64,
 }
 
@@ -170,9 +170,9 @@ pub fn softened(
     found.orbits.iter().map(soften).collect()
 }
 
-/// Accelerations in m/s² at which the masses would approach each other without contact: the one just before
-/// the impact, and the mean of those just before and just after it, without the dampers' part −κ × relative
-/// speed.
+/// Two accelerations in m/s² at which the masses would approach each other without contact: the one just
+/// before the impact, and the mean of those just before and just after it. The mean leaves out the dampers'
+/// part −κ × relative speed.
 fn pressing(orbit: &Orbit, kappa: f64) -> [f64; 2] {
     let (before, after) = orbit.course.rates();
     let [first, last] = [before, after].map(|rate| rate[1] - rate[3]);

@@ -180,7 +180,8 @@ fn peaks_and_gaps_are_those_of_a_dense_trace() {
 #[test]
 fn pulses_are_impulses_summed() {
     // The steady motion under a pulse is the integral of the Green's function over it: 10-point
-    // Gauss–Legendre in 8 parts of the pulse, with an error (ΩΔ)²⁰/(20!…), far below rounding.
+    // Gauss–Legendre in 8 parts of the pulse. The error, below (Ωh)²⁰/20! for parts of the length h, is far
+    // below rounding.
     let nodes = [
         (0.148_874_338_981_631_2, 0.295_524_224_714_752_87),
         (0.433_395_394_129_247_2, 0.269_266_719_309_996_35),
@@ -238,8 +239,8 @@ fn a_vanishing_pulse_is_an_impulse() {
         for width in [1e-3, 1e-4] {
             let pulse = Pulses { force: 0.02 / width, width, frequency };
             let mut pulses = orbits_of(&rig, &Excitation::Pulse(pulse), 1).unwrap().orbits;
-            // Where an impulse makes G jump across zero, a short pulse makes it pass through zero: an extra
-            // orbit with its impact during the pulse.
+            // Where an impulse makes G of `train::orbits` jump across zero, a short pulse makes it pass
+            // through zero: an extra orbit with its impact during the pulse.
             pulses.retain(|orbit| orbit.timing > width);
             assert_eq!(train.len(), pulses.len(), "ν {nu}");
             let mut error = 0.0_f64;
@@ -258,7 +259,7 @@ fn a_vanishing_pulse_is_an_impulse() {
     }
 }
 
-/// At G' = 0 two orbits meet: orbits that break the energy rule have a real multiplier beyond +1.
+/// At a fold (G′ = 0) two orbits meet: orbits that break the energy rule have a real multiplier beyond +1.
 #[test]
 fn what_breaks_the_energy_rule_is_unstable_by_a_fold() {
     let (mut broken, mut kept, mut lost) = (0, 0, 0);

@@ -17,8 +17,8 @@ pub struct Validity {
     pub exists: bool,
     /// The masses do not pass through each other between the impacts, by a search that misses no contact.
     pub admissible: bool,
-    /// Every Floquet multiplier lies inside the unit circle; `None` where the largest may equal 1 within
-    /// rounding. False where there are no multipliers.
+    /// Every Floquet multiplier lies inside the unit circle; `None` where one may lie on it within rounding,
+    /// or for a free motion without losses. False where there are no multipliers.
     pub stable: Option<bool>,
     /// How an unstable motion has lost its stability; `None` for other motions.
     pub instability: Option<Loss>,

@@ -23,9 +23,9 @@ const SAME: f64 = 1e-6;
 /// Motions with `impacts` impacts in `cycles` cycles, the largest impulse first; those with a shorter period
 /// are left out.
 ///
-/// Simulations from rest and from other states are searched for p impacts during which nearly q cycles pass
-/// (close returns; D. Auerbach et al. 1987); Newton's method starts from there. It also finds unstable
-/// motions, but does not prove that it has found all.
+/// Simulations from rest and from other states are searched for p successive impacts that take nearly q
+/// cycles (close returns; D. Auerbach et al. 1987); Newton's method starts from them. The search also finds
+/// unstable motions, but does not prove that it has found all.
 ///
 /// # Errors
 /// If a parameter is impossible, nothing drives the rig, or the number of impacts or of cycles is 0 or above
@@ -137,7 +137,7 @@ mod tests {
                 assert_eq!((orbit.impacts(), orbit.cycles), (2, 2));
                 // It is not one impact a cycle, counted twice.
                 assert!(one.iter().all(|o| (o.impulse - orbit.beats[0].impulse).abs() > 1e-6 * o.impulse));
-                // A simulation from its state has the same impacts over the period.
+                // A simulation from just after the first impact has only the second one within the period.
                 let start = orbit.state(0.0);
                 let mut motion = Simulation::from_state(&rig, &sine, start, orbit.beats[0].phase).unwrap();
                 let mut impacts = 0;

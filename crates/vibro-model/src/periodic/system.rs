@@ -11,19 +11,20 @@ use vibro_record::Result;
 
 /// Equations of impacts at the phases θᵢ with the impulses Jᵢ, tᵢ = θᵢ/ω, T = 2πq/ω:
 ///
-/// gap Eᵢ = Δ − Re(Xe^{iθᵢ}) + Σⱼ Jⱼχ(tᵢ − tⱼ) = 0 and velocity Fᵢ = Jᵢ/M(1+R) − ȧ(tᵢ) + Σⱼ Jⱼχ̇(tᵢ − tⱼ,
-/// before) = 0,
+/// gap Eᵢ = Δ − Re(Xe^{iθᵢ}) + Σⱼ Jⱼχ(tᵢ − tⱼ) = 0 and
 ///
-/// where a = Re(Xe^{iωt}), χ = χ₁ + χ₂ (periodic Green's functions over T; Babitsky 1998). For p = 1 these
-/// are the two conditions of the closed form. The equations are linear in the impulses and need no
-/// simulation, and all derivatives are exact.
+/// velocity Fᵢ = Jᵢ/(M(1+R)) − ȧ(tᵢ) + Σⱼ Jⱼχ̇(tᵢ − tⱼ) = 0,
+///
+/// where a = Re(Xe^{iωt}), χ = χ₁ + χ₂ (periodic Green's functions over T; Babitsky 1998), and χ̇ for j = i
+/// is taken just before the impulse. For p = 1 these are the two conditions of the closed form. The
+/// equations are linear in the impulses and need no simulation, and all derivatives are exact.
 pub(crate) struct System {
     pub rig: Rig,
     pub omega: f64,
     pub period: f64,
     pub response: Complex64,
     pub greens: [Green; 2],
-    /// 1/M(1 + R) in 1/kg.
+    /// 1/(M(1 + R)) in 1/kg.
     pub contact: f64,
     /// Length scale of equations and impulses, in m.
     pub length: f64,

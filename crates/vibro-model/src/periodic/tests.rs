@@ -18,8 +18,8 @@ fn one_impact_a_cycle_is_the_closed_form() {
             let guess = (orbit.force_phase + 0.02, orbit.impulse * 1.03);
             let found = PeriodicOrbit::near(&rig, &Sine { force, frequency }, 1, &[guess]).unwrap();
             let beat = found.beats[0];
-            // Both solve the same two equations; their rounding (a few ε of A) is amplified to J by its
-            // sensitivity.
+            // Both solve the same two equations. A rounding of a few ε of the gap or the amplitude,
+            // whichever is larger, changes J relatively by that rounding over the grazing distance.
             let amplified =
                 rig.gap.max(orbit.fundamental[0].norm()) / orbit.validity.grazing_distance.max(1e-9);
             let tolerance = 1e-12_f64.max(64.0 * f64::EPSILON * amplified);
@@ -46,7 +46,7 @@ fn patterns_that_simulations_settle_on_are_found() {
             let frequency = 2.0 + 0.35 * f64::from(k);
             let (rig, sine) = (Rig { restitution, ..Rig::thesis() }, Sine { force, frequency });
             let mut motion = Simulation::new(&rig, &sine).unwrap();
-            // A simulation that cannot go on is left out.
+            // A simulation that ends with an error, such as too many impacts in a cycle, is skipped.
             let Ok(found) = regime(&mut motion, 1500, 200) else { continue };
             let Regime::Periodic { impacts, cycles } = found.regime else { continue };
             if found.distance.unwrap() > 1e-9 || (impacts, cycles) == (1, 1) {
@@ -54,7 +54,8 @@ fn patterns_that_simulations_settle_on_are_found() {
             }
             let orbit = PeriodicOrbit::from_strikes(&rig, &sine, cycles, &found.strikes).unwrap();
             for (beat, strike) in orbit.beats.iter().zip(&found.strikes) {
-                // Remaining transient of the simulation, amplified by the largest multiplier.
+                // The last two repetitions differ by at most 1e-9. The remaining transient is larger, the
+                // nearer the largest multiplier is to 1; up to 1e-6 is allowed.
                 assert!((beat.impulse - strike.impulse).abs() < 1e-6 * strike.impulse, "{beat:?} {strike:?}");
             }
             assert!(orbit.validity.exists && orbit.validity.admissible, "{orbit:?}");

@@ -24,7 +24,7 @@ fn one_impact_a_cycle_none_and_a_doubled_pattern_are_told_apart() {
 
 #[test]
 fn a_pattern_is_named_while_it_still_settles() {
-    // Scene B: the largest multiplier is −0.9703, so after 100 cycles differences are still near 0.05.
+    // Scene B: the largest multiplier is −0.9703, so over 100 cycles differences fall only to 5 %.
     let rig = Rig::thesis();
     let frequency = 2.1 * (rig.k1 / rig.m1).sqrt() / TAU;
     let found = of(&rig, 0.5, frequency, 120, 100);

@@ -16,8 +16,8 @@ pub enum Observable {
     Fundamental,
     /// Half of the peak-to-peak value: what a displacement trace shows.
     Peak,
-    /// Running root mean square: x² through a first-order low-pass of 10 rad/s, square root; the mean of that
-    /// over the point.
+    /// Running root mean square: square root of x² after a first-order low-pass of 10 rad/s, as the mean
+    /// over the cycles of the point.
     Rms,
 }
 
@@ -33,12 +33,12 @@ pub(crate) const LOW_PASS: f64 = 10.0;
 
 /// Samples in a cycle of the excitation, or in a swing of the faster mass if that is shorter. Displacements
 /// and velocities are both sampled, so between two samples the motion is a cubic: its peaks err by h⁴/384 of
-/// the fourth derivative, 4e-6 of the amplitude for h = 2π/32. Integrals are trapezes with end corrections,
-/// whose error is h⁴/720 of the third derivative's step at each impact (Euler–Maclaurin): 3e-6 of the
-/// amplitude.
+/// the fourth derivative, 4e-6 of the amplitude for h = 2π/32. Integrals use the trapezoidal rule with end
+/// corrections, whose error is h⁴/720 of the third derivative's step at each impact (Euler–Maclaurin): 3e-6
+/// of the amplitude.
 const SAMPLES: f64 = 32.0;
 
-/// Longest period in cycles of a motion whose cycles count as alike.
+/// Longest period, in cycles, of a motion that counts as regular.
 const LONGEST_PERIOD: usize = 4;
 
 /// Sums over a time, for each mass.
@@ -206,8 +206,8 @@ impl Gauge {
     }
 }
 
-/// Part of the largest amplitude below which a mass stands still: sums of a few thousand terms round to 1e-13
-/// of them.
+/// Fraction of the largest amplitude below which a mass stands still. Sums of a few thousand terms are
+/// rounded to 1e-13 of them.
 pub const STILL: f64 = 1e-9;
 
 /// Displacement (m) and velocity (m/s) of a mass.

@@ -83,8 +83,8 @@ fn settled_filters_stand_still() {
         let mut out = vec![3.0; 1000];
         filter.causal(&mut out, 3.0);
         let level = 3.0 * filter.response(0.0).re;
-        // Rounding of the states, kept for 1/(2π·5 Hz) = 32 samples by poles that enlarge it by as much in
-        // each section.
+        // Rounding of the states: the poles keep it for 1/(2π·5 Hz) = 32 samples, and each section amplifies
+        // it by as much.
         assert!(out.iter().all(|v| (v - level).abs() < 1e-9), "{filter}");
     }
 }

@@ -23,10 +23,10 @@ const LEAST: f64 = 1e-3;
 /// its weighted record ends, relative to its beginning. The blows begin at `kept`. A finding states the line
 /// where it is largest. Nothing is added where records are too short to tell.
 ///
-/// The last quarter of a mode that decays as e^(−σt) has the transform of the first one times r = e^(−3σT/4);
-/// r^(4/3) is left at T. A mode whose record ends at T has lost e^((s − iω)T) of its transform, where s is
-/// its pole; that is also the relative error of its part of H. The noise, taken for white, is that before the
-/// quietest blow: before the others the previous blow may still ring.
+/// In the last quarter a mode that decays as e^(−σt) has the transform of the first quarter times r =
+/// e^(−3σT/4); r^(4/3) is left at T. A mode whose record ends at T has lost e^((s − iω)T) of its transform,
+/// where s is its pole; that is also the relative error of its part of H. White noise is assumed, with the
+/// variance before the quietest blow: before the others the previous blow may still ring.
 pub(super) fn widen(transfer: &mut Transfer, values: &[f64], kept: &[usize], how: &Blows, weights: &[f64]) {
     let quarter = (how.length - how.before) / PARTS;
     if quarter < FEWEST || how.before < 2 || kept.is_empty() {
@@ -57,7 +57,7 @@ pub(super) fn widen(transfer: &mut Transfer, values: &[f64], kept: &[usize], how
     let (squares, sum) = hann.iter().fold((0.0, 0.0), |(q, s), h| (q + h * h, s + h));
     let strong = STRONG * head.iter().copied().fold(0.0, f64::max);
     let part = |(k, (head, tail)): (usize, (&f64, &f64))| {
-        // The subtracted level is uncertain; a Hann window spreads this over two lines.
+        // The subtracted level is uncertain; the Hann window spreads this error over two lines.
         let level = if k < 2 { sum * sum / how.before as f64 } else { 0.0 };
         let noise = noise * weight * weight * (squares + level);
         let scatter = noise * (n.recip().sqrt() + (2.0 / how.before as f64).sqrt());

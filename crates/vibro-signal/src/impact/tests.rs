@@ -68,7 +68,7 @@ fn blows_give_the_receptance_and_the_decay_that_the_window_adds() {
         (Quantity::Receptance, 3, 0.0)
     );
     // Sampled impulses against a continuous system: half a sample of delay and (ωΔt)²/12, below 1 % at 200
-    // Hz. The rest of the last blow's response is e^(−ζωt) of it after four seconds.
+    // Hz. At the end of a record of 4 s, e^(−ζωt) = 3e-7 of the response is left.
     near(&plain, 0.01);
     // An eighth of the length: the response has not decayed, so the exponential window is needed.
     let how = Blows { length: 2048, left_at_end: Some(0.001), ..how };
@@ -142,8 +142,8 @@ fn where_the_blow_is_below_its_noise_there_is_no_function() {
             seen += usize::from(value.is_finite());
         }
     }
-    // Noise alone reaches ten times its mean power in one of e^10 lines; together with the blow, then at a
-    // tenth of that mean, in one of e^8.
+    // Noise alone reaches ten times its mean power in one of e^10 lines. With the blow, which adds up to a
+    // tenth of that mean, it does so in about one of e^8.
     assert!(loud > 1000 && quiet > 500 && seen <= 3, "{loud} {quiet} {seen}");
 }
 
@@ -225,8 +225,8 @@ fn each_rail_of_the_response_is_watched_on_its_own() {
             .collect::<Vec<_>>()
     };
     assert_eq!(rejected(&clean), [None; 4]);
-    // Only the strong blows pass 60 % of the largest value; on the other side the signal goes beyond the
-    // clipping level.
+    // Only the strong blows pass 60 % of the largest value. With one limit only, the signal passes this
+    // level on the other side.
     for (low, high) in [(-1e9, 0.6 * largest), (-0.6 * largest, 1e9), (-0.6 * largest, 0.6 * largest)] {
         for offset in [0.0, 0.3 * largest] {
             let mut response = clean.clone();
@@ -422,11 +422,12 @@ impl AntiAlias {
     }
 }
 
-/// Values before the filter for one sample after it.
+/// Oversampling: values before the filter for each sample after it.
 const OVER: usize = 16;
 
-/// Number of single blows after anti-alias filters that are called double hits, and of double hits that are
-/// missed: second hits of 10 to 60 % after 3 to 60 ms. Blows last 0.2 to 2 ms at 4096 Hz.
+/// Counts, after anti-alias filters, single blows classified as double hits, and double hits that are
+/// missed. Second hits have 10 to 60 % of the first and follow 3 to 60 ms after it. Blows last 0.2 to 2 ms
+/// at 4096 Hz.
 fn double_hits(draws: u64) -> (usize, usize) {
     let (mut false_doubles, mut lost) = (0, 0);
     for seed in 0..draws {

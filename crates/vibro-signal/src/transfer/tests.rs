@@ -43,8 +43,8 @@ fn a_lagging_system_has_its_magnitude_and_a_negative_phase() {
         assert_eq!((found.frf.axis.start(), found.frf.values.len()), (RATE / 1024.0, 512));
         for k in 10..200 {
             let truth = filter.response(found.frf.axis.at(k));
-            // Segments are cut at their ends: the filter remembers some 5 ms of 1 s, where the window is
-            // small.
+            // At the start of a segment the filter still responds to earlier force: for some 5 ms of 1 s,
+            // where the window is small.
             assert!((found.frf.values[k] / truth - 1.0).norm() < 0.02, "{estimator:?} line {k}");
             assert!(found.frf.values[k].arg() < 0.0);
             assert!(found.coherence[k] > 0.999);

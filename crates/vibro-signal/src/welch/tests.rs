@@ -44,7 +44,7 @@ fn agrees_with_scipy() {
         for scaling in [Scaling::Psd, Scaling::Power] {
             let found = spectrum::averaged(&averages, 0, &records()[0].meta, window, scaling).unwrap();
             let expected = reference(&format!("{} 64 {}", scaling.name(), window.name()));
-            // The rest of the mean at 0 Hz is not given.
+            // The line at 0 Hz is NaN: the mean is subtracted.
             assert!(found.values.magnitude(0).is_nan());
             close(&found.values.magnitudes()[1..], &expected[1..], 1.0);
         }
@@ -95,8 +95,8 @@ fn long_records_are_averaged_like_short_ones() {
 #[test]
 fn overlapping_segments_are_not_independent() {
     let w = window::samples(Window::Hann, 4096);
-    // Hann windows with half overlap have a squared correlation of 1/36, so many segments lose 2/36 of their
-    // number.
+    // Hann windows with half overlap have a squared correlation of 1/36, so a large number of segments
+    // counts as 1/(1 + 2/36) of it.
     let many = effective(&w, 2048, 10_000) / 10_000.0;
     assert!((many - 1.0 / (1.0 + 2.0 / 36.0)).abs() < 1e-5, "{many}");
     assert_eq!(effective(&w, 4096, 50), 50.0);

@@ -45,8 +45,8 @@ fn thirty_contacts_agree_with_arithmetic_of_forty_digits() {
         for (time, expected) in [(impact.time, row[0]), (*part, row[1]), (*back, row[2])] {
             worst = worst.max((time - expected).abs());
         }
-        // Rounding of 10 mm, amplified some hundred times by the contacts, over speeds of 0.1 m/s; 1e-9 s is
-        // required.
+        // Rounding of displacements of 10 mm, amplified some hundredfold by the contacts, over speeds of 0.1
+        // m/s. The requirement is 1e-9 s.
         assert!(worst < 1e-13, "{worst:e} at {}", row[0]);
         assert!((impact.approach_velocity - row[3]).abs() < 1e-12, "{impact:?} {}", row[3]);
         assert!((impact.impulse / row[4] - 1.0).abs() < 1e-12, "{impact:?} {}", row[4]);
@@ -54,8 +54,8 @@ fn thirty_contacts_agree_with_arithmetic_of_forty_digits() {
     println!("worst time {worst:e} s");
 }
 
-/// Compares the energy with the work of the force minus the losses of dampers and contact, integrated over
-/// each piece.
+/// Compares the energy with the work of the force minus the losses in dampers and contact, both integrated
+/// over each piece.
 fn check_balance(law: Law, rig: &Rig, seconds: f64) {
     let (force, frequency) = (0.5, 9.0);
     let mut motion = Compliant::new(rig, &sine(force, frequency), law, State::REST, 0.0).unwrap();
@@ -69,7 +69,8 @@ fn check_balance(law: Law, rig: &Rig, seconds: f64) {
     let (mut put_in, mut through, mut taken, mut impacts) = (0.0, 0.0, 0.0, Vec::new());
     let (touching, mut back_and_forth) = (Cell::new(false), 0.0);
     let mut visit = |piece: Piece<'_>| {
-        // Gauss–Legendre with three points on 64 panels; in a contact, the force of the law times the rate.
+        // Power, by Gauss–Legendre with three points on each of 64 panels. A contact absorbs its force times
+        // δ̇.
         let panel = piece.duration / 64.0;
         let node = 0.6_f64.sqrt() / 2.0;
         for i in 0..64 {
@@ -191,7 +192,7 @@ fn an_isolated_contact_has_its_restitution_and_duration() {
     for r in [1.0, 0.9, 0.5, 0.2, 0.05] {
         let (found, duration, impact) = rebound(Law::kelvin_voigt(1e5, r, mass).unwrap());
         // The springs change the speed by 1e-12 N/m · 30 mm · 0.1 s/m₁ = 2e-14 m/s; integrated contacts have
-        // errors of 1e-13 a step.
+        // relative errors of 1e-13 a step.
         assert!((found - r).abs() < 1e-11, "{r} {found}");
         let expected = conversion::duration(conversion::damping_ratio(r).unwrap(), 1e5, mass);
         assert!((duration - expected).abs() < 1e-12, "{r} {duration} {expected}");
@@ -205,13 +206,13 @@ fn an_isolated_contact_has_its_restitution_and_duration() {
     }
     let (found, duration, _) = rebound(Law::Hertz { stiffness: 1e8 });
     assert!((found - 1.0).abs() < 1e-11);
-    // At its end δ falls at the speed v: the error is 1e-13 of the largest indentation over v.
+    // The contact ends where δ falls through 0 at the speed v: an error of 1e-13 of the largest δ, over v.
     assert!((duration / conversion::hertz_duration(1e8, mass, speed) - 1.0).abs() < 1e-11);
 }
 
 #[test]
 fn hertz_agrees_with_a_plain_integration() {
-    // The same equations, integrated in plain steps from the beginning of a contact, with all forces.
+    // Reference: the same equations with all forces, integrated from the beginning of a contact.
     let rig = Rig::thesis();
     let law = Law::Hertz { stiffness: 1e8 };
     let start = State { x1: 1e-3, v1: 0.4, x2: 0.0, v2: 0.1 };

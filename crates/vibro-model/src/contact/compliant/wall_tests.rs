@@ -3,7 +3,8 @@ use crate::excitation::Sine;
 
 #[test]
 fn sticking_and_release_come_when_they_should() {
-    // Scene C: gap −0.5 mm, force 0.35 N sin ωt at ν 0.45, x₁ −2 mm at the start. Independent numbers.
+    // Scene C: gap −0.5 mm, force 0.35 N sin ωt at ν = 0.45, x₁ = −2 mm at the start. The expected times
+    // come from an independent computation.
     let rig = Rig { gap: -5e-4, ..Rig::thesis() };
     let frequency = 0.45 * (rig.k1 / rig.m1).sqrt() / std::f64::consts::TAU;
     let sine = Excitation::Sine(Sine { force: 0.35, frequency });

@@ -35,8 +35,8 @@ fn speeds(restitution: f64, force: f64, frequency: f64, stiffness: f64) -> Choic
     choose(&scene, frequency, &Question::new(Observable::ImpactSpeed)).unwrap()
 }
 
-/// Number of impacts in the second half of the last of `stations` (Hz, cycles), by numerical integration from
-/// rest through all of them.
+/// Number of impacts in the second half of the last of `stations` (Hz, cycles), by numerical integration
+/// from rest through all stations.
 fn impacts_at_the_end(rig: &Rig, force: f64, stations: &[(f64, f64)]) -> usize {
     let mut y = [0.0; 4];
     let mut phase = 0.0;
@@ -66,7 +66,7 @@ fn impacts_at_the_end(rig: &Rig, force: f64, stations: &[(f64, f64)]) -> usize {
             let Some((t, before)) = hit else { break };
             now += t;
             y = before;
-            // Rounding may leave the masses overlapping: this puts them just apart.
+            // Rounding may leave an overlap, so the masses are put just apart.
             y[0] = y[2] + rig.gap * (1.0 - 1e-12);
             let impulse = (1.0 + rig.restitution) * (y[1] - y[3]).max(0.0) / (1.0 / rig.m1 + 1.0 / rig.m2);
             y[1] -= impulse / rig.m1;
@@ -103,7 +103,8 @@ fn impacts_that_a_rising_frequency_keeps_are_followed() {
 
 #[test]
 fn a_motion_that_repeats_nothing_is_on_no_orbit() {
-    // Nearly the speed and amplitudes of the orbit, whose largest multiplier is 1.0000, but not periodic.
+    // The motion has nearly the impact speed and amplitudes of an orbit (largest multiplier 1.0000), but is
+    // not periodic.
     let choice = asked(0.98, 0.1, 7.0, Some(Direction::Up));
     let closed = choice.rung(Model::ClosedForm);
     assert!(!closed.valid && closed.reasons.iter().any(|r| r.code == "other-motion"), "{closed:?}");
@@ -116,7 +117,7 @@ fn a_motion_that_repeats_nothing_is_on_no_orbit() {
     assert!(on.rung(Model::ClosedForm).valid, "{:?}", on.findings);
 }
 
-/// Number of impacts of the thesis' rig from a state at phase 0, in 240 cycles after 3000.
+/// Number of impacts of the thesis' rig in 240 cycles, after 3000 cycles from a state at phase 0.
 fn impacts_from(restitution: f64, force: f64, frequency: f64, state: State) -> usize {
     let rig = Rig { restitution, ..Rig::thesis() };
     let mut motion = Simulation::from_state(&rig, &Sine { force, frequency }, state, 0.0).unwrap();
@@ -182,7 +183,8 @@ fn a_contact_that_leads_from_rest_to_another_motion_asks_for_the_history() {
     assert_eq!((open.chosen, open.needs.as_slice()), (None, &[Need::History][..]), "{:?}", open.findings);
     let soft = open.motions.last().unwrap();
     assert_eq!((soft.model, soft.pattern.to_string().as_str()), (Model::KelvinVoigt, "1/1"));
-    // Reference: the largest and the smallest x₁ of a cycle, from rest, from states at many instants.
+    // Reference: largest and smallest of 2000 samples of x₁ over one cycle, 2000 cycles after a start from
+    // rest.
     let law = scene.spring(529_320.0).unwrap();
     let mut motion = Compliant::new(&rig, &excitation, law, State::REST, 0.0).unwrap();
     motion.advance(2000.0 / 17.196, &mut |_| {}).unwrap();
@@ -199,8 +201,8 @@ fn a_contact_that_leads_from_rest_to_another_motion_asks_for_the_history() {
 
 #[test]
 fn one_motion_is_read_alike_from_wherever_it_starts() {
-    // Cycles that begin at the phase of an impact, as at a start near an orbit, hold both impacts of 2/2, or
-    // other impacts of 5/6.
+    // If cycles began at the phase of an impact, as at a start near an orbit, one cycle could hold both
+    // impacts of 2/2, or other impacts of 5/6.
     for (restitution, frequency, cycles, pattern) in
         [(0.97, 5.85, 2, "2/2"), (0.9, 13.700_000_000_000_001, 6, "5/6")]
     {
@@ -209,11 +211,12 @@ fn one_motion_is_read_alike_from_wherever_it_starts() {
         motion.run(6000.0 / frequency, |_| {}).unwrap();
         let fastest = fastest(&mut motion, cycles);
         let mean = fastest.iter().sum::<f64>() / fastest.len() as f64;
-        // The fastest impact would count too often if cycles began elsewhere.
+        // The reading takes the fastest impact of each cycle: with cycles that began elsewhere, it would
+        // count some impacts too often.
         assert!(fastest.iter().any(|v| v / mean > 1.1), "{fastest:?}");
         let choice = speeds(restitution, 0.9, frequency, 1e8);
         let [only] = choice.motions.as_slice() else { panic!("{:?}", choice.motions) };
-        // Settled to 2 % of the tolerance.
+        // Settled to 2 % of the tolerance of 2 %.
         assert_eq!(only.pattern.to_string(), pattern);
         assert!((only.answer[0] / mean - 1.0).abs() < 4e-4, "{only:?} {mean}");
         assert!(choice.chosen.is_some() && choice.followed.is_some_and(|f| f.states == f.of));
@@ -239,7 +242,7 @@ fn a_motion_that_a_contact_comes_to_from_rest_is_not_rare() {
     let mut motions = Motions::new(&stage).unwrap();
     let rare = |motions: &Motions| motions.known.iter().map(|m| m.rare).collect::<Vec<_>>();
     assert_eq!((rare(&motions), &motions.on), (vec![false, true], &CurrentMotion::Free));
-    // The reading of a compliant contact that reaches it from rest.
+    // Reading of a compliant contact that reaches the rare motion from rest.
     let state = State { x1: -4e-3, v1: 0.3, x2: -1e-3, v2: -0.2 };
     let mut motion = Simulation::from_state(&scene.rig, &excitation, state, 0.0).unwrap();
     let from_rest = MotionReader::new(&scene.rig, 13.5986, &question).read(&mut motion).unwrap();

@@ -47,8 +47,8 @@ fn a_standard_error_covers_what_it_should() {
 fn many_means_of_one_motion_are_not_told_apart() {
     // 500 sets of twenty pairs. With two known standard errors, 1 − 0.954²⁰ = 61 % of the sets have a pair
     // that differs. Estimated errors are never smaller than those of independent values, and often larger:
-    // fewer sets have one, but more than a quarter. With `APART`, which counts all comparisons, 1 % of the
-    // sets (5 ± 2.2) may have one.
+    // fewer sets have such a pair, but more than a quarter. With `APART`, which allows for all comparisons
+    // of a search, 1 % of the sets (5 ± 2.2) may have one.
     let question = Question { tolerance: 1e-4, ..Question::new(Observable::Fundamental) };
     let told = |errors: f64| {
         let pair = |seed: u64| {
@@ -161,7 +161,8 @@ fn a_pattern_that_no_block_holds_whole_is_read_whole() {
     let mean = speeds.iter().sum::<f64>() / 4.0;
     // Settled to 2 % of the tolerance.
     assert!((reading.answer.value[0] / mean - 1.0).abs() < 2e-5, "{} {mean}", reading.answer.value[0]);
-    // A block holds four cycles more than whole patterns: its error is up to a fifteenth of the spread.
+    // A block of 60 cycles holds four cycles more than whole patterns of 8: a mean over one block would be
+    // off by up to 4/60 of the spread of the speeds.
     assert!(speeds.iter().any(|v| (v / mean - 1.0).abs() > 0.05), "{speeds:?}");
 }
 
@@ -180,6 +181,6 @@ fn a_pattern_longer_than_a_brief_reading_is_read_to_its_end() {
     let mean = speeds.iter().sum::<f64>() / speeds.len() as f64;
     // Settled to 2 % of the tolerance.
     assert!((reading.answer.value[0] / mean - 1.0).abs() < 4e-4, "{reading:?} {mean}");
-    // At most as many cycles as three means over thirteen blocks need.
+    // Three means over thirteen blocks each need fifteen blocks.
     assert_eq!(reading.cycles, 15 * 60);
 }

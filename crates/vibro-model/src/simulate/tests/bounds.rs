@@ -13,7 +13,7 @@ fn a_thousand_million_cycles_are_refused_at_once() {
 
 #[test]
 fn zeno_scenes_take_bounded_work() {
-    // (restitution, gap): accumulating impacts, contact at rest, pressed together.
+    // Restitutions and gaps with accumulating impacts, contact at rest, or masses pressed together.
     for restitution in [0.0, 1e-9, 0.1, 0.5, 0.9, 0.99, 0.999, 1.0] {
         for gap in [0.0, -1e-4, -5e-4, 1e-9] {
             let rig = Rig { restitution, gap, c1: 0.4, c2: 0.4, ..Rig::thesis() };
@@ -50,8 +50,8 @@ fn masses_pressed_together_at_rest_stay_so() {
 
 #[test]
 fn a_release_is_followed_by_a_free_flight() {
-    // After each release the gap opens like t³: the next impact is not caused by rounding, and interruptions
-    // cause none.
+    // After each release the gap opens like t³: neither rounding nor interruptions may cause the next
+    // impact.
     for cut in [1e-12, 1e-9, 1e-6, 1e-4, 1.0] {
         let mut motion = scene_c();
         let (mut released, mut checked) = (None, 0);
@@ -98,7 +98,8 @@ fn kicks_and_steps_part_what_is_pressed_together() {
     let expected = rig.reduced_mass() * (1.0 + rig.restitution) * 0.004 / rig.m1;
     // A velocity of 0.03 m/s, with a rounding of each product.
     assert!((first.impulse / expected - 1.0).abs() < 1e-14 && first.time < 1e-15, "{first:?}");
-    // A constant pull of more than 0.033 N·(k₁ + k₂)/k₂ … parts the masses at once, a smaller one does not.
+    // A step of P changes the contact force of 0.033 N at once by Pm₂/(m₁ + m₂): −0.2 N parts the masses,
+    // −0.01 N does not.
     let strong = events(Excitation::Pulse(Pulses { force: -0.2, width: 0.05, frequency: 5.0 }));
     assert_eq!(strong[..2], [Event::Switch, Event::Release], "{strong:?}");
     let weak = events(Excitation::Pulse(Pulses { force: -0.01, width: 0.05, frequency: 5.0 }));

@@ -17,7 +17,6 @@ fn events(rig: &Rig, excitation: &Excitation, until: f64) -> (Vec<(Event, f64)>,
     motion
         .run(until, |leg| {
             let event = match leg.event {
-                // Impacts are left out.
                 Event::Impact(_) => return,
                 other => other,
             };
