@@ -73,7 +73,7 @@ struct Bounces {
     contact: f64,
     /// Standard deviation in s of the detected impact times, for drops without a record.
     jitter: f64,
-    /// Whether the estimator is told the jitter.
+    /// Whether `jitter` is given to the estimator.
     jitter_stated: bool,
 }
 

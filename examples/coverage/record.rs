@@ -8,7 +8,7 @@ pub struct Kind {
     pub name: &'static str,
     /// The properties drawn at random with their limits, as text for the page.
     pub ranges: &'static str,
-    /// One record is drawn for every `every` of the number asked for: 1, or more if the estimator is slow.
+    /// Divisor of the number of records to draw: 1, or more if the estimator is slow.
     pub every: u64,
     /// Draws a record, runs the estimator on it and returns its answers beside the true values.
     pub draw: fn(&mut super::disturbance::Mix) -> Record,

@@ -178,7 +178,7 @@ const SEVEN: f64 = 14.067;
 
 /// The fit begins at the truth, the rig of the campaign; its data pass through files, spectra, integration
 /// and sweeps. The noise differs from draw to draw. The averaging of the converter lowers the amplitudes of
-/// all draws alike, by less than the uncertainty `calibration`.
+/// all draws alike, by up to 1e-4, which the uncertainty `calibration` covers.
 #[test]
 fn the_truth_lies_within_the_joint_region_of_the_fit() {
     let apart = apart(&fitted_again(1..=1)[0]);

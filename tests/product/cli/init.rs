@@ -26,7 +26,7 @@ pub fn burst(t: f64) -> f64 {
     if t < 0.0 { 0.0 } else { (-t / 0.003).exp() * (TAU * 2900.0 * t).sin() }
 }
 
-/// Writes recordings of seven kinds. Returns file and section of each table that is expected.
+/// Writes recordings of most kinds. Returns file and section of each expected table, in their order.
 fn folder(root: &Path) -> [(&'static str, &'static str); 7] {
     steps(root);
     fs::remove_file(root.join("campaign.toml")).unwrap();

@@ -74,7 +74,7 @@ fn a_second_run_computes_what_changed_and_gives_what_a_first_would() {
     let segment = campaign.replacen("segment = 1024", "segment = 2048", 1);
     assert_eq!(kept(&segment), all - 1);
     assert_eq!(kept(&format!("# remarks\n\n{segment}")), all);
-    // A key outside the tables affects sweeps, tables that name a sweep, and series of drops.
+    // A key of `[compute]` affects sweeps, tables that name a sweep, and series of drops.
     assert_eq!(kept(&format!("{segment}\n[compute]\nfmax = 30\n")), all - 5);
     assert_eq!(kept(&campaign), all - 6);
     // A changed recording.
