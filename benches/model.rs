@@ -6,7 +6,7 @@ use vibroimpact::model::{Excitation, Impulses, Rig, Sine, orbits, orbits_of, res
 
 fn orbit(c: &mut Criterion) {
     let rig = Rig::thesis();
-    // Both roots, the upper one real.
+    // Computes both roots; the root with J > 0 is a real motion.
     c.bench_function("orbit, sine", |b| b.iter(|| orbits(black_box(&rig), 0.5, black_box(11.0))));
     let impulses = Excitation::Impulse(Impulses { impulse: 0.009, frequency: 4.0 });
     c.bench_function("orbit, impulses", |b| b.iter(|| orbits_of(black_box(&rig), &impulses, 1)));

@@ -1,4 +1,4 @@
-//! Reading measurement files of other people's instruments, from path to records.
+//! Speed of reading measurement files of other people's instruments, from path to records.
 //!
 //! `cargo bench -p vibro-bench --bench read` needs `../shared/data` beside the project; without it the groups
 //! are skipped.
@@ -8,7 +8,7 @@ use std::hint::black_box;
 use std::path::{Path, PathBuf};
 use vibroimpact::read::Reader;
 
-/// A folder of `../shared/data`; says so where it is absent.
+/// A folder of `../shared/data`; prints a line and returns `None` if it is absent.
 fn data(folder: &str) -> Option<PathBuf> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data").join(folder);
     if !path.is_dir() {
@@ -18,7 +18,7 @@ fn data(folder: &str) -> Option<PathBuf> {
     Some(path)
 }
 
-/// One file, read whole and surveyed.
+/// Reads and surveys one file.
 fn file(c: &mut Criterion, group: &str, path: &Path) {
     let name = path.file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned());
     let mut group = c.benchmark_group(format!("{group}/{name}"));

@@ -1,4 +1,4 @@
-//! Reading text of numbers, against reading its bytes.
+//! Speed of reading numbers from text, compared with reading the bytes only.
 //!
 //! `cargo bench -p vibro-bench --bench read_ascii` makes a 5-million-line file in the temporary folder and
 //! removes it again.
@@ -12,9 +12,9 @@ use vibroimpact::read::Reader;
 /// How the numbers are printed.
 #[derive(Clone, Copy)]
 enum Style {
-    /// C's `%13.6e`: lines of one length.
+    /// C's `%13.6e`: all lines have the same length.
     Padded,
-    /// C's `%.6e`: a sign makes a line longer.
+    /// C's `%.6e`: a minus sign makes a line longer.
     Exponent,
     /// Nine decimals.
     Decimal,

@@ -1,4 +1,4 @@
-//! Averaged spectra: the whole of it against its bare transforms.
+//! Speed of averaged spectra, compared with the Fourier transforms alone.
 //!
 //! `cargo bench -p vibro-bench --bench welch`
 

@@ -1,6 +1,6 @@
 //! Draws one figure of each kind into a folder: `cargo run --example gallery -- FOLDER`.
 //!
-//! The data are made up by formulas that look like measurements of a two-mass impacting rig; nothing here is
+//! The data are made up by formulas and resemble measurements of a two-mass impacting rig; nothing here is
 //! a result.
 
 use ndarray::Array2;
@@ -202,7 +202,7 @@ fn intervals() -> Figure {
     Figure::double("Intervals between impacts").height(62.0).columns(2).panel(first).panel(second)
 }
 
-/// Levels over two axes with uneven rows, and orders over them.
+/// Levels over frequency and excitation with uneven rows, and a line of order 1 over them.
 fn map() -> Result<Figure> {
     let (frequency, excitation, magnitude) = spectra(40, 801);
     let uneven: Vec<f64> = excitation.iter().map(|e| 3.0 + (e - 3.0).powf(1.25) * 0.55).collect();
@@ -218,7 +218,7 @@ fn map() -> Result<Figure> {
     Ok(Figure::single("Levels over excitation").panel(plot))
 }
 
-/// Classes over two parameters.
+/// Classes of motion over two parameters.
 fn regimes() -> Result<Figure> {
     let (x, y) = (grid(0.5, 3.0, 60), grid(0.0, 1.0, 40));
     let classes = Array2::from_shape_fn((40, 60), |(r, c)| {
@@ -237,7 +237,7 @@ fn regimes() -> Result<Figure> {
     Ok(Figure::single("Regimes").height(70.0).panel(plot))
 }
 
-/// Error against time, both over decades, with every point named.
+/// Error over computing time, both on logarithmic axes, with every point named.
 fn precision() -> Figure {
     let methods = [
         ("closed form", 4e-7, 2e-15, 0.0),
@@ -259,7 +259,7 @@ fn precision() -> Figure {
     Figure::single("Speed against accuracy").panel(plot)
 }
 
-/// A mean with its band, and lines with points.
+/// A mean with its band, and a line.
 fn cycle() -> Figure {
     let phase = grid(0.0, 360.0, 181);
     let radians: Vec<f64> = phase.iter().map(|p| p.to_radians()).collect();
@@ -279,7 +279,7 @@ fn cycle() -> Figure {
     Figure::single("Velocity over one cycle").panel(plot)
 }
 
-/// More series than fit a legend inside.
+/// More series than fit into a legend inside the frame.
 fn many() -> Figure {
     let x = grid(0.0, 10.0, 21);
     let mut plot = Plot::new(AxisSpec::new("Time", "s"), AxisSpec::new("Velocity", "m/s"));
@@ -291,7 +291,7 @@ fn many() -> Figure {
     Figure::double("Many series").height(70.0).panel(plot)
 }
 
-/// A long trace, of which only what is seen is written.
+/// A long trace, thinned to what is visible.
 fn trace() -> Figure {
     let mut noise = Noise::new(5);
     let time = grid(0.0, 4.0, 50_000);

@@ -18,7 +18,7 @@ const RANGES: &str = "ζ 0.002 to 0.1, 8 to 80 samples a period, a record of 2 t
     1.15 to 4 times as high, 0.1 to 1 times as large; white noise 0.0001 to 0.03 of the peak, 1/f noise 0.3 to 10 times that, hum to 2 %, \
     12 bits; a fifth clipped at 0.4 to 0.95 of the peak";
 
-/// Undamped natural frequency in Hz, damping ratio, amplitude at the release, phase.
+/// Undamped natural frequency in Hz, damping ratio, amplitude at the release, phase in rad.
 struct Mode(f64, f64, f64, f64);
 
 impl Mode {
@@ -68,7 +68,7 @@ fn draw(mix: &mut Mix, count: usize) -> Record {
     let Ok(found) = decay(&trace("mm", rate, values), &DecayOptions::default()) else {
         return mode_answers(&modes, |_| None);
     };
-    // Fitted modes further from a true one than this, in Hz, are not paired with it: two half-power
+    // Largest distance in Hz between a true mode and the fitted mode paired with it: two half-power
     // bandwidths or two lines of the record.
     let limits: Vec<f64> = modes.iter().map(|m| (4.0 * m.1 * m.0).max(2.0 * rate / n as f64)).collect();
     let truths: Vec<f64> = modes.iter().map(|m| m.0).collect();
@@ -80,7 +80,7 @@ fn draw(mix: &mut Mix, count: usize) -> Record {
 }
 
 /// The answers for each true mode: frequency, damping ratio, and amplitude at the start of the fit.
-/// `fitted(i)` is the fitted mode with the time in s from the release to that start, or none where it was
+/// `fitted(i)` is the fitted mode and the time in s from the release to that start; `None` if the mode was
 /// not found.
 fn mode_answers<'a>(
     modes: &[Mode],

@@ -26,14 +26,14 @@ impl Mix {
         self.random.uniform() < share
     }
 
-    /// Logs a property of the record, for the list of the worst records; returns its size.
+    /// Logs a property of the record for the list of the worst records. Returns its size.
     pub fn note(&mut self, name: &'static str, size: f64) -> f64 {
         self.named.push((name, size));
         size
     }
 
-    /// Draws a disturbance that this share of the records has, with a size between two limits, evenly on a
-    /// logarithmic scale; 0 in the other records. Logs it.
+    /// With the probability `share`, draws and logs a disturbance whose size is uniform in the logarithm
+    /// between two limits; otherwise 0.
     pub fn some(&mut self, share: f64, name: &'static str, low: f64, high: f64) -> f64 {
         if self.chance(share) {
             let size = self.log(low, high);
@@ -43,9 +43,10 @@ impl Mix {
         }
     }
 
-    /// Draws a measuring chain: white noise with a root mean square between `low` and `high` times the
-    /// peak, and in half of the records each 1/f noise up to ten times as strong, hum of 50 or 60 Hz up to
-    /// 2 % of the peak, and a converter of 12 bits whose range is 1.05 to 4 times the peak.
+    /// Draws a measuring chain. White noise has a root mean square between `low` and `high` times the peak.
+    /// Each of the following is in half of the records: 1/f noise of 0.3 to 10 times the white noise, hum at
+    /// 50 or 60 Hz of up to 2 % of the peak, and a 12-bit converter with a range of 1.05 to 4 times the
+    /// peak.
     pub fn chain(&mut self, (low, high): (f64, f64)) -> Chain {
         let white = self.log(low, high);
         self.note("white noise", white);
@@ -68,8 +69,8 @@ impl Mix {
         }
     }
 
-    /// Adds noise whose power density falls as 1/f, from one over the length of the record to a third of
-    /// the sampling rate: a sum of first-order processes with corners an octave apart.
+    /// Adds noise whose power density falls as 1/f, from one over the length of the record to a third of the
+    /// sampling rate: a sum of first-order processes whose corners are an octave apart.
     pub fn add_pink(&mut self, values: &mut [f64], rms: f64) {
         let processes = (values.len() as f64).log2().ceil() as i32;
         let keep: Vec<f64> = (0..processes).map(|k| (-2.0 * 2f64.powi(-k)).exp()).collect();
@@ -84,8 +85,8 @@ impl Mix {
     }
 }
 
-/// A measuring chain, which adds noise and hum to a motion and converts it. Sizes are over the peak; 0 for
-/// none.
+/// A measuring chain: it adds noise and hum to a motion and converts it. Sizes are relative to the peak; 0
+/// for none.
 pub struct Chain {
     /// Root mean square of the white noise.
     pub white: f64,

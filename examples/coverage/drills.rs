@@ -79,7 +79,7 @@ impl Hammer {
         Hammer { speed, turns, struck, before, restitution, phase, contact, sine, edges, impacts }
     }
 
-    /// Start and end of the record in s: half a turn after a reference pulse.
+    /// Start and end of the record in s, each half a turn after a reference pulse.
     fn span(&self) -> (f64, f64) {
         (self.edges[1] + 0.5 / self.speed, self.edges[self.turns + 1] + 0.5 / self.speed)
     }
@@ -102,7 +102,7 @@ impl Hammer {
         let free = |u: f64| {
             v0 + (v1 - v0) * u - 0.25 * PI * (v0 + v1) * (PI * u).sin() + self.sine * (TAU * u).sin()
         };
-        // Half a wave of a cosine leads through the contact, whose middle is the impact.
+        // Through the contact the velocity follows half a cosine wave; the impact is in its middle.
         let blend = |since: f64| 0.5 * (1.0 + (PI * since / self.contact).sin());
         if t - last.time < 0.5 * self.contact {
             let part = blend(t - last.time);

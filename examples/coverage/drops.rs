@@ -73,15 +73,15 @@ struct Bounces {
     contact: f64,
     /// Standard deviation in s of the detected impact times, for drops without a record.
     jitter: f64,
-    /// Whether the estimator is told the jitter.
+    /// Whether `jitter` is given to the estimator.
     jitter_stated: bool,
 }
 
-/// Makes the train of intervals of a drop: from its impact times, or from a simulated record.
+/// Makes the train of intervals of a drop, from its impact times or from a simulated record.
 type TrainOf = fn(&mut Mix, &Bounces) -> Option<Train>;
 
-/// Draws a series of drops of one body from one height. Compares R by all methods with the truth. `stated`
-/// says whether the estimator is told the duration of a contact.
+/// Draws a series of drops of one body from one height, and compares R by all methods with the truth. If
+/// `stated`, the estimator is given the duration of a contact.
 fn draw(mix: &mut Mix, train_of: TrainOf, stated: bool) -> Record {
     let gravity = 9.80665;
     let (r, height) = (mix.random.between(0.5, 0.95), mix.log(0.05, 1.0));
@@ -121,7 +121,7 @@ fn draw(mix: &mut Mix, train_of: TrainOf, stated: bool) -> Record {
     answers(r, restitution(&measured).ok().as_ref())
 }
 
-/// The answers for R: the combined one, that of the drop height, and that of the flights.
+/// The answers for R: combined, from the drop height, and from the flights.
 fn answers(r: f64, found: Option<&Restitution>) -> Record {
     let by =
         |method: &str| found?.by.iter().find(|way| way.method.contains(method)).map(|way| &way.restitution);
@@ -148,8 +148,8 @@ fn sound_in_room(mix: &mut Mix, room: Room) -> Record {
     answers(drops.restitution, restitution(&measured).ok().as_ref())
 }
 
-/// The train of a drop whose impact times are known except for a normally distributed error.
-// An `Option` as for trains from records, which may hold none.
+/// The train of a drop whose impact times have a normally distributed error.
+// An `Option`, since trains from records may be absent.
 #[allow(clippy::unnecessary_wraps)]
 fn train_of_times(mix: &mut Mix, bounces: &Bounces) -> Option<Train> {
     let jitter = bounces.jitter;
@@ -158,14 +158,14 @@ fn train_of_times(mix: &mut Mix, bounces: &Bounces) -> Option<Train> {
     Some(Train { intervals, onset_std: bounces.jitter_stated.then_some(jitter), ..Train::default() })
 }
 
-/// The train found in a record of the force: each impact is a half sine as long as the contact.
+/// The train found in a record of the force, in which each impact is a half sine as long as the contact.
 fn train_of_forces(mix: &mut Mix, bounces: &Bounces) -> Option<Train> {
     let contact = bounces.contact;
     let shape = |t: f64| if t < contact { (PI * t / contact).sin() } else { 0.0 };
     train_in_record(mix, bounces, contact, &shape, &ImpactsOptions::default())
 }
 
-/// The train found in a record of the sound: each impact rings as one mode with an exponential decay.
+/// The train found in a record of the sound, in which each impact rings as one decaying mode.
 fn train_of_sounds(mix: &mut Mix, bounces: &Bounces) -> Option<Train> {
     let (f, zeta) = (mix.log(800.0, 4000.0), mix.log(0.01, 0.1));
     let shape = move |t: f64| (-zeta * TAU * f * t).exp() * (TAU * f * t).sin();

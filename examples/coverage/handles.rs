@@ -16,8 +16,7 @@ pub const KINDS: &[Kind] = &[Kind {
     draw,
 }];
 
-/// Magnitude of the weighting `W_h` at `f` Hz: ISO 5349-1:2001, table A.1, each section as a quotient of its
-/// powers.
+/// Magnitude of the weighting `W_h` at `f` Hz (ISO 5349-1:2001, table A.1), as a product of its sections.
 fn weight(f: f64) -> f64 {
     let section = |corner: f64, quality: f64| {
         let x = f / corner;

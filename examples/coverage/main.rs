@@ -3,10 +3,10 @@
 //! with them.
 //!
 //! `cargo run --release --example coverage [-- RECORDS]` takes RECORDS records of each kind, 1000 unless
-//! stated, and writes `docs/coverage.md`. `-- RECORDS --rows KIND` prints the rows of this kind alone and
-//! writes nothing. `-- RECORDS --worst KIND` prints the kind's three worst records of each quantity with
-//! their disturbances, and its coverage below and above the median size of each disturbance; it writes
-//! nothing, either. Record number n is the same in every run.
+//! stated, and writes `docs/coverage.md`. `-- RECORDS --rows KIND` prints only the rows of this kind and
+//! writes nothing. `-- RECORDS --worst KIND` writes nothing, either: it prints the kind's three worst
+//! records of each quantity with their disturbances, and its coverage below and above the median size of
+//! each disturbance. Record number n is the same in every run.
 
 mod decays;
 mod disturbance;

@@ -104,7 +104,7 @@ fn direct_frf(mix: &mut Mix, count: usize) -> Record {
         let constant = Complex64::new(residual * ratio * mix.random.between(-1.0, 1.0), 0.0);
         with_residuals.push(Pole { frequency: ratio * centre, zeta: 0.01, constant });
     }
-    // In lines, on either side of the modes.
+    // Half-span of the record in lines (1 Hz apart) on either side of the modes.
     let half_span = (lines_in_bandwidth * mix.log(6.0, 25.0)).max(12.0);
     let first = (centre - half_span).max(0.3 * centre).max(1.0);
     let last = poles[count - 1].frequency + half_span;
@@ -131,7 +131,7 @@ fn averaged_frf(mix: &mut Mix, count: usize) -> Record {
     let zeta = mix.note("ζ", (lines_in_bandwidth / (2.0 * centre)).min(0.1));
     let poles = draw_modes(mix, count, zeta, centre);
     let (_, power, unit) = draw_quantity(mix);
-    // One line a Hz.
+    // Lines are 1 Hz apart.
     let (rate, n) = (segment as f64, (segments + 1) * segment / 2);
     let (force, motion) = random_response(mix, &poles, power, rate, n);
     let traces = Traces::from_memory(vec![trace("N", rate, force), trace(unit, rate, motion)]);
@@ -159,8 +159,8 @@ fn averaged_frf(mix: &mut Mix, count: usize) -> Record {
 /// A random force of `n` samples up to 0.45 of the sampling rate with a peak of 1, and the response of the
 /// modes with noise, hum and converter.
 ///
-/// The force is periodic with at least twice the record, so the response is exactly steady-state and its
-/// line spacing is finer than the analysis can resolve.
+/// The force repeats after at least twice the length of the record. So the response is exactly steady, and
+/// its lines are finer than the analysis can resolve.
 fn random_response(mix: &mut Mix, poles: &[Pole], power: i32, rate: f64, n: usize) -> (Vec<f64>, Vec<f64>) {
     let half_period = n.next_power_of_two();
     let transform = Transform::new(2 * half_period);

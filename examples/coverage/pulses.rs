@@ -56,7 +56,7 @@ struct Law {
     s: f64,
     /// Coefficient c of the loss.
     loss: f64,
-    /// Quotient of the stiffness of unloading and that of compression; 1 for the same.
+    /// Stiffness of unloading over stiffness of compression; 1 for equal ones.
     unloading: f64,
 }
 
@@ -65,7 +65,7 @@ impl Law {
     fn force(&self, d: f64, v: f64, most: f64) -> f64 {
         let d = d.max(0.0);
         if self.unloading > 1.0 && v < 0.0 {
-            // Walton and Braun: unloading along a straight line from the largest force, with a higher
+            // Walton and Braun: unloading follows a straight line from the largest force, with a higher
             // stiffness.
             return most.powf(self.n) * (1.0 - self.unloading * (1.0 - d / most));
         }
@@ -102,7 +102,7 @@ impl Contact {
             most = f64::max(most, next.0);
             let (before, after) = (force[force.len() - 1], law.force(next.0, next.1, most));
             if next.1 < 0.0 && (after <= 0.0 || next.0 <= 0.0) {
-                // The end of the contact is interpolated linearly between two steps: they are short against
+                // The end of the contact is interpolated linearly between two steps, which are short against
                 // the contact.
                 let part = if after < 0.0 { before / (before - after) } else { d / (d - next.0).max(1e-300) };
                 let duration = (force.len() as f64 - 1.0 + part.min(1.0)) * step;
@@ -180,7 +180,8 @@ impl Sensor {
     /// `n` samples of the force that the sensor shows, at this `interval`; the contact starts at the time
     /// `onset`.
     fn shown(&self, contact: &Contact, n: usize, interval: f64, onset: f64) -> Vec<f64> {
-        // Steps of the sensor's integration in a sampling interval: no longer than the steps of the contact.
+        // Integration steps of the sensor per sampling interval; each is no longer than a step of the
+        // contact.
         let substeps = (interval / contact.step).ceil().max(4.0) as usize;
         let step = interval / substeps as f64;
         let mut sections = butterworth(self.order, TAU * self.corner / contact.duration);
@@ -193,8 +194,8 @@ impl Sensor {
                 let middle = contact.at(t - 0.5 * step);
                 force = sections.iter_mut().fold(middle, |input, section| section.pass(input, step));
             } else if self.ringing > 0.0 {
-                // A mode of unit static gain in the sensor, integrated by half a step of x, a step of v, and
-                // half a step of x.
+                // The sensor's mode has a static gain of 1. It is integrated by half a step of x, a step of
+                // v, and half a step of x.
                 x += 0.5 * step * v;
                 v += step * (self.omega * self.omega * (force - x) - 2.0 * self.zeta * self.omega * v);
                 x += 0.5 * step * v;
@@ -223,7 +224,7 @@ fn draw(mix: &mut Mix, family: Family) -> Record {
     let n = ((before + 1.0 + after) * samples) as usize;
     let onset = (before * samples + mix.random.uniform()) / samples * contact.duration;
     let mut shown = sensor.shown(&contact, n, contact.duration / samples, onset);
-    // Scales from unit mass and velocity to a bench: approach velocity in m/s, contact duration in s.
+    // Scales from unit mass and approach velocity to a bench: velocity in m/s, contact duration in s.
     let (velocity, duration) = (mix.log(0.05, 5.0), mix.log(2e-5, 5e-3));
     let scale = velocity * contact.duration / duration;
     for a in &mut shown {

@@ -8,7 +8,7 @@ pub struct Kind {
     pub name: &'static str,
     /// The properties drawn at random with their limits, as text for the page.
     pub ranges: &'static str,
-    /// Of every this many records only one is drawn: 1, or more where the estimator is slow.
+    /// Divisor of the number of records to draw: 1, or more if the estimator is slow.
     pub every: u64,
     /// Draws a record, runs the estimator on it and returns its answers beside the true values.
     pub draw: fn(&mut super::disturbance::Mix) -> Record,
@@ -28,17 +28,17 @@ pub struct Answer {
     /// Name of the quantity on the page.
     pub quantity: &'static str,
     pub truth: f64,
-    /// Value and standard uncertainty; `None` where there is no value, or one without an uncertainty.
+    /// Value and standard uncertainty; `None` without a value or without its uncertainty.
     pub found: Option<(f64, f64)>,
 }
 
 impl Answer {
-    /// The answer by an estimate, or none.
+    /// The answer of an estimate, if there is one.
     pub fn new(quantity: &'static str, truth: f64, found: Option<&Estimate>) -> Answer {
         Answer::of(quantity, truth, found.map(|e| (e.value, e.std)))
     }
 
-    /// The answer by a value and its standard uncertainty; none without an uncertainty.
+    /// The answer of a value and its standard uncertainty; no answer without an uncertainty.
     pub fn of(quantity: &'static str, truth: f64, found: Option<(f64, Option<f64>)>) -> Answer {
         let found = found.and_then(|(value, std)| Some((value, std?)));
         Answer { quantity, truth, found: found.filter(|(value, _)| value.is_finite()) }
@@ -50,9 +50,8 @@ impl Answer {
     }
 }
 
-/// Pairs each true value with the value found for it, and gives the index of that. The two are at
-/// most the true value's limit apart. Pairs with the smallest distance over limit are formed first; no
-/// value is in two pairs.
+/// Pairs each true value with a found one, at most `limits` apart. Returns the index of the found value.
+/// Pairs with the smallest distance over limit are formed first; no value is in two pairs.
 pub fn pairs(truths: &[f64], limits: &[f64], found: &[f64]) -> Vec<Option<usize>> {
     let mut candidates: Vec<(f64, usize, usize)> = Vec::new();
     for (i, (truth, limit)) in truths.iter().zip(limits).enumerate() {

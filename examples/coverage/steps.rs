@@ -34,24 +34,25 @@ struct Setup {
     force: f64,
     /// Change of the logarithm of the force over a step; 0 for none.
     growth: f64,
-    /// White noise of the force, over its amplitude.
+    /// White noise of the force, relative to its amplitude.
     force_noise: f64,
-    /// Periods of a step.
+    /// Number of periods in a step.
     periods: f64,
-    /// Samples of a period of the natural frequency.
+    /// Number of samples in a period of the natural frequency.
     samples: f64,
     /// Measuring chain of the response.
     chain: Chain,
 }
 
 impl Setup {
-    /// Displacement over force in m/N of e^{st}.
+    /// Receptance in m/N for a force e^{st}.
     fn receptance(&self, s: Complex64) -> Complex64 {
         let natural = TAU * self.natural_frequency;
         1.0 / (MASS * (s * s + 2.0 * self.zeta * natural * s + natural * natural))
     }
 
-    /// Draws the traces of the step at `f` Hz; the chain's noise is a part of `largest`, in m.
+    /// Draws the traces of the step at `f` Hz. The noise of the measuring chain is relative to `largest`
+    /// (m).
     fn step(&self, mix: &mut Mix, f: f64, largest: f64) -> StepTraces {
         let rate = self.natural_frequency * self.samples;
         let n = (self.periods / f * rate) as usize;
@@ -99,7 +100,7 @@ fn draw(mix: &mut Mix) -> Record {
     let sweep = sweep_up(Axis::index(0), Vec::new());
     let found = stepped(sweep, traces, &ResponseOptions::default()).ok().map(|(_, found)| found);
     let mut record = Record::default();
-    // A step without a sine of force would be left out; none of these is.
+    // A step without a sine of force would be left out; no step here is.
     let points = found.iter().map(|r| &r.points).filter(|points| points.len() == steps);
     let points: Vec<&ResponsePoint> = points.flatten().collect();
     for (k, f) in frequencies.into_iter().enumerate() {
@@ -115,7 +116,7 @@ fn step_answers(record: &mut Record, f: f64, truth: Complex64, point: Option<&Re
     let receptance = point.filter(|p| p.upper_limit.is_none()).and_then(|p| p.receptance.as_ref());
     let ratio = receptance.map(|r| (Complex64::new(r.re, r.im), r.std));
     record.answers.push(Answer::of("receptance", truth.norm(), ratio.map(|(h, std)| (h.norm(), std))));
-    // The difference of the phases, so that it has no jump at 180°.
+    // The phase is compared as a difference, which has no jump at 180°.
     let phase = ratio.map(|(h, std)| ((h / truth).arg(), std.map(|std| std / h.norm())));
     record.answers.push(Answer::of("phase", 0.0, phase));
 }

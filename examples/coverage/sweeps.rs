@@ -65,7 +65,7 @@ struct Setup {
     chain: Chain,
 }
 
-/// True values of a step: excitation frequency in Hz, amplitudes of force in N and of displacement in m.
+/// True values of a step: excitation frequency in Hz, force amplitude in N, displacement amplitude in m.
 struct Truth {
     excitation: f64,
     force: f64,
@@ -73,7 +73,7 @@ struct Truth {
 }
 
 impl Setup {
-    /// Displacement over force in m/N at `f` Hz.
+    /// Magnitude of the receptance in m/N at `f` Hz.
     fn receptance(&self, f: f64) -> f64 {
         let (natural, zeta) = (self.natural_frequency, self.zeta);
         1.0 / (MASS * TAU * TAU * (natural * natural - f * f).hypot(2.0 * zeta * natural * f))
@@ -84,8 +84,8 @@ impl Setup {
         TAU * f * self.receptance(f) * self.force
     }
 
-    /// Draws the records of force and velocity at `f` Hz, and makes their spectra. The chain's noise, hum
-    /// and range are parts of `largest`, the largest velocity of the sweep in m/s.
+    /// Draws the records of force and velocity at `f` Hz and computes their spectra. Noise, hum and range of
+    /// the measuring chain are relative to `largest`, the largest velocity of the sweep in m/s.
     fn step(&self, mix: &mut Mix, f: f64, number: usize, largest: f64) -> (SweepPoint, Truth) {
         let n = self.samples;
         let rate = LINE_SPACING * n as f64;
@@ -165,8 +165,8 @@ pub fn sweep_up(axis: Axis, points: Vec<SweepPoint>) -> Sweep {
     Sweep { name, direction, mass: Some(1), axis, analyser_integrated: 0, points, findings: Vec::new() }
 }
 
-/// Adds the answer for the resonance of the displacement, which lies below the undamped natural frequency in
-/// Hz. Returns the true resonance in Hz, and the one found nearest to it.
+/// Adds the answer for the resonance of the displacement in Hz, which lies below the undamped natural
+/// frequency. Returns the true resonance and the found one nearest to it.
 pub fn resonance_answer<'a>(
     record: &mut Record,
     natural_frequency: f64,
@@ -194,8 +194,8 @@ fn sweep_answers(setup: &Setup, truths: Vec<Truth>, found: Option<&Response>) ->
         record.answers.push(Answer::new("amplitude", truth.amplitude, amplitude));
     }
     let (resonance, nearest) = resonance_answer(&mut record, setup.natural_frequency, setup.zeta, found);
-    // With modulation each step has its own mean force, so the steps do not lie on one resonance curve and
-    // no height is asked.
+    // With modulation each step has its own mean force. The steps then do not lie on one resonance curve, so
+    // the height of the resonance is not compared.
     if setup.modulation == 0.0 {
         let height = nearest.map(|r| (r.amplitude, r.amplitude_std));
         let truth = setup.receptance(resonance) * setup.force;

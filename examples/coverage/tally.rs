@@ -5,7 +5,7 @@ use super::record::{Answer, Record};
 /// The answers for one quantity.
 #[derive(Default)]
 pub struct Tally {
-    /// Number of true values that were asked.
+    /// Number of true values.
     pub asked: usize,
     /// Errors of the answers with an uncertainty, in standard uncertainties.
     pub errors: Vec<f64>,
@@ -21,7 +21,7 @@ impl Tally {
         })
     }
 
-    /// Share of the true values with an answer, in %.
+    /// Share of the true values that have an answer, in %.
     pub fn answered(&self) -> f64 {
         share(self.errors.len(), self.asked)
     }
@@ -31,7 +31,7 @@ impl Tally {
         share(self.errors.iter().filter(|e| e.abs() <= 1.96).count(), self.errors.len())
     }
 
-    /// Number of answers that are wrong by more than `limit` standard uncertainties.
+    /// Number of answers with an error of more than `limit` standard uncertainties.
     pub fn beyond(&self, limit: f64) -> usize {
         self.errors.iter().filter(|e| e.abs() > limit).count()
     }
@@ -48,7 +48,7 @@ impl Tally {
     }
 }
 
-/// A part of a whole, in %; 0 of nothing.
+/// Share of a part in a whole, in %; 0 if the whole is 0.
 fn share(part: usize, all: usize) -> f64 {
     100.0 * part as f64 / all.max(1) as f64
 }

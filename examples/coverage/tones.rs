@@ -56,8 +56,7 @@ fn draw(mix: &mut Mix) -> Record {
         let tone = paired[i].map(|k| &found[k]);
         record.answers.push(Answer::new("frequency", frequencies[i], tone.map(|t| &t.frequency)));
         record.answers.push(Answer::new("amplitude", amplitude, tone.map(|t| &t.amplitude)));
-        // A phase is known except for whole turns: the truth is moved by turns to the value nearest to the
-        // answer.
+        // A phase is known except for whole turns, so the truth is moved by whole turns next to the answer.
         let turns = tone.map_or(0.0, |t| ((t.phase.value - phase) / TAU).round());
         record.answers.push(Answer::new("phase", phase + TAU * turns, tone.map(|t| &t.phase)));
     }

@@ -1,4 +1,4 @@
-//! The antiresonance of figures 3.13 to 3.15, and where x₁ is least in truth.
+//! The antiresonance of figures 3.13 to 3.15, and the frequency ratio where x₁ is really smallest.
 
 use crate::impulse::{IMPULSE, without};
 use crate::programs::{JIDNEW, Program, SCENES, impulses, largest as largest_of, peaks, told};
@@ -9,18 +9,18 @@ use vibroimpact::figure::{AxisSpec, Figure, Ink, Legend, Marker, Plot, Series};
 use vibroimpact::model::portrait::{Portrait, PortraitOptions};
 use vibroimpact::model::{Excitation, Impulses, Motion, Orbit, Rig, Simulation, State};
 
-/// Where the antiresonance is looked for: between the resonances.
+/// Range of ν between the resonances, in which the antiresonance is sought.
 const BETWEEN: (f64, f64) = (1.1, 2.1);
 
-/// A motion that a rig has after 2000 cycles from rest.
+/// Motion of a rig after 2000 cycles from rest.
 struct Settled {
     nu: f64,
-    /// Largest displacements in m.
+    /// Largest displacements of masses 1 and 2 in m.
     largest: [f64; 2],
     pattern: String,
 }
 
-/// Largest displacements of both masses, each from its own rest.
+/// Largest displacements of both masses in m, each from its own position of rest.
 fn largest<'a>(states: impl Iterator<Item = &'a State>) -> [f64; 2] {
     states.fold([0.0, 0.0], |[a, b], s| [a.max(s.x1.abs()), b.max(s.x2.abs())])
 }
@@ -31,7 +31,7 @@ fn of_orbit(orbit: &Orbit) -> [f64; 2] {
     largest(states.iter())
 }
 
-/// The motion from rest under impulses after 2000 cycles, read over the next 200.
+/// The motion under impulses after 2000 cycles from rest, measured over the next 200 cycles.
 fn settled(rig: &Rig, nu: f64) -> Result<Settled> {
     let frequency = hertz(nu);
     let train = Excitation::Impulse(Impulses { impulse: IMPULSE, frequency });
@@ -42,7 +42,7 @@ fn settled(rig: &Rig, nu: f64) -> Result<Settled> {
     Ok(Settled { nu, largest: largest(portrait.states.iter()), pattern })
 }
 
-/// The figure (time to the impact; displacements), and what the thesis claims of it beside what is computed.
+/// The figure (time to the impact; displacements), and the claims of the thesis beside the computed values.
 pub fn sheet() -> Result<Sheet> {
     let rig = rig(0.7);
     let nu = grid(1.0, 2.4, 141);
@@ -112,13 +112,13 @@ pub fn sheet() -> Result<Sheet> {
     ))
 }
 
-/// Equations 3.42 to 3.44 with the slips in χ̇ and τ of the printed programs put right.
+/// Equations 3.42 to 3.44, with the errors of the printed programs in χ̇ and τ corrected.
 fn corrected_program(restitution: f64, c2: f64) -> Program {
     impulses(restitution, c2, IMPULSE, &[])
 }
 
-/// ν, τ/T and largest x₁ in mm of the roots of figure 3.15 with τ outside 0 < τ < T: there the impact would
-/// lie outside its own cycle, which no motion can have.
+/// ν, τ/T and largest x₁ in mm of the roots of figure 3.15 with τ outside 0 < τ < T. Their impact would lie
+/// outside its own cycle, so they are no motions.
 fn spurious_roots(nu: &[f64]) -> Result<(Vec<f64>, Vec<f64>, Vec<f64>)> {
     let program = corrected_program(0.7, 0.1);
     let all = nu.iter().map(|nu| Ok((nu + 1e-4, program.at(nu + 1e-4)?))).collect::<Result<Vec<_>>>()?;
@@ -128,7 +128,7 @@ fn spurious_roots(nu: &[f64]) -> Result<(Vec<f64>, Vec<f64>, Vec<f64>)> {
     Ok((at, timings, x1))
 }
 
-/// Claims: at ν 1.75 the root behind each of the figures 3.13 to 3.15 has τ outside its cycle.
+/// Claims: at ν 1.75 the root that each of figures 3.13 to 3.15 shows has τ outside its cycle.
 fn root_claims() -> Result<Vec<Claim>> {
     let mut claims = Vec::new();
     for (figure, restitution, c2) in SCENES {
@@ -144,7 +144,7 @@ fn root_claims() -> Result<Vec<Claim>> {
     Ok(claims)
 }
 
-/// The least x₁ between the resonances under a sine, figure 3.7.
+/// Claim: the smallest x₁ between the resonances under a sine, figure 3.7.
 fn of_sine() -> Claim {
     let rig = rig(0.7);
     let all = grid(BETWEEN.0, BETWEEN.1, 1001);
@@ -162,7 +162,7 @@ fn of_sine() -> Claim {
     )
 }
 
-/// The peaks of x₁ around ν 1 by jidnew and by the equations, at its own frequency ratios.
+/// Claim: the peaks of x₁ near ν = 1 from jidnew and from the equations, at the frequency ratios of jidnew.
 fn of_peaks() -> Claim {
     let nu = grid(0.8501, 1.1501, 16);
     let [printed, right] = [JIDNEW, &[]].map(|slips| {
@@ -183,7 +183,7 @@ fn of_peaks() -> Claim {
     )
 }
 
-/// Claims: where jidnew, as printed but for its `/`, has the least x₁ between the resonances.
+/// Claims: ν of the smallest x₁ between the resonances from jidnew, as printed except for its `/`.
 fn printed_program_claims() -> Vec<Claim> {
     let between = || grid(0.7501, 2.9901, 113).into_iter().filter(|nu| (BETWEEN.0..=BETWEEN.1).contains(nu));
     let of = |(figure, restitution, c2)| {

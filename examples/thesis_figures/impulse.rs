@@ -21,7 +21,7 @@ fn impulse_axis() -> AxisSpec {
     AxisSpec::new("Impulse J", "N s").log()
 }
 
-/// The rig of a figure under impulses: the equations of the thesis leave c₁ out.
+/// The rig of a figure under impulses, without c₁: the equations of the thesis leave it out.
 fn undriven(restitution: f64, c2: f64) -> Rig {
     Rig { c1: 0.0, c2, ..rig(restitution) }
 }
@@ -30,7 +30,7 @@ pub fn exists(rig: &Rig, nu: f64) -> bool {
     under_impulses(rig, IMPULSE, nu).iter().any(|o| o.validity.exists)
 }
 
-/// Borders in ν of the range around 1.5 without any motion of one impact a cycle.
+/// Limits in ν of the range around 1.5 in which no motion has one impact a cycle.
 pub fn without(rig: &Rig) -> [f64; 2] {
     [1.05, 2.45].map(|end| border(1.5, end, |nu| !exists(rig, nu)))
 }
@@ -151,7 +151,7 @@ fn absent() -> Result<Sheet> {
     ))
 }
 
-/// The impact oscillator: mass 2 a wall, no losses, for which J = 2mΩ tan(πΩ/ω)(±|A| − Δ).
+/// The impact oscillator: mass 2 is a wall, without losses. Its closed form is J = 2mΩ tan(πΩ/ω)(±|A| − Δ).
 pub fn wall() -> Sheet {
     let limit = Rig { m2: f64::INFINITY, c1: 0.0, restitution: 1.0, ..Rig::thesis() };
     let natural = (limit.k1 / limit.m1).sqrt();

@@ -1,6 +1,5 @@
-//! Makes the figures of `docs/thesis.md` and prints what stands there:
-//! `cargo run --release --example thesis_figures [-- FOLDER]`; FOLDER is `docs/thesis` of this project where
-//! it is left out.
+//! Makes the figures of `docs/thesis.md` and prints the tables of its chapters: `cargo run --release
+//! --example thesis_figures [-- FOLDER]`. Without FOLDER they go to `docs/thesis` of this project.
 
 mod antiresonance;
 mod impulse;
@@ -19,7 +18,7 @@ use vibroimpact::Result;
 use vibroimpact::read::Owner;
 use vibroimpact::report::Output;
 
-/// Dots an inch of the pictures: enough for a screen.
+/// Resolution of the PNG files in dots per inch: enough for a screen.
 const DPI: f64 = 130.0;
 
 fn main() -> Result<()> {
@@ -64,8 +63,7 @@ mod tests {
     use super::*;
     use std::fs;
 
-    /// What is printed, to the last digit shown, is what the document says; it has no other row, and its
-    /// pictures are there.
+    /// The document contains every computed row, to the last digit, and no other; the pictures exist.
     #[test]
     fn the_document_says_what_is_computed() {
         let docs = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs");
@@ -86,7 +84,7 @@ mod tests {
             }
         }
         assert!(size < 2_000_000, "{size}");
-        // Behind the figures stand tables of commands, which nothing computes.
+        // The tables from `## By number` on are written by hand.
         let (figures, _) = text.split_once("## By number").unwrap();
         let stated = figures.lines().filter(|l| l.starts_with("| ") && !l.starts_with("| what |"));
         for row in stated {

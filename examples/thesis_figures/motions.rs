@@ -12,7 +12,7 @@ use vibroimpact::model::{
 };
 use vibroimpact::{Error, Result};
 
-/// Motions that chapter 4 draws over time.
+/// Motions that chapter 4 shows over time.
 pub fn simulated() -> Result<Vec<Sheet>> {
     let sine = |force| Excitation::Sine(Sine { force, frequency: 3.0 });
     let pulses = |force| Excitation::Pulse(Pulses { force, width: 0.01, frequency: 3.0 });
@@ -38,7 +38,7 @@ pub fn simulated() -> Result<Vec<Sheet>> {
     Ok(all)
 }
 
-/// The motion that a sweep up from 3 Hz has at `hz`.
+/// The motion at `hz` (Hz) in an upward sweep from 3 Hz, with the claim whether the masses move in phase.
 fn swept_to(
     title: &str,
     hz: f64,
@@ -95,7 +95,7 @@ fn eleven() -> Result<Sheet> {
     Ok(Sheet::new("motion_11hz", "Figure 4.4: the motion at 11.1 Hz with classical impacts", figure, claims))
 }
 
-/// Regime at a frequency in Hz, from rest.
+/// Regime after 3000 cycles from rest at a frequency in Hz.
 fn settled(restitution: f64, force: f64, frequency: f64) -> Result<Regime> {
     let mut motion = Simulation::new(&rig(restitution), &Sine { force, frequency })?;
     Ok(regime(&mut motion, 3000, 300)?.regime)

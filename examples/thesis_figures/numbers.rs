@@ -1,4 +1,4 @@
-//! The rig's waterfall, and numbers of chapters 5 and 6.
+//! The waterfall of the rig, and numbers of chapters 5 and 6.
 
 use crate::scene::grid;
 use crate::sheet::{Claim, Sheet};
@@ -14,7 +14,8 @@ use vibroimpact::measure::restitution::Drop;
 use vibroimpact::measure::waterfall::waterfall;
 use vibroimpact::model::Rig;
 
-/// The measured waterfalls are lost; the example campaign is a rig of the same numbers, swept in steps.
+/// The measured waterfalls are lost. The example campaign replaces them: a simulated rig with the same
+/// numbers, swept in steps.
 pub fn spectra() -> Result<Sheet> {
     let campaign =
         analysis::open(Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/two_mass_rig/campaign.toml"))?;
@@ -26,7 +27,7 @@ pub fn spectra() -> Result<Sheet> {
     let above = up.iter().filter(|p| p.excitation > 8.0);
     let top = above.max_by(|a, b| a.amplitude.value.total_cmp(&b.amplitude.value));
     let (at, high) = top.map_or((f64::NAN, f64::NAN), |p| (p.excitation, p.amplitude.value));
-    // Steps up and down have the same frequencies.
+    // Both directions have the same frequencies.
     let there = down.iter().min_by(|a, b| (a.excitation - at).abs().total_cmp(&(b.excitation - at).abs()));
     let low = there.map_or(f64::NAN, |p| p.amplitude.value);
     let (sweep, response) = analysis::named(&campaign, Some("mass 1, up"))?.sweep_and_response(&options)?;
@@ -89,7 +90,7 @@ pub fn rig() -> Sheet {
     alone("rig_numbers", "Figures 5.13 to 5.18: numbers of the rig", claims)
 }
 
-/// The contact of table 6.4, as it is printed and behind the low-pass of its amplifier.
+/// The contact of table 6.4: as printed, and as seen through the low-pass of its amplifier.
 fn contact() -> Result<Vec<Claim>> {
     let mut claims = Vec::new();
     for (run, to_peak, xi, frequency) in [(1, 6.64e-6, "0.181", "25.0"), (2, 6.25e-6, "0.207", "24.6")] {
@@ -99,7 +100,8 @@ fn contact() -> Result<Vec<Claim>> {
         claims.push(Claim::number(of("ξ from its two times"), xi, found.xi.value, (4, ""), why));
         claims.push(Claim::number(of("f"), frequency, found.frequency.value / 1e3, (2, "kHz"), ""));
     }
-    // The printed quotient α/ϑ at the ξ of run 1, by principal values and with the numerator less π.
+    // The printed quotient α/ϑ at the ξ of run 1: with principal values, and with π subtracted in the
+    // numerator.
     let xi = two_times(6.64e-6, 18.0e-6, None, &PulseOptions::default())?.xi.value;
     let root = (1.0 - xi * xi).sqrt();
     let above = (2.0 * xi * root / (1.0 - 2.0 * xi * xi)).atan();

@@ -1,5 +1,5 @@
-//! The six programs of appendix A.2 as they are printed: jsnew, jsdnew and jsdtw under a sine, jinew, jidnew
-//! and jidtw under impulses. Each slip of theirs can be taken out, which tells what it does.
+//! The six programs of appendix A.2 as printed: jsnew, jsdnew and jsdtw under a sine, jinew, jidnew and
+//! jidtw under impulses. Each of their errors can be corrected separately, which shows its effect.
 
 use crate::scene::{grid, rig, under_sine};
 use crate::sheet::{Claim, Sheet};
@@ -9,23 +9,26 @@ use vibroimpact::Result;
 use vibroimpact::figure::{AxisSpec, Figure, Ink, Legend, Plot, Series, Stroke};
 use vibroimpact::model::{Green, Rig};
 
-/// What is printed and is not right.
+/// An error in a printed program.
 #[derive(Clone, Copy, PartialEq)]
 pub enum Slip {
-    /// A² − Δ² is taken as 0 below 1e-6 m², which is Δ².
+    /// A² − Δ² is set to 0 if its magnitude is below 1e-6 m², which is Δ².
     Threshold,
-    /// χ̇₁(T⁻) + χ̇₂(T⁻) is so many times −1/(2M), 1 being right without dampers: c₂ is left out.
+    /// χ̇₁(T⁻) + χ̇₂(T⁻) is replaced by this multiple of −1/(2M). The factor 1 is correct without dampers;
+    /// c₂ is left out.
     Slopes(f64),
-    /// J has M in the place of M(1 + R).
+    /// J is computed with M in place of M(1 + R).
     Exchange,
-    /// sin φ has Ω₁² − ω² in the place of its square over ω²; or τ is φ/ω in the place of φ/Ω₁.
+    /// Sine: sin φ has Ω₁² − ω² in place of (Ω₁² − ω²)²/ω². Impulses: τ is φ/ω in place of φ/Ω₁.
     Phase,
-    /// The impulse is taken a period earlier at all times, since one `if` decides for all frequencies.
+    /// The response to the impulse is taken a period earlier at all times, since one `if` decides for the
+    /// whole row.
     Earlier,
 }
 use Slip::{Earlier, Exchange, Phase, Slopes, Threshold};
 
-/// A program: a sine of amplitude `size` (N), or impulses of `size` (N s) without the damper c₁.
+/// A program: a sine of amplitude `size` (N) if `sine`, else impulses of `size` (N s) without the damper
+/// c₁.
 pub struct Program {
     rig: Rig,
     sine: bool,
@@ -33,28 +36,28 @@ pub struct Program {
     slips: &'static [Slip],
 }
 
-/// What it gives at one frequency ratio. Numbers are complex where it takes the root or the arcsine of what
-/// has none; Matlab draws their real part.
+/// Results of a program at one frequency ratio. They are complex where the program takes the root of a
+/// negative number or the arcsine of a number beyond 1; Matlab draws their real part.
 pub struct Printed {
     pub impulse: Complex64,
-    /// Largest displacements in m, that of mass 2 counted from mass 1.
+    /// Largest displacements in m; that of mass 2 is measured from mass 1.
     pub largest: [f64; 2],
     /// |x₁ − x₂ − Δ| at the impact in m.
     pub miss: f64,
-    /// Time from the impulse to the impact over the period.
+    /// Time from the impulse to the impact, in periods.
     pub timing: f64,
 }
 
-/// The motions that it adds up at one frequency.
+/// The terms that a program adds up at one frequency.
 struct Parts {
     omega: f64,
     natural: f64,
-    /// χ₁, χ₂ and the sum of their slopes before the impact.
+    /// χ₁, χ₂ in m/(N s), and the sum of their slopes before the impact.
     green: [Green; 2],
     slopes: f64,
-    /// A₁ of the thesis under impulses.
+    /// A₁ of the thesis, under impulses.
     unit: f64,
-    /// A and ω under a sine; 2FA₁|sin(Ω₁T/2)| and Ω₁ under impulses, which have the same quadratic for J.
+    /// Sine: A and ω. Impulses: 2FA₁|sin(Ω₁T/2)| and Ω₁, which give the same quadratic equation for J.
     amplitude: f64,
     rate: f64,
 }
@@ -67,7 +70,7 @@ impl Program {
     fn parts(&self, nu: f64) -> Result<Parts> {
         let rig = &self.rig;
         let natural = (rig.k1 / rig.m1).sqrt();
-        // ν counts the damped natural frequency; c₁ is 0 under impulses.
+        // ν is relative to the damped natural frequency; c₁ is 0 under impulses.
         let omega = nu * (natural.powi(2) - (rig.c1 / rig.m1 / 2.0).powi(2)).sqrt();
         let period = TAU / omega;
         let [first, second] = rig.oscillators();
@@ -85,7 +88,7 @@ impl Program {
         Ok(Parts { omega, natural, green, slopes, unit, amplitude, rate })
     }
 
-    /// J: the root with the positive sign, 0 where its real part is below 0.
+    /// J: the root with the positive sign; 0 if its real part is negative.
     fn exchanged(&self, parts: &Parts) -> Complex64 {
         let exchange = if self.has(Exchange) { self.rig.reduced_mass() } else { self.rig.exchange() };
         let c = parts.green[0].start + parts.green[1].start;
@@ -97,7 +100,7 @@ impl Program {
         if impulse.re < 0.0 { Complex64::default() } else { impulse }
     }
 
-    /// sin φ, or sin Ω₁τ.
+    /// sin φ under a sine, sin Ω₁τ under impulses.
     fn sine_of_phase(&self, parts: &Parts, impulse: Complex64) -> Complex64 {
         let (rig, p) = (&self.rig, 1.0 / self.rig.exchange() + parts.slopes);
         let (omega, natural) = (parts.omega, parts.natural);
@@ -111,7 +114,7 @@ impl Program {
         opened / (2.0 * self.size * parts.unit)
     }
 
-    /// Runs it at ν.
+    /// Runs the program at the frequency ratio `nu`.
     pub fn at(&self, nu: f64) -> Result<Printed> {
         let parts = self.parts(nu)?;
         let [a, b] = &parts.green;
@@ -134,7 +137,7 @@ impl Program {
         Ok(Printed { impulse, largest, miss: met(phase), timing: lead / period })
     }
 
-    /// Displacement of mass 1 without impacts, `t` after the impact.
+    /// Displacement of mass 1 in m without impacts, at the time `t` (s) after the impact.
     fn driven(&self, parts: &Parts, phase: Complex64, t: f64) -> Complex64 {
         let &Parts { omega, natural, unit, amplitude, .. } = parts;
         if self.sine {
@@ -142,14 +145,14 @@ impl Program {
         }
         let (period, lead) = (TAU / omega, phase / if self.has(Phase) { omega } else { natural });
         let since = lead + t;
-        // At the impact it is not taken into the period.
+        // At the impact itself the programs do not shift the time into the period.
         let inside = t == 0.0 || since.re <= period && !self.has(Earlier);
         let since = if inside { since } else { since - period };
         self.size * unit * ((natural * since).sin() + (natural * (period - since)).sin())
     }
 }
 
-/// Places of the peaks of a value over ν.
+/// Positions of the peaks of a value over ν.
 pub fn peaks(nu: &[f64], value: impl Fn(f64) -> f64) -> Vec<f64> {
     let all: Vec<f64> = nu.iter().map(|nu| value(*nu)).collect();
     let inner = all.windows(3).zip(nu.iter().skip(1));
@@ -256,13 +259,13 @@ fn of_sine() -> Result<Vec<Claim>> {
     Ok(claims)
 }
 
-/// The frequency ratios of jsdnew as printed, figure 3.7, and those that it has in a comment, figure 3.6.
+/// The frequency ratios of jsdnew as printed (figure 3.7), and those in its comment (figure 3.6).
 fn lists() -> [Vec<f64>; 2] {
     let printed = [grid(0.75, 0.91, 17), vec![1.03], grid(1.041, 1.091, 6), grid(1.2, 2.9, 171)];
     [printed.concat(), grid(0.7501, 2.9901, 225)]
 }
 
-/// Claims: peaks of x₁ by jsdnew, with its slips and without.
+/// Claims: peaks of x₁ from jsdnew, with and without its errors.
 fn of_displacements() -> Vec<Claim> {
     let [printed, all] = lists();
     let claim = |what: &str, nu: &[f64], slips, thesis: &str, why: &str| {
@@ -285,12 +288,12 @@ fn of_displacements() -> Vec<Claim> {
     ]
 }
 
-/// Largest |x₁ − x₂ − Δ| at the impact in m over these ratios.
+/// Largest |x₁ − x₂ − Δ| at the impact in m over these frequency ratios.
 fn missed(program: &Program, nu: &[f64]) -> f64 {
     nu.iter().map(|nu| program.at(*nu).map_or(0.0, |p| p.miss)).fold(0.0, f64::max)
 }
 
-/// Claims: whether the impact of jidnew is at the contact, for figures 3.13 to 3.15.
+/// Claims: whether the impact of jidnew lies at the contact, for figures 3.13 to 3.15.
 fn of_contact() -> Vec<Claim> {
     let all = grid(0.7501, 2.9901, 113);
     let worst = |slips: &'static [Slip]| {

@@ -1,5 +1,4 @@
-//! What the figures of the closed form have in common: the rig, the frequency ratio, and how orbits become
-//! curves.
+//! Common to the figures of the closed form: the rig, the frequency ratio, and curves through orbits.
 
 use vibroimpact::figure::{AxisSpec, Ink, Plot, Series, Stroke};
 use vibroimpact::model::{Excitation, Impulses, Orbit, Rig, orbits, orbits_of};
@@ -9,7 +8,7 @@ pub fn rig(restitution: f64) -> Rig {
     Rig { restitution, ..Rig::thesis() }
 }
 
-/// Frequency in Hz of a ratio ν = ω/Ω₁.
+/// Frequency in Hz of a frequency ratio ν = ω/Ω₁.
 pub fn hertz(nu: f64) -> f64 {
     nu * Rig::thesis().natural_frequencies()[0]
 }
@@ -35,7 +34,8 @@ pub fn accepted(orbits: &[Orbit]) -> Option<&Orbit> {
     orbits.iter().find(|o| o.validity.energy_rule)
 }
 
-/// Whether a motion can be seen: it exists, the masses do not pass through each other, and it is stable.
+/// Whether a motion can be observed: it exists, the masses do not pass through each other, and it is
+/// stable.
 pub fn real(orbit: &Orbit) -> bool {
     let v = &orbit.validity;
     v.exists && v.admissible && v.stable == Some(true)
@@ -57,7 +57,7 @@ pub fn peak(low: f64, high: f64, value: impl Fn(f64) -> Option<f64>) -> (f64, f6
     (at, value(at))
 }
 
-/// Place between `low` and `high` at which `test` ceases to be what it is at `low`.
+/// The value between `low` and `high` at which `test` first differs from its result at `low`.
 pub fn border(low: f64, high: f64, test: impl Fn(f64) -> bool) -> f64 {
     let at_low = test(low);
     vibroimpact::math::border(low, high, |x| test(x) == at_low)
@@ -68,8 +68,8 @@ pub fn ratio(from: f64, to: f64) -> AxisSpec {
     AxisSpec::new("Frequency ratio ν", "").limits(from, to)
 }
 
-/// Polylines put together from segments: a segment that starts at the end of a line extends it, another
-/// begins a new line.
+/// Polylines joined from segments: a segment that starts at the end of a line extends it, any other begins
+/// a new line.
 #[derive(Default)]
 struct Lines(Vec<Vec<(f64, f64)>>);
 
@@ -82,8 +82,8 @@ impl Lines {
     }
 }
 
-/// Adds a value of all orbits that exist (J > 0) over ν, each followed from one ν to the next: those that can
-/// be seen ([`real`]) solid in the colour `nth`, the others thin and grey.
+/// Adds a value of all orbits that exist (J > 0) over ν, each followed from one ν to the next. Orbits that
+/// can be observed ([`real`]) are solid in the colour `nth`, the others thin and grey.
 pub fn add_orbits(
     plot: Plot,
     name: &str,
@@ -96,7 +96,8 @@ pub fn add_orbits(
     let mut lines = [Lines::default(), Lines::default()];
     for (nu, pair) in nu.windows(2).zip(found.windows(2)) {
         for orbit in pair[0].iter().filter(|o| o.validity.exists) {
-            // Both ways, so that one that vanishes is not joined to another.
+            // The orbit must be continued in both directions, so that a vanishing orbit is not joined to
+            // another.
             let same = |next: &&Orbit| next.validity.exists && next.continued(&pair[0]) == Some(orbit);
             if let Some(next) = orbit.continued(&pair[1]).filter(same) {
                 lines[usize::from(real(next))].join((nu[0], value(orbit)), (nu[1], value(next)));

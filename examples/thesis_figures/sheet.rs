@@ -1,16 +1,16 @@
-//! One figure of the thesis' matter with what the thesis says of it and what comes out here.
+//! A figure on a topic of the thesis, and the claims of the thesis beside the computed values.
 
 use vibroimpact::figure::Figure;
 
-/// A figure, or a table alone, and the claims that go with it.
+/// A figure, or only a table, and the claims that belong to it.
 pub struct Sheet {
-    /// Name of its files; its place in the document.
+    /// Name of its files and of its place in the document.
     pub name: &'static str,
     /// Title.
     pub title: &'static str,
-    /// The picture; `None` for a table alone.
+    /// The picture; `None` for a table without one.
     pub figure: Option<Figure>,
-    /// What the thesis says, against what is computed.
+    /// Claims of the thesis against computed values.
     pub claims: Vec<Claim>,
 }
 
@@ -25,7 +25,7 @@ impl Sheet {
         self.claims.iter().map(Claim::row).collect()
     }
 
-    /// The sheet as it stands in the document.
+    /// The sheet as Markdown, as the document contains it.
     pub fn markdown(&self) -> String {
         let name = self.name;
         let picture = self.figure.as_ref().map_or_else(String::new, |figure| {
@@ -45,8 +45,8 @@ pub struct Claim {
 }
 
 impl Claim {
-    /// A claim in words; `agrees` is what the computation says of it. Where the thesis says nothing, there is
-    /// nothing to agree with.
+    /// A claim in words; `agrees` is the result of the computation. There is no verdict where the thesis
+    /// states nothing ("–").
     pub fn told(
         what: impl Into<String>,
         thesis: impl Into<String>,
@@ -65,8 +65,8 @@ impl Claim {
         Claim { what: what.into(), thesis, here: here.into(), verdict }
     }
 
-    /// A number of the thesis: `here` agrees where it rounds to it, and else differs by so many per cent;
-    /// shown in `unit` with so many decimals.
+    /// A number of the thesis: `here` agrees if it rounds to that number, otherwise the verdict is the
+    /// difference in per cent. `here` is shown in `unit` with `decimals` decimals.
     pub fn number(
         what: impl Into<String>,
         thesis: &str,
@@ -79,11 +79,11 @@ impl Claim {
         Claim::told(what, with(thesis), shown, true, "").against(thesis, here, why)
     }
 
-    /// The verdict on `here` by the number that the thesis prints.
+    /// The verdict on `here`, compared with the number that the thesis prints.
     pub fn against(self, printed: &str, here: f64, why: &str) -> Claim {
         let stated: f64 = printed.parse().unwrap_or(f64::NAN);
         let decimals = printed.split_once('.').map_or(0, |(_, digits)| digits.len());
-        // A shade more than half of the last digit, so that a tie rounds to either side.
+        // Slightly more than half of the last digit, so that a tie agrees with either rounding.
         let agrees = (here - stated).abs() <= 0.500_001 * 10f64.powi(-(decimals as i32));
         let percent = 100.0 * (here / stated - 1.0);
         let digits = usize::from(percent.abs() < 10.0);
@@ -107,7 +107,7 @@ impl Claim {
         self
     }
 
-    /// The number is not the thesis' own but that of an independent computation of the same case: it stands
+    /// The number is not from the thesis but from an independent computation of the same case; it is shown
     /// in parentheses.
     pub fn recomputed(mut self) -> Claim {
         self.thesis = format!("({})", self.thesis);

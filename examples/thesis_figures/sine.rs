@@ -15,7 +15,7 @@ fn impulse_axis() -> AxisSpec {
     AxisSpec::new("Impulse J", "N s").log()
 }
 
-/// Impulse of the real motion that the energy rule accepts.
+/// Impulse in N s of the orbit that the energy rule accepts, if it can be observed.
 pub fn impulse(rig: &Rig, force: f64, nu: f64) -> Option<f64> {
     accepted(&under_sine(rig, force, nu)).filter(|o| real(o)).map(|o| o.impulse)
 }
@@ -28,7 +28,7 @@ fn chi(nu: f64) -> Result<f64> {
     Ok(Green::new(rig.m1, first, period)?.start + Green::new(rig.m2, second, period)?.start)
 }
 
-/// ν to which the clapping peak goes with the force: C = 0.
+/// ν that the clapping peak approaches with increasing force, where C = 0.
 pub fn limit() -> f64 {
     border(2.0, 2.4, |nu| chi(nu).is_ok_and(|c| c < 0.0))
 }

@@ -1,5 +1,5 @@
-//! Simulated sweeps as in the thesis: 0.02 Hz/s, running RMS, contact of 1e5 N/m with a damper of 0.1 N s/m,
-//! gap 1 mm.
+//! Simulated sweeps as in the thesis: 0.02 Hz/s, running RMS, contact of 1e5 N/m with a damper of 0.1 N
+//! s/m, gap 1 mm.
 
 use crate::scene::{self, hertz, peak};
 use crate::sheet::{Claim, Sheet};
@@ -18,10 +18,10 @@ use vibroimpact::record::Direction;
 /// Contact of the thesis' simulations.
 pub const CONTACT: Law = Law::KelvinVoigt { stiffness: 1e5, damping: 0.1 };
 
-/// Where the grazing and the clapping resonance are looked for, in Hz.
+/// Ranges in Hz in which the grazing and the clapping resonance are sought.
 const TWO: [(f64, f64); 2] = [(4.0, 8.0), (8.0, 14.0)];
 
-/// Where the largest value going down is looked for.
+/// Range in Hz in which the largest value of the downward sweep is sought.
 const LOW: [(f64, f64); 1] = [(4.0, 14.0)];
 
 const BOTH: [Direction; 2] = [Direction::Up, Direction::Down];
@@ -38,7 +38,8 @@ fn sine_of(force: f64, frequency: f64) -> Excitation {
     Excitation::Sine(Sine { force, frequency })
 }
 
-/// Both directions of a sweep of the motion that `make` makes of a frequency.
+/// Sweeps in both directions with force amplitude `force` (N); `make` returns the motion at the start
+/// frequency (Hz).
 fn swept<M: Motion>(plan: &Plan, force: f64, make: impl Fn(f64) -> Result<M> + Sync) -> Result<Swept> {
     apart(&BOTH, |direction| {
         let start = if direction == Direction::Up { plan.from } else { plan.to };
@@ -46,13 +47,14 @@ fn swept<M: Motion>(plan: &Plan, force: f64, make: impl Fn(f64) -> Result<M> + S
     })
 }
 
-/// Frequency (Hz) and size (m) of the largest x₁ between two frequencies.
+/// Frequency in Hz and running RMS in m of the largest x₁ between two frequencies.
 fn highest(points: &[Point], from: f64, to: f64) -> (f64, f64) {
     let inside = points.iter().filter(|p| (from..=to).contains(&p.frequency));
     inside.max_by(|a, b| a.x1.total_cmp(&b.x1)).map_or((f64::NAN, f64::NAN), |p| (p.frequency, p.x1))
 }
 
-/// Both masses; the largest x₁ in each range (Hz) of `up` and `down` is named by its frequency.
+/// Sweep figure of both masses. In each range (Hz) of `up` and `down` the largest x₁ is labelled with its
+/// frequency.
 fn picture(swept: &Swept, up: &[(f64, f64)], down: &[(f64, f64)], caption: &str) -> Figure {
     let mut figure = figures::sweep(swept, &[], &[], Observable::Rms, false).height(120.0).caption(caption);
     for (points, ranges, way) in [(&swept.up, up, ""), (&swept.down, down, ", down")] {
@@ -66,7 +68,7 @@ fn picture(swept: &Swept, up: &[(f64, f64)], down: &[(f64, f64)], caption: &str)
     figure
 }
 
-/// Whether the clapping resonance of the sweep up is missing going down.
+/// Claim: whether the clapping resonance of the upward sweep is absent in the downward sweep.
 fn only_up(swept: &Swept) -> Claim {
     let [_, (from, to)] = TWO;
     let (at, up) = highest(&swept.up, from, to);
@@ -114,7 +116,7 @@ fn sine_force() -> Result<Sheet> {
     Ok(Sheet::new("sweep_sine", "Figures 4.11, 4.12, 4.14 and 4.15: sweep with a sine", figure, claims))
 }
 
-/// Peaks of sweeps with other forces: the thesis does not state its amplitudes.
+/// Peaks of sweeps with other forces, since the thesis does not state its amplitudes.
 fn forces() -> Result<Sheet> {
     let rig = Rig::thesis();
     let forces = [0.05, 0.07, 0.1, 0.2, 0.3, 0.5, 0.7, 1.0];
@@ -125,7 +127,7 @@ fn forces() -> Result<Sheet> {
         found.0.push(highest(&swept.up, 3.0, 7.0).0);
         found.1.push(highest(&swept.up, 7.0, 14.0).0);
     }
-    // Against the value that is nearest to the thesis' one.
+    // The claim is judged by the computed value that is nearest to the thesis' value.
     let claim = |what: &str, printed: &str, found: &[f64], why: &str| {
         let stated: f64 = printed.parse().unwrap_or(f64::NAN);
         let (least, most) = range(found);
@@ -196,12 +198,13 @@ fn forces() -> Result<Sheet> {
     ))
 }
 
-/// The least and the largest of some values.
+/// The smallest and the largest of some values.
 fn range(values: &[f64]) -> (f64, f64) {
     values.iter().fold((f64::INFINITY, 0.0), |(least, most), v| (v.min(least), v.max(most)))
 }
 
-/// Claims of section 5.2 on both resonances of the simulation, in Hz, beside those of the closed form.
+/// Claims of section 5.2 on both resonances of the simulation (ranges in Hz), beside those of the closed
+/// form.
 fn compared(grazing: (f64, f64), clapping: (f64, f64)) -> Vec<Claim> {
     let closed = |low, high| {
         let of = |force| peak(low, high, |nu| sine::impulse(&scene::rig(1.0), force, nu)).0;
@@ -245,8 +248,8 @@ fn pulse() -> Result<Sheet> {
         let pulses = Excitation::Pulse(Pulses { force: 0.5, width: 0.01, frequency });
         Compliant::new(&rig, &pulses, CONTACT, State::REST, 0.0)
     };
-    // The thesis' range, and a sweep of its own below it: between 6 and 7.5 Hz the motion is irregular, and
-    // the start decides whether it leaves that with impacts.
+    // The thesis' range, and a separate sweep below it. Between 6 and 7.5 Hz the motion is irregular, and
+    // the start decides whether the sweep leaves this range with impacts.
     let mut swept = swept(&plan(3.0, 14.0), 0.5, make)?;
     let below = plan(1.5, 3.0).frequency(&mut make(1.5)?, 0.5, Direction::Up)?;
     swept.up.splice(0..0, below);
@@ -285,14 +288,14 @@ fn pulse() -> Result<Sheet> {
 
 fn loose() -> Result<Sheet> {
     let rig = Rig::thesis();
-    // Fewer points than of the others: the motion is irregular, and its lines are long.
+    // Fewer points than in the other sweeps: the motion is irregular, and its curves take more space.
     let plan = Plan { pace: Pace::Rate { rate: 0.02, points: 1500 }, ..plan(3.0, 14.0) };
     let make = |buffer, phase| {
         swept(&plan, 0.1, |f| {
             Compliant::loose(&rig, &sine_of(0.1, f), buffer, Some(CONTACT), State::REST, phase)
         })
     };
-    // A force that begins with a zero, as a simulation's sine does, leaves the loose mass with a speed.
+    // A force that begins at zero, as the sine of a simulation does, gives the loose mass a velocity.
     let swept = make(Buffer::thesis(), 0.75 * TAU)?;
     let crest = make(Buffer::thesis(), 0.0)?;
     let always = make(Buffer { damper_always: true, ..Buffer::thesis() }, 0.75 * TAU)?;
@@ -360,17 +363,17 @@ fn loose() -> Result<Sheet> {
     Ok(Sheet::new("sweep_loose", "Figures 4.26 to 4.30: sweep with a loose mass", figure, claims))
 }
 
-/// A number of the force between the masses.
+/// One of the quantities of the force between the masses.
 type Part = fn(&Reaction) -> Option<f64>;
 
-/// Largest value and its frequency (Hz) between two frequencies.
+/// Largest value and its frequency in Hz between two frequencies.
 fn largest_force(points: &[Point], value: Part, from: f64, to: f64) -> (f64, f64) {
     let inside = points.iter().filter(|p| (from..=to).contains(&p.frequency));
     let all = inside.map(|p| (value(&p.reaction).unwrap_or(0.0), p.frequency));
     all.fold((0.0, f64::NAN), |a, b| if b.0 > a.0 { b } else { a })
 }
 
-/// The force between the masses in the sweep with a sine force, and in time at its clapping resonance.
+/// The force between the masses in the sweep with a sine of 0.1 N: peak, RMS and impulse a cycle.
 fn reaction() -> Result<Sheet> {
     let rig = Rig::thesis();
     let make = |f| Compliant::new(&rig, &sine_of(0.1, f), CONTACT, State::REST, 0.0);
@@ -421,7 +424,7 @@ fn reaction() -> Result<Sheet> {
 }
 
 fn classical() -> Result<Sheet> {
-    // The restitution of the contact above on this rig, e^{−ζω₀t_c} with ζ = c₃/(2√(k₃M)).
+    // Restitution of the contact above on this rig: e^{−ζω₀t_c} with ζ = c₃/(2√(k₃M)).
     let ratio = 0.1 / (2.0 * (1e5 * Rig::thesis().reduced_mass()).sqrt());
     let restitution = conversion::restitution(ratio);
     let contact = conversion::duration(ratio, 1e5, Rig::thesis().reduced_mass());

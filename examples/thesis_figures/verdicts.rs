@@ -1,5 +1,5 @@
-//! Where the energy rule of the thesis accepts what is unstable or impossible, and what real motions look
-//! like.
+//! Where the energy rule of the thesis accepts unstable or impossible orbits, and what observable motions
+//! look like.
 
 use crate::impulse::IMPULSE;
 use crate::scene::{accepted, grid, hertz, ratio, real, rig, under_sine};
@@ -18,7 +18,7 @@ pub fn sheets() -> Result<Vec<Sheet>> {
     Ok(all)
 }
 
-/// The motion that the energy rule accepts.
+/// The orbit that the energy rule accepts.
 fn one(restitution: f64, force: f64, nu: f64) -> Result<Orbit> {
     let found = under_sine(&rig(restitution), force, nu);
     accepted(&found).cloned().ok_or_else(|| Error::refused(format!("no motion at ν {nu}")))
@@ -105,12 +105,12 @@ fn inadmissible() -> Result<Sheet> {
     ))
 }
 
-/// Angle in degrees by which x₂ leads x₁ at the excitation frequency, −180 to 180.
+/// Phase angle in degrees by which x₂ leads x₁ at the excitation frequency, −180 to 180.
 fn lead(orbit: &Orbit) -> f64 {
     (orbit.fundamental[1] / orbit.fundamental[0]).arg().to_degrees()
 }
 
-/// Both masses over time at a resonance, in the thesis' parameters.
+/// Both masses over time at a resonance, with the parameters of the thesis.
 struct Trace {
     name: &'static str,
     title: &'static str,
@@ -193,11 +193,11 @@ fn branches() -> Result<Sheet> {
     ))
 }
 
-/// What becomes of the root that the energy rule accepts.
+/// Classes of the root that the energy rule accepts.
 const CLASSES: [&str; 6] =
     ["none with J > 0", "masses pass", "flip", "Neimark–Sacker", "real", "two beyond +1"];
 
-/// Its number among the classes; NaN, which is drawn white, where it is none of them.
+/// Index of the class of these orbits; NaN, which is drawn white, if it is none of them.
 fn class(orbits: &[Orbit]) -> f64 {
     let Some(orbit) = accepted(orbits) else { return 0.0 };
     match (orbit.validity.admissible, orbit.validity.instability) {
@@ -205,8 +205,8 @@ fn class(orbits: &[Orbit]) -> f64 {
         (true, Some(Loss::Flip)) => 2.0,
         (true, Some(Loss::NeimarkSacker)) => 3.0,
         (true, None) => 4.0,
-        // One multiplier beyond +1 breaks the energy rule, so here are two: what a Neimark–Sacker pair can
-        // become.
+        // One multiplier beyond +1 breaks the energy rule, so here there are two, as a Neimark–Sacker pair
+        // can become.
         (true, Some(Loss::Fold)) => 5.0,
         (true, Some(Loss::Grazing)) => f64::NAN,
     }

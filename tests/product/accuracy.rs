@@ -1,6 +1,6 @@
-//! Estimators against truths: how near they come to the Cramér–Rao bound, and how often the truth lies in
-//! their intervals. Random cases with fixed seeds: a few in the quick tests, all in those that `cargo test
-//! --release -- --ignored` runs; `--nocapture` shows the figures.
+//! Estimators against known truths: how close they come to the Cramér–Rao bound, and how often their
+//! intervals hold the truth. Random cases with fixed seeds: four in the quick tests, all of them with
+//! `cargo test --release -- --ignored`; `--nocapture` prints the figures.
 
 mod bounces;
 mod contact;

@@ -1,4 +1,4 @@
-//! The command as a person or a program meets it: exit codes, JSON keys, complaints.
+//! The command line as a user or a program meets it: exit codes, JSON keys, error messages.
 
 mod answers;
 mod campaign;
@@ -36,7 +36,7 @@ fn vibro<S: AsRef<std::ffi::OsStr>>(arguments: &[S]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_vibro")).args(arguments).output().expect("vibro starts")
 }
 
-/// Runs `vibro … --json`, expects exit code 0, and gives the object.
+/// Runs `vibro … --json`, expects exit code 0 and returns the JSON object.
 fn json<S: AsRef<std::ffi::OsStr>>(arguments: &[S]) -> Value {
     let mut command = Command::new(env!("CARGO_BIN_EXE_vibro"));
     let output = command.args(arguments).arg("--json").output().expect("vibro starts");
@@ -47,7 +47,7 @@ fn json<S: AsRef<std::ffi::OsStr>>(arguments: &[S]) -> Value {
     value
 }
 
-/// Runs `vibro`, expects this exit code and nothing on standard output, and gives the complaint.
+/// Runs `vibro`, expects this exit code and an empty standard output, and returns the error message.
 fn complaint<S: AsRef<std::ffi::OsStr>>(arguments: &[S], code: i32) -> String {
     let output = vibro(arguments);
     let stderr = String::from_utf8_lossy(&output.stderr).into_owned();

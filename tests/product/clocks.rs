@@ -1,15 +1,15 @@
-//! Frequencies of records whose clock wanders: its uncertainty is in theirs.
+//! Frequencies from records with a wandering clock: their uncertainty includes that of the clock.
 
 use vibroimpact::math::Noise;
 use vibroimpact::measure::tones::tones;
 use vibroimpact::read::Reader;
 
 const DRAWS: u64 = 120;
-/// Standard deviation in s of a step.
+/// Standard deviation of a sampling step in s.
 const WANDER: f64 = 1e-6;
 
-/// A sine at 12 Hz, sampled by a telephone whose every step is off, and its frequency with what is stated of
-/// it.
+/// Fits a sine of 12 Hz that a telephone sampled with scattering steps. Returns its frequency in Hz, the
+/// standard uncertainty in Hz, and the relative standard uncertainty of the clock.
 fn found(seed: u64) -> (f64, f64, f64) {
     let mut noise = Noise::new(seed);
     let mut t = 0.0;
@@ -31,17 +31,18 @@ fn found(seed: u64) -> (f64, f64, f64) {
 fn the_uncertainty_of_a_frequency_holds_the_truth_where_the_clock_wanders() {
     let all: Vec<(f64, f64, f64)> = (1..=DRAWS).map(found).collect();
     let held = all.iter().filter(|(value, std, _)| (value - 12.0).abs() <= 2.0 * std).count();
-    // Student with seven degrees of freedom: 91 %; 120 draws scatter by 2.6 %.
+    // Two standard uncertainties with seven degrees of freedom hold 91 % (Student); 120 draws scatter by 2.6
+    // %.
     assert!(held as f64 >= 0.85 * DRAWS as f64, "{held} of {DRAWS}");
-    // A wander of σ a step makes the step of n samples uncertain by σ·√(6/5n).
+    // Steps that scatter by σ make the mean step of n samples uncertain by σ·√(6/(5n)).
     let expected = WANDER / 9.9988e-3 * (6.0 / 5.0 / 1000f64).sqrt();
     let mean = all.iter().map(|(_, _, clock)| clock.powi(2)).sum::<f64>() / DRAWS as f64;
-    // The mean of 120 squares of seven degrees of freedom scatters by 5 %.
+    // The mean of 120 variances with seven degrees of freedom scatters by 5 %.
     assert!((mean.sqrt() / expected - 1.0).abs() < 0.15, "{} of {expected}", mean.sqrt());
 }
 
-/// A sine whose times are printed in whole milliseconds, at rates that no millisecond divides, once with a
-/// sample lost.
+/// Times are printed in whole milliseconds, at sampling rates whose step is no whole millisecond. Every
+/// second record lacks one sample.
 #[test]
 fn a_tone_lies_within_its_uncertainty_where_times_have_few_digits() {
     for seed in 1..=DRAWS / 2 {
@@ -70,7 +71,8 @@ fn a_tone_lies_within_its_uncertainty_where_times_have_few_digits() {
             "{rate} Hz: {} ± {std}, not {frequency}",
             found.value
         );
-        // One or two samples shorter than a digit may be lost among the 4000 of a stretch.
+        // Where steps are shorter than the last printed digit, one or two of 4000 samples may be lost
+        // unnoticed.
         assert!(std < 1.5 / 3900.0 * frequency, "{rate} Hz: {std}");
     }
 }

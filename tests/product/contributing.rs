@@ -1,10 +1,10 @@
-//! What CONTRIBUTING.md names is there: who follows it finds each file and each word of the code.
+//! Every file and every name of the code that CONTRIBUTING.md mentions exists.
 
 use super::layers::files;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Whether a text between backticks is a path, and not a command or a piece of text.
+/// Whether a text between backticks is a path rather than a command or a piece of code.
 fn is_path(name: &str) -> bool {
     let ends = [".rs", ".md", ".toml", ".sh", ".gz"].iter().any(|end| name.ends_with(end));
     (ends || name.contains('/')) && !name.contains([' ', '"']) && !name.starts_with(['.', '/'])
@@ -14,7 +14,7 @@ fn is_path(name: &str) -> bool {
 fn what_is_named_is_there() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let text = fs::read_to_string(root.join("CONTRIBUTING.md")).unwrap();
-    // From the root, with a stroke in front.
+    // Paths relative to the root, with a leading slash.
     let shown = |path: PathBuf| format!("/{}", path.strip_prefix(root).unwrap().display());
     let paths: Vec<String> = files(root).into_iter().map(shown).collect();
     let source = |path: &&String| {

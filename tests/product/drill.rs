@@ -1,5 +1,5 @@
-//! `vibro drill` from the command line: the example's record against its truth, and input that allows no
-//! answer.
+//! `vibro drill` from the command line: the example's record against its truth, and input that cannot be
+//! analysed.
 
 #[allow(dead_code)]
 #[path = "../../crates/vibro-demo/src/noise.rs"]
@@ -48,7 +48,7 @@ fn json(output: &Output) -> Value {
     serde_json::from_slice(&output.stdout).expect("JSON")
 }
 
-/// The finding with this code, null where there is none.
+/// The finding with this code; null if there is none.
 fn finding<'a>(found: &'a Value, code: &str) -> &'a Value {
     let mut all = found["findings"].as_array().unwrap().iter();
     all.find(|f| f["code"] == code).unwrap_or(&Value::Null)
@@ -91,7 +91,8 @@ fn the_example_comes_out_as_it_was_made() {
         ],
     ));
     assert_eq!(found["dropouts"].as_u64(), Some(made.dropouts as u64));
-    // 95 turns scatter by 0.4 %: the mean by 0.02 Hz; four times that.
+    // The duration of a turn scatters by 0.4 %, so the mean of 95 turns by 0.02 Hz; four times that is
+    // allowed.
     assert!((found["speed"]["value"].as_f64().unwrap() - 47.3).abs() < 0.08);
     let impacts = found["impacts"].as_array().unwrap();
     assert!(impacts.len() + found["hidden"].as_u64().unwrap() as usize + 2 >= made.impacts.len());
@@ -99,7 +100,7 @@ fn the_example_comes_out_as_it_was_made() {
         let number = |key: &str| impact[key].as_f64().unwrap();
         let truth =
             made.impacts.iter().find(|t| (t.time - number("time")).abs() < 5e-5).expect("a true impact");
-        // Six standard uncertainties: with 200 values once in a million such records.
+        // Six standard uncertainties: any of 200 values exceeds them in fewer than one of a million records.
         assert!((number("before") - truth.before).abs() < 6.0 * number("before_std"), "{impact}");
         assert!((number("after") - truth.after).abs() < 6.0 * number("after_std"), "{impact}");
         assert!((number("phase") - truth.phase).abs() < 6.0 * number("phase_std"), "{impact}");
@@ -127,7 +128,8 @@ fn the_truth_beside_the_example_is_the_one_it_is_made_from() {
     let made = record::record(0.5).impacts;
     assert!(made.len() > 20 && text.lines().count() > 900);
     for (row, made) in rows.zip(&made) {
-        // Four decimals, and the last digits of another machine's mathematics library.
+        // The truth has four decimals. The rest allows for roundings of another machine's mathematics
+        // library.
         for (written, made) in row[1..].iter().zip([made.time, made.phase, made.before, made.after]) {
             assert!((written - made).abs() < 6e-5, "{row:?}");
         }
@@ -156,7 +158,7 @@ fn a_campaign_measures_both_channels() {
     // The bit gains (1 + R) m/(m + M) of 7.5 m/s from rest.
     let gained = drills[1]["after"]["value"].as_f64().unwrap();
     assert!((gained - 7.5 * 1.45 * 0.14 / 0.57).abs() < 0.15, "{gained}");
-    // The bit strikes nothing: what it moves before the impacts cannot be told from rest.
+    // The bit strikes nothing. Its velocity before the impacts is consistent with zero: no restitution.
     assert!(drills[1]["restitution"].is_null() && drills[0]["restitution"]["value"].as_f64().unwrap() < 1.0);
     assert!(found["warnings"].to_string().contains("bit: No restitution"), "{}", found["warnings"]);
     assert!(
@@ -165,14 +167,14 @@ fn a_campaign_measures_both_channels() {
         drills[1]["findings"]
     );
     assert!(folder.path().join("results/drill_average_striker.svg").exists());
-    // A key without a default that is left out is named.
+    // A missing key that has no default is named.
     std::fs::write(&campaign, text.replace("beam_from = \"normal\"", "")).unwrap();
     let without = run(&campaign);
     assert_eq!(without.status.code(), Some(2));
     assert!(String::from_utf8_lossy(&without.stderr).contains("beam from (axis or normal"));
 }
 
-/// Text of two channels at 10 kHz with a name each.
+/// CSV file with the channels `striker` and `pulse` in V, 6000 samples at 10 kHz.
 fn csv(folder: &Path, name: &str, row: impl Fn(usize) -> (f64, f64)) -> PathBuf {
     let mut text = String::from("t [s],striker [V],pulse [V]\n");
     for i in 0..6000 {
@@ -215,18 +217,18 @@ fn what_allows_no_answer_says_why() {
         assert_eq!(with(&good, &bad).status.code(), Some(2), "{bad:?}");
     }
     let smooth = json(&with(&good, &["--low-pass", "500"]));
-    // Half the phases of the average times 50 turns a second is more than a quarter of 10 kHz.
+    // Default low-pass: half the phases of the average times 50 turns/s, but at most a quarter of 10 kHz.
     let plain = json(&with(&good, &[]));
     assert_eq!(plain["smoothing"]["corner"].as_f64(), Some(2500.0));
     let off = json(&with(&good, &["--low-pass", "none"]));
     assert!(off["smoothing"].is_null());
-    // Impacts and bandwidth are those of the velocity as it was measured, whatever the low-pass.
+    // Impacts and bandwidth come from the velocity before the low-pass, so it does not change them.
     for found in [&plain, &smooth] {
         assert_eq!((&found["bandwidth"], &found["impacts"]), (&off["bandwidth"], &off["impacts"]));
     }
-    // A low-pass at 500 Hz takes (47.7/500)⁴ = 8e-5 of a sine of 47.7 Hz; where 200 samples cut its 209.4,
-    // the ends of turns are no turning points, and smoothing there is of the whole record, not of the
-    // turn.
+    // A low-pass at 500 Hz lowers a sine of 47.7 Hz by (47.7/500)⁴ = 8e-5. The period of the sine is 209.4
+    // samples, but a turn has 200: turns do not end at turning points. The whole record is smoothed, not
+    // each turn alone, which changes the displacement near the ends of turns.
     let stroke = |d: &Value| d["displacement"]["stroke"]["value"].as_f64().unwrap();
     for found in [&plain, &smooth] {
         assert!((stroke(found) / stroke(&off) - 1.0).abs() < 2e-3, "{} {}", stroke(found), stroke(&off));
@@ -251,7 +253,7 @@ fn without_a_reference_the_turns_come_from_the_impacts() {
         let part = |found: &Value, what: &str| found[key][what].as_f64().unwrap();
         assert!((part(&own, "value") - part(&with, "value")).abs() < part(&with, "std"), "{key}");
     }
-    // From the first impact of a turn to the last.
+    // True speed in Hz, from the first impact to the last.
     let n = own["cycles"].as_f64().unwrap();
     let times: Vec<f64> = made.impacts.iter().map(|i| i.time).collect();
     let truth = (times.len() - 1) as f64 / (times[times.len() - 1] - times[0]);
@@ -262,10 +264,10 @@ fn without_a_reference_the_turns_come_from_the_impacts() {
     assert!((said["numbers"]["rpm"].as_f64().unwrap() / 60.0 / speed("value") - 1.0).abs() < 1e-12);
     assert!(finding(&with, "drill-turns-from-impacts").is_null());
     assert_eq!((own["phase"]["value"].as_f64(), own["phase"]["std"].is_null()), (Some(0.0), true));
-    // The average begins in the middle of the impact.
+    // The average begins in the middle of the impact, half-way between 7.5 m/s before and −0.7 m/s after.
     assert!((own["average"]["mean"][0].as_f64().unwrap() - 0.5 * (7.5 - 0.7)).abs() < 1.5);
     assert!(out.join("drill_trace.svg").exists());
-    // A crank without impacts, and a key of the reference alone.
+    // A crank motion without impacts is refused, and so is `--edge` without a reference.
     let sine = csv(folder.path(), "sine.csv", |i| ((i as f64 * 0.03).sin(), 0.0));
     let mut noise = noise::ShiftedNoise::new(3);
     let rows: Vec<f64> = (0..6000).map(|i| (f64::from(i) * 0.03).sin() + 0.01 * noise.normal()).collect();
@@ -284,7 +286,8 @@ fn without_a_reference_the_turns_come_from_the_impacts() {
 #[test]
 fn a_mean_velocity_that_is_taken_off_is_told() {
     let folder = tempfile::tempdir().unwrap();
-    // A sawtooth of 200 samples from −1 to 1 V, one in a hundred higher or lower, on a mean; a volt is 4 m/s.
+    // Sawtooth of 200 samples from −1 to 1 V (4 m/s per volt), each tooth up to 2 % higher or lower, plus a
+    // mean.
     let tooth = |i: usize| {
         let (k, s) = ((i + 100) / 200, (i + 100) % 200);
         (1.0 + 0.01 * ((7 * k % 5) as f64 - 2.0)) * (2.0 * (s as f64 + 0.5) / 200.0 - 1.0)
@@ -294,11 +297,11 @@ fn a_mean_velocity_that_is_taken_off_is_told() {
         |mean: f64| json(&with(&csv(folder.path(), "mean.csv", |i| (tooth(i) + mean, pulse(i))), &[]));
     let [plain, moved] = [found(0.0), found(0.05)];
     assert!(finding(&plain, "drill-mean-removed").is_null());
-    // 0.2 m/s; half a turn at either end of a turn is of another tooth, 2 % higher at most: a quarter of that
-    // of 4 m/s.
+    // 0.05 V are 0.2 m/s. A turn holds halves of two teeth of 4 m/s. Where one tooth is 2 % higher, the mean
+    // is off by a quarter of 2 % of 4 m/s.
     let mean = finding(&moved, "drill-mean-removed")["numbers"]["mean"].as_f64().unwrap();
     assert!((mean - 0.2).abs() < 0.02, "{mean}");
-    // What is said to be taken off was taken off.
+    // The mean that is reported as removed has been removed.
     let before = |d: &Value| d["before"]["value"].as_f64().unwrap();
     assert!((before(&moved) - before(&plain)).abs() < 1e-9, "{} {}", before(&moved), before(&plain));
 }
@@ -340,14 +343,14 @@ fn missing_samples_of_the_reference_between_its_pulses_cost_no_turn() {
     let pulse = |i: usize| f64::from(u8::from(i % 200 < 20));
     let path = csv(folder.path(), "gap.csv", |i| (wave(i), pulse(i)));
     let text = std::fs::read_to_string(&path).unwrap();
-    // Seven samples between two pulses; line 1 is the header.
+    // Seven samples of the reference are missing between two pulses; line 1 is the header.
     let gap = text.lines().enumerate().map(|(n, line)| match n {
         2101..=2107 => format!("{},\n", line.rsplit_once(',').unwrap().0),
         _ => format!("{line}\n"),
     });
     std::fs::write(&path, gap.collect::<String>()).unwrap();
     let found = json(&with(&path, &[]));
-    // 30 pulses of which the first begins before the record: 29 edges, none lost.
+    // 30 pulses, the first already high at the start: 29 edges, none lost, make 28 turns.
     assert_eq!(found["cycles"].as_u64(), Some(28));
 }
 
@@ -355,7 +358,7 @@ fn missing_samples_of_the_reference_between_its_pulses_cost_no_turn() {
 fn each_impact_and_the_handle() {
     let folder = tempfile::tempdir().unwrap();
     let made = record::record(2.0);
-    // 10 m/s² at 100 Hz and half of it across, in volts of 100 m/s².
+    // Handle: 10 m/s² along and 5 m/s² across at 100 Hz, in V at 100 m/s² per volt.
     let wave = |amplitude: f64| {
         let turn = std::f64::consts::TAU * 100.0 / record::RATE;
         (0..made.striker.len()).map(|i| 0.01 * amplitude * (turn * i as f64).sin()).collect()
@@ -370,24 +373,25 @@ fn each_impact_and_the_handle() {
     let table = folder.path().join("cycles.csv");
     let handle =
         ["--handle", "along", "--handle", "across", "--handle-sensitivity", "100", "--exposure", "2"];
-    // The turns go where they are asked for, the impacts into the folder of results.
+    // The table of turns goes to the path of `--each-cycle`, the table of impacts into the folder of
+    // `--out`.
     let out = folder.path().join("out");
     let each = ["--each-cycle", table.to_str().unwrap(), "--out", out.to_str().unwrap()];
     let found = json(&with(&file, &[&handle[..], &each].concat()));
-    // ISO 5349-1, table A.2: 0.160 at 100 Hz, to three digits.
+    // Weighting factor of ISO 5349-1, table A.2: 0.160 at 100 Hz, to three digits.
     let truth = 0.160 * (100f64 + 25.0).sqrt() / 2f64.sqrt();
     let number = |key: &str| found["exposure"][key]["value"].as_f64().unwrap();
     assert!((number("a_hv") / truth - 1.0).abs() < 0.005, "{} {truth}", number("a_hv"));
     assert!((number("a8") / number("a_hv") - 0.5).abs() < 1e-12);
-    // Sines of 32-bit samples: crests between samples and roundings.
+    // Crests of the sine lie between samples, and samples are rounded to 32 bits.
     assert!((found["exposure"]["unweighted_peak"].as_f64().unwrap() / 10.0 - 1.0).abs() < 1e-3);
-    // What is read is not written over, and a folder that is missing is named before anything is measured.
+    // An output never replaces the input, and a missing folder is reported before the measurement.
     for (to, word) in [(file.clone(), "same file"), (folder.path().join("no/x.csv"), "does not exist")] {
         let refused = with(&file, &["--each-cycle", to.to_str().unwrap()]);
         assert_eq!(refused.status.code(), Some(2));
         assert!(String::from_utf8_lossy(&refused.stderr).contains(word), "{refused:?}");
     }
-    // Every turn over the phase: its columns have the means of the average.
+    // One row per turn, one column per phase: the means of the columns are the average.
     assert_eq!(found["each_cycle"], table.to_str().unwrap());
     let rows = std::fs::read_to_string(&table).unwrap();
     let head = rows.lines().next().unwrap();
@@ -401,7 +405,7 @@ fn each_impact_and_the_handle() {
         }
     }
     for ((sum, n), mean) in sums.iter().zip(found["average"]["mean"].as_array().unwrap()) {
-        // Seven digits of at most 10 m/s.
+        // Values of at most 10 m/s are printed with seven digits.
         assert!((sum / n - mean.as_f64().unwrap()).abs() < 1e-5);
     }
     let text = std::fs::read_to_string(out.join("impacts.csv")).unwrap();
@@ -441,8 +445,8 @@ fn times_and_pulses_that_no_turn_can_hold_are_refused() {
 fn a_front_impact_and_a_rear_catch_are_two_groups() {
     let folder = tempfile::tempdir().unwrap();
     let mut noise = noise::ShiftedNoise::new(5);
-    // 50 turns of 1024 samples. In front, at phase 0.3, from 6.5 to −1.5 m/s; behind, at 0.8, from −6 to 1
-    // m/s; all vary by 2 %.
+    // 52 turns of 2048 samples. Front impact at phase 0.3, from 6.5 to −1.5 m/s; rear catch at phase 0.8,
+    // from −6 to 1 m/s. All velocities scatter by 2 %.
     let turn = record::RATE / 50.0;
     let mut vary = |v: f64| v * (1.0 + 0.02 * noise.normal());
     let speeds: Vec<[f64; 4]> = (0..52).map(|_| [6.5, -1.5, -6.0, 1.0].map(&mut vary)).collect();
@@ -454,7 +458,7 @@ fn a_front_impact_and_a_rear_catch_are_two_groups() {
         let before = |p: f64| if p < 0.3 { rest + (front - rest) * (p + 0.2) / 0.5 } else { back };
         let between = |p: f64| back + (rear - back) * (p - 0.3) / 0.5;
         let behind = |p: f64| caught + (speeds[k + 1][0] - caught) * (p - 0.8) / 0.5;
-        // Contacts of 0.2 ms, 0.01 turn.
+        // Contacts last 0.2 ms, which is 0.01 turn.
         let mix =
             |p: f64, at: f64| 0.5 + 0.5 * (std::f64::consts::PI * ((p - at) / 0.01).clamp(-0.5, 0.5)).sin();
         if p < 0.295 {
@@ -483,15 +487,16 @@ fn a_front_impact_and_a_rear_catch_are_two_groups() {
     let found = json(&with(&file, &masses));
     let groups = found["groups"].as_array().unwrap();
     assert_eq!(groups.len(), 2, "{}", found["warnings"]);
-    // The rear catch rebounds by 1/6, what catches it taken not to move; in front ½(1 + 1.5/6.5) + 1.5/6.5.
+    // Front: a struck mass of twice the striker gives ½(1 + 1.5/6.5) + 1.5/6.5. Rear: the catcher is taken
+    // as fixed, which gives 1/6.
     let front = 0.5 * (1.0 + 1.5 / 6.5) + 1.5 / 6.5;
     let truths = [[0.3, 6.5, -1.5, front], [0.8, -6.0, 1.0, 1.0 / 6.0]];
     for (group, truth) in groups.iter().zip(truths) {
         assert_eq!(group["n"].as_u64().unwrap(), 49, "{group}");
         for (key, truth) in ["phase", "before", "after", "restitution"].into_iter().zip(truth) {
             let part = |what: &str| group[key][what].as_f64().unwrap();
-            // Five standard uncertainties of six degrees of freedom; a velocity that the half sine of a
-            // contact and a phase that samples hold to a part in 500.
+            // Five standard uncertainties with six degrees of freedom. The half sine of the contact
+            // (velocities) and the sampling (phases) add 0.2 %.
             assert!((part("value") - truth).abs() < 5.0 * part("std") + 0.002 * truth.abs(), "{key} {group}");
         }
         let energy = 0.5 * 0.14 * truth[1].powi(2);
@@ -523,7 +528,8 @@ fn swapped_channels_and_a_vibration_as_reference_are_refused() {
     };
     let swapped = refusal(&with(&file, &[]));
     assert!(swapped.contains("are the two channels swapped?"), "{swapped}");
-    // Three sines of frequencies without a common period cross their middle at any distance.
+    // Three sines without a common period cross their middle at irregular intervals, unlike pulses of a
+    // shaft.
     let vibration = |i: usize| [0.11, 0.173, 0.291].iter().map(|w| (i as f64 * w).sin()).sum::<f64>();
     let file = csv(folder.path(), "handle.csv", |i| ((i as f64 * 0.03).sin(), vibration(i)));
     let handle = refusal(&with(&file, &[]));
@@ -544,8 +550,7 @@ fn impacts_beyond_the_range_are_in_no_mean() {
             &["--mass", "0.14", "--struck-mass", "0.43"],
         ))
     };
-    // Speeds of 7.5 ± 0.15 m/s: a quarter of them is above 7.6 m/s, the standard uncertainty of the mean is a
-    // seventh of 0.15.
+    // Velocities before the impact scatter by 0.15 m/s about 7.5 m/s: a quarter of them exceeds 7.6 m/s.
     let some = limited(7.6);
     let impacts = some["impacts"].as_array().unwrap();
     let clipped = |i: &&Value| i["clipped"].as_bool().unwrap();
@@ -555,9 +560,9 @@ fn impacts_beyond_the_range_are_in_no_mean() {
     for impact in impacts {
         let number = |key: &str| impact[key].as_f64().unwrap();
         let truth = made.impacts.iter().find(|t| (t.time - number("time")).abs() < 5e-5).unwrap();
-        // The speed rises by 0.012 m/s a sample up to the contact, which takes three samples before its
-        // middle, and two samples at the limit are needed: 0.046 m/s, and four times 12 mm/s of
-        // noise.
+        // Before the contact the velocity rises by 0.012 m/s a sample. The contact begins three samples
+        // before its middle, and two samples at the limit count as clipped: 0.046 m/s, plus four times the
+        // noise of 12 mm/s.
         if truth.before > 7.7 {
             assert!(clipped(&impact), "{impact} {}", truth.before);
         } else if truth.before < 7.55 {

@@ -1,4 +1,4 @@
-//! Drills measured with options and records that no one has.
+//! `drill` with impossible options and records: it returns an error and does not panic.
 
 use vibroimpact::measure::drill::{AngleOrigin, Beam, DrillOptions, Edge, Slices, Smoothing, drill};
 
@@ -25,8 +25,8 @@ fn no_option_of_the_library_ends_in_a_panic() {
         for (number, options) in all.iter().enumerate() {
             let record = Slices { rate: 1e4, channels: channels() };
             let found = drill(&record, options, None);
-            // A level, a sensitivity and a margin may be below 0; all else is a duration, a mass or a
-            // frequency, and no day has more than 24 hours.
+            // A level, a sensitivity and a margin may be negative. Every other option is a duration, a mass
+            // or a frequency, and a day has no more than 24 hours.
             let possible = x.is_finite()
                 && match number {
                     5 | 8 => true,

@@ -1,5 +1,5 @@
-//! The example campaign's data are what its generator makes, byte for byte, and what is measured in them is
-//! what the rig did.
+//! The example campaign: its generator reproduces the data byte for byte, and the analysis recovers the rig
+//! from them.
 
 #[path = "../../crates/vibro-demo/src/two_mass_rig/analyser.rs"]
 mod analyser;
@@ -20,8 +20,8 @@ fn committed(name: &str) -> String {
     std::fs::read_to_string(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display()))
 }
 
-/// The whole upward sweep is simulated; spectra are made where something happens: at its start, at both
-/// resonances, at the antiresonance between them, and just after the jump.
+/// Simulates the whole upward sweep and compares the spectra of five points: the start, both resonances,
+/// the antiresonance between them, and just after the jump.
 #[test]
 fn the_upward_sweep_comes_out_again() {
     let shown = [1, 11, 22, 35, 36];
@@ -30,8 +30,8 @@ fn the_upward_sweep_comes_out_again() {
     simulate(Direction::Up, usize::MAX, |point| {
         number += 1;
         let row = point.truth();
-        // An irregular motion doubles a difference in the last digit of a sine every few cycles: it need not
-        // come out again on a machine with another mathematics library.
+        // An irregular motion doubles a difference in the last digit of a sine every few cycles. A machine
+        // with another mathematics library may therefore give another motion.
         if !row.contains("irregular") {
             assert!(truth.contains(&row), "TRUTH.csv lacks {row}");
         }
@@ -77,7 +77,8 @@ fn the_rig_is_found_again_in_its_spectra() {
     let campaign = open(folder.join("campaign.toml")).unwrap();
     let found = responses(&campaign, &()).unwrap();
     let truth = committed("TRUTH.csv");
-    // Tops of the closed-form orbits of this rig, as the overlay predicts them, through the same spectra.
+    // Grazing resonances of masses 1 and 2 (Hz, m) of the closed-form orbits, passed through the same
+    // spectra.
     let grazing = [(5.514_65, 14.247_6e-3), (5.513_37, 14.122_6e-3)];
     let (mut at_rest, mut limited) = (0, 0);
     for response in &found {
@@ -91,8 +92,7 @@ fn the_rig_is_found_again_in_its_spectra() {
         ];
         println!("{}: {resonance:?}, off by {off:.1?} standard deviations", response.name);
         assert!(off.iter().all(|z| z.abs() < 2.0), "{}: {off:?}", response.name);
-        // A thousandth of the frequency and half a hundredth of the height: covered, and not by stating
-        // nothing.
+        // The uncertainties cover the errors and are small: below 2 mHz and 0.5 % of the amplitude.
         assert!(resonance.frequency_std.unwrap() < 2e-3 && resonance.amplitude_std.unwrap() < 5e-3 * height);
 
         let rows = truth.lines().map(|l| l.split(',').collect::<Vec<&str>>()).filter(|r| r[0] == direction);
@@ -115,17 +115,18 @@ fn the_rig_is_found_again_in_its_spectra() {
             _ => Vec::new(),
         };
         assert_eq!(minima, expected, "{}", response.name);
-        // Contact is lost near 10.65 Hz going up and made near 7.1 Hz going down, and both masses tell.
+        // Contact is lost near 10.65 Hz on the way up and made near 7.1 Hz on the way down; both masses
+        // jump.
         let jumps: Vec<f64> = response.jumps.iter().map(|j| j.frequency).collect();
         let expected = if direction == "up" { 10.6555 } else { 7.1045 };
         assert!(jumps.len() == 1 && (jumps[0] - expected).abs() < 0.01, "{}: {jumps:?}", response.name);
     }
-    // The passive mass at rest: 5 points going up and 20 going down. No other amplitude is in the noise.
+    // The passive mass rests at 5 points on the way up and at 20 on the way down. Only there is the
+    // amplitude below the noise.
     assert_eq!((at_rest, limited), (25, 25));
 }
 
-/// The whole campaign measured again with the noise of these draws, and all that can be found of the rig
-/// fitted to each.
+/// Simulates the whole campaign with the noise of each draw, and fits seven parameters to each.
 fn fitted_again(draws: std::ops::RangeInclusive<u64>) -> Vec<Fit> {
     let shipped = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/two_mass_rig");
     let folder = tempfile::tempdir().unwrap();
@@ -162,7 +163,7 @@ fn fitted_again(draws: std::ops::RangeInclusive<u64>) -> Vec<Fit> {
     draws.map(fitted).collect()
 }
 
-/// Distance of the truth from an answer in its own uncertainties and correlations, squared.
+/// Squared distance of the true parameters from a fit, weighted with its covariance (Mahalanobis).
 fn apart(fit: &Fit) -> f64 {
     let n = fit.parameters.len();
     let z: Vec<f64> =
@@ -172,16 +173,16 @@ fn apart(fit: &Fit) -> f64 {
     z.dot(&(correlations.try_inverse().unwrap() * &z))
 }
 
-/// χ² of 7 degrees of freedom that is exceeded in 5 % of cases (Abramowitz & Stegun, table 26.8).
+/// χ² with 7 degrees of freedom that is exceeded in 5 % of cases (Abramowitz & Stegun, table 26.8).
 const SEVEN: f64 = 14.067;
 
-/// Through files, spectra, integration, and sweeps: the fit begins at the truth, which is the rig of the
-/// campaign. Noise is another in each draw; what the converter's averaging takes off is the same in all and
-/// shifts them together, within what `calibration` allows.
+/// The fit begins at the truth, the rig of the campaign; its data pass through files, spectra, integration
+/// and sweeps. The noise differs from draw to draw. The averaging of the converter lowers the amplitudes of
+/// all draws alike, by up to 1e-4, which the uncertainty `calibration` covers.
 #[test]
 fn the_truth_lies_within_the_joint_region_of_the_fit() {
     let apart = apart(&fitted_again(1..=1)[0]);
-    // χ² of 7 degrees of freedom that is exceeded in one case of two million, as by five standard deviations.
+    // χ² with 7 degrees of freedom is larger in one case of two million, as often as 5 standard deviations.
     assert!(apart <= 42.0, "{apart}");
 }
 
@@ -195,11 +196,11 @@ fn of_twelve_draws_the_truth_lies_within_the_joint_region_of_nine() {
         .filter(|a| *a <= SEVEN)
         .count();
     println!("{inside} of 12, draws 1 to 12");
-    // Of a binomial of 0.95, eight or fewer of twelve come in one of 450 cases.
+    // With a coverage of 95 %, eight or fewer of twelve occur in one of 450 cases (binomial distribution).
     assert!(inside >= 9, "{inside}");
 }
 
-/// The same a hundred times, to be run by hand; with `--release` in some ten minutes.
+/// The same with 100 draws, to be run by hand: some ten minutes with `--release`.
 #[test]
 #[ignore = "a measurement: minutes"]
 fn of_a_hundred_draws_the_truth_lies_within_the_joint_region_of_92_to_98() {

@@ -1,4 +1,4 @@
-//! The example drop test: its data are what its generator makes, and its campaign gives back the truth.
+//! The example drop test: its generator reproduces the data, and its campaign recovers the true values.
 
 use serde_json::Value;
 use std::path::{Path, PathBuf};
@@ -32,7 +32,7 @@ fn the_campaign_gives_back_the_truth() {
     let estimate = |found: &Value| (found["value"].as_f64().unwrap(), found["std"].as_f64().unwrap());
     let drops = &results["drops"][0];
     assert_eq!(drops["files"].as_array().unwrap().len(), 5);
-    // Five drops that scatter by 2 %: within four standard uncertainties of the mean.
+    // Five drops whose restitution scatters by 2 %: the mean lies within four standard uncertainties.
     let (r, u) = estimate(&drops["restitution"]);
     assert!((r - records::RESTITUTION).abs() < 4.0 * u && u < 0.02 * r, "{drops}");
     let lively = &results["drops"][1];
@@ -79,7 +79,7 @@ fn drops_of_one_name_with_other_heights_are_left_out_with_their_line() {
     let name = "name = \"a\"\n";
     let drops = |names| run(names, 0.001).unwrap().answer.result["drops"].as_array().unwrap().len();
     assert_eq!((drops([name, name]), drops(["", ""])), (1, 2));
-    // The second is left out, and named with its line; the first is answered alone.
+    // The second drop is left out, with a warning that gives its line; the first is analysed alone.
     let answer = run([name, name], 0.01).unwrap().answer;
     let files = &answer.result["drops"][0]["files"];
     assert_eq!(files, &serde_json::json!(["DROP01.CSV"]), "{files}");

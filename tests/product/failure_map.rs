@@ -1,5 +1,5 @@
-//! At the borders of what they can, the library's own methods are right or refuse with a reason: none is
-//! wrong without a word, stalls or crashes.
+//! At the limits of their validity, the library's methods are right or refuse with a reason: none is
+//! silently wrong, stalls or crashes.
 
 use std::collections::HashSet;
 use vibroimpact::precision::{BorderCell, FailureMap, Outcome, estimators, models};
@@ -10,7 +10,7 @@ fn check(map: &FailureMap) {
         .map(|c| format!("{}, {}, {}: {:?}: {}", c.border, c.scene, c.method, c.outcome, c.why))
         .collect();
     assert!(broken.is_empty(), "{}", broken.join("\n"));
-    // A refusal has its reason.
+    // Every refusal has a reason.
     let reasons = [Outcome::Refused, Outcome::NotAsked];
     assert!(map.cells.iter().all(|c| !reasons.contains(&c.outcome) || c.why.len() > 10));
 }
@@ -19,7 +19,7 @@ fn check(map: &FailureMap) {
 fn no_model_is_wrong_or_stalls_at_its_borders() {
     let map = models::failures(true).unwrap();
     let right = map.cells.iter().filter(|c| c.ours && c.outcome == Outcome::Right).count();
-    // The map is not empty, and the check can fail: other methods do.
+    // The map is not empty. Methods of others are wrong in some scenes (see below), so the check can fail.
     assert!(right > 60, "{right} cells");
     // Every method has a cell at every scene.
     let scenes: HashSet<_> = map.cells.iter().map(|c| (&c.border, &c.scene)).collect();
@@ -28,14 +28,14 @@ fn no_model_is_wrong_or_stalls_at_its_borders() {
     check(&map);
 }
 
-/// Scenes on the near side of a border, which a method must answer rightly: a map of refusals would be no
-/// use.
+/// Scenes within the limits of a method, which it must answer correctly: a method that always refuses is of
+/// no use.
 struct Near {
     method: &'static str,
     border: &'static str,
     scenes: &'static [&'static str],
-    /// Why they are answerable: from how the records are made, not from what came out. Scenes at the border
-    /// itself, which are not listed, may be right or refused.
+    /// Why the method can answer them, derived from how the records are made and not from the results.
+    /// Scenes at the limit itself are not listed; they may be right or refused.
     why: &'static str,
 }
 
@@ -243,45 +243,44 @@ fn estimators_are_right_or_refuse_at_their_borders() {
         }
     }
     assert!(other.is_empty(), "{other:#?}");
-    // Uncertainties are those of the errors, over all borders of a method.
+    // The stated uncertainties cover the errors, counted over all borders of a method.
     let listed: HashSet<&str> = NEAR.iter().map(|n| n.method).collect();
     for name in listed {
         let cells = map.cells.iter().filter(|c| c.ours && c.method == name);
         let [judged, beyond] = cells.fold([0; 2], |sum, c| [sum[0] + c.stated[0], sum[1] + c.stated[1]]);
         println!("{name}: {beyond} of {judged} beyond");
-        // Four cells of six records each at least.
+        // At least four cells of six records each.
         assert!(judged >= 24 && beyond <= limit(judged), "{name}: {beyond} of {judged}");
     }
-    // Nobody is left out of the list above, and the check can fail: other methods do.
+    // Every method of the library is listed above for each of its quantities. Methods of others are wrong in
+    // many scenes, so the check can fail.
     let quantity = |border: &str| border.split(':').next().unwrap_or_default().to_owned();
     let listed = |c: &BorderCell| {
         NEAR.iter().any(|n| n.method == c.method && quantity(n.border) == quantity(&c.border))
     };
     assert!(map.cells.iter().filter(|c| c.ours).all(listed));
     assert!(map.cells.iter().filter(|c| !c.ours && c.outcome == Outcome::Wrong).count() > 60);
-    // What is written by hand may crash on what it did not expect, but it is given records that a person
-    // would give it.
+    // Hand-written scripts may crash on unexpected input, but these are records that a user would give them.
     assert!(map.cells.iter().all(|c| c.outcome != Outcome::Crashed));
 }
 
-/// Share of errors further off than three standard uncertainties where these come from 30 free residuals
-/// (Student's distribution).
+/// Share of errors beyond three standard uncertainties that have 30 degrees of freedom (Student's
+/// distribution).
 const ALLOWED: f64 = 5.39e-3;
-/// Chance that any method of such errors is said to be too often off.
+/// Overall false-alarm rate: the probability that any of the library's methods fails by chance.
 const CHANCE: f64 = 0.01;
-/// Methods of this library, for which that chance is made.
+/// Number of the library's methods, among which [`CHANCE`] is divided.
 const METHODS: usize = 8;
 
-/// How many of so many answers at all borders of a method may lie beyond three of the uncertainties that they
-/// state: the least number that chance exceeds for any of eight methods in fewer than one map of a hundred,
-/// where 0.54 % of answers do. That is the share of a standard uncertainty from 30 free residuals; a
-/// perfectly known one has 0.27 %.
+/// Largest allowed number, of `judged` answers at all borders of a method, with an error beyond three
+/// stated standard uncertainties. By chance these are 0.54 % of the answers (30 degrees of freedom; 0.27 %
+/// with an exactly known uncertainty). With eight methods, fewer than one map of a hundred fails by chance.
 fn limit(judged: usize) -> usize {
     exceeded(judged, ALLOWED, CHANCE / METHODS as f64)
 }
 
-/// The least number that more of `trials` independent events of probability `share` exceed with less than
-/// `chance` (binomial distribution).
+/// Smallest count that is exceeded with a probability below `chance`, in `trials` independent events of
+/// probability `share` (binomial distribution).
 fn exceeded(trials: usize, share: f64, chance: f64) -> usize {
     let odds = share / (1.0 - share);
     let mut term = (1.0 - share).powf(trials as f64);
@@ -297,7 +296,7 @@ fn exceeded(trials: usize, share: f64, chance: f64) -> usize {
 
 #[test]
 fn the_number_that_chance_exceeds_is_that_of_the_binomial_distribution() {
-    // P(k) by its factorials.
+    // P(k), the binomial probability written out.
     let at = |share: f64, n: usize, k: usize| {
         let ways = (0..k).map(|i| (n - i) as f64 / (i + 1) as f64).product::<f64>();
         ways * share.powf(k as f64) * (1.0 - share).powf((n - k) as f64)
@@ -312,8 +311,8 @@ fn the_number_that_chance_exceeds_is_that_of_the_binomial_distribution() {
     }
 }
 
-/// Student's density for 30 degrees of freedom, whose constant is 14.5·13.5·…·0.5/14!/√30
-/// (Γ(15.5)/(Γ(15)√(30π))), by the midpoint rule.
+/// Student's density with 30 degrees of freedom, integrated by the midpoint rule. Its constant is
+/// Γ(15.5)/(Γ(15)√(30π)) = 14.5·13.5·…·0.5/14!/√30.
 #[test]
 fn the_share_that_is_allowed_is_that_of_thirty_free_residuals() {
     let gammas = (0..14).map(|i| (f64::from(i) + 1.5) / (f64::from(i) + 1.0)).product::<f64>() * 0.5;

@@ -1,5 +1,5 @@
-//! Records that were once answered wrongly, or not at all, with their truth. They were drawn by others, and
-//! are no part of the project.
+//! Recordings that were once analysed wrongly or not at all, with their true values. They are kept outside
+//! the project, in `../shared/found`.
 
 use crate::others_files::folder;
 use serde_json::Value;
@@ -8,7 +8,7 @@ use std::process::Command;
 use std::time::{Duration, Instant};
 use tempfile::TempDir;
 
-/// A record, unpacked into a folder of its own.
+/// Unpacks a recording into a temporary folder; `None` where `../shared/found` is absent.
 fn unpacked(name: &str) -> Option<(TempDir, PathBuf)> {
     let (from, root) = (folder("../found")?, tempfile::tempdir().unwrap());
     let (archive, packed) = (from.join(format!("{name}.tar.gz")), from.join(format!("{name}.gz")));
@@ -23,7 +23,7 @@ fn unpacked(name: &str) -> Option<(TempDir, PathBuf)> {
     Some((root, path))
 }
 
-/// Exit code and object of `vibro … --json`, and how long it took.
+/// Exit code, JSON object and duration of `vibro … --json`.
 fn vibro(arguments: &[&str]) -> (i32, Value, Duration) {
     let began = Instant::now();
     let output = Command::new(env!("CARGO_BIN_EXE_vibro")).args(arguments).arg("--json").output().unwrap();
@@ -40,7 +40,7 @@ fn text(path: &Path) -> &str {
     path.to_str().unwrap()
 }
 
-/// How many standard uncertainties an estimate lies from the truth.
+/// Distance of an estimate from the truth in standard uncertainties.
 fn off(estimate: &Value, truth: f64) -> f64 {
     (estimate["value"].as_f64().unwrap() - truth).abs() / estimate["std"].as_f64().unwrap()
 }
@@ -70,15 +70,15 @@ fn blows_of_a_few_samples_have_a_mode() {
             vibro(&["modal", text(&path), "--reference", "Force", "--channel", "Disp", "--hammer"]);
         assert_eq!(code, 0, "{name}");
         let mode = &answer["modes"][0];
-        // Beyond four standard uncertainties lies one record in 10⁴.
+        // One record of 10⁴ lies beyond four standard uncertainties.
         assert!(off(&mode["frequency"], 60.0) < 4.0, "{name}: {mode}");
         let said = answer["warnings"].to_string();
         assert!(!said.contains("double hit") && blows == 5, "{said}");
     }
 }
 
-/// Echoes of a room, 5 % after 4.1 ms and 3 % after 9.7 ms, are no bounces: R of four drops, of the usual
-/// three, and of one.
+/// Echoes of a room, 5 % after 4.1 ms and 3 % after 9.7 ms, are not taken for bounces: with four drops,
+/// with three and with one.
 #[test]
 fn drops_with_echoes_have_their_restitution() {
     let Some((_root, path)) = unpacked("drops_echo") else { return };
@@ -120,7 +120,7 @@ fn a_sine_of_few_counts_that_is_clipped_is_named() {
     assert_eq!(std.iter().filter(|none| **none).count(), 1, "{std:?}");
 }
 
-/// Two unlike blows a turn in one direction: their velocities, at 0.25 and 0.75 turns.
+/// Two unlike blows per turn in the same direction, at phases of 0.25 and 0.75 turns; velocities in m/s.
 #[test]
 fn two_unlike_blows_of_a_turn_are_two_groups() {
     let Some((_root, path)) = unpacked("drill_two_blows.wav") else { return };
@@ -135,7 +135,8 @@ fn two_unlike_blows_of_a_turn_are_two_groups() {
     assert!((groups[1]["before"]["value"].as_f64().unwrap() - 5.4).abs() < 0.1, "{groups:?}");
 }
 
-/// The force grows or falls by up to 2 % within each step: ζ of H(iω + ε) is off by ε/ω.
+/// The force grows or decays by up to 2 % within each step, at a rate ε in 1/s. The response is then H(iω +
+/// ε), which would bias ζ by ε/ω.
 #[test]
 fn a_force_that_drifts_within_its_steps_moves_no_mode() {
     let Some((_root, path)) = unpacked("sweep_drift_46") else { return };
@@ -146,7 +147,8 @@ fn a_force_that_drifts_within_its_steps_moves_no_mode() {
     assert!(zeta["std"].as_f64().unwrap() < 1e-6, "{zeta}");
 }
 
-/// 40, 600 and 1100 Hz on the axes of a handle, sampled at 5120 Hz: `a_hv` by the formula of ISO 5349-1.
+/// 40, 600 and 1100 Hz on the axes of a handle, sampled at 5120 Hz. The true `a_hv` in m/s² follows from
+/// the formula of ISO 5349-1.
 #[test]
 fn a_handle_sampled_slowly_is_weighted_without_warping() {
     let Some((_root, path)) = unpacked("handle_5120.wav") else { return };
@@ -160,12 +162,12 @@ fn a_handle_sampled_slowly_is_weighted_without_warping() {
     assert!(a_hv["std"].as_f64().unwrap() < 0.005, "{a_hv}");
 }
 
-/// What an attack made hang, panic or take its time.
+/// Inputs made to attack the program, on which it once hung, panicked or took too long.
 #[test]
 fn inputs_of_an_attack_are_answered_or_refused_soon() {
     let Some((root, _)) = unpacked("redteam") else { return };
     let at = |name: &str| root.path().join(name);
-    // The build of tests has the speed of the program; other tests run beside it.
+    // A debug build is slower, and other tests run at the same time.
     let soon = Duration::from_secs(if cfg!(debug_assertions) { 60 } else { 10 });
     let (code, _, took) = vibro(&["run", text(&at("decay_band"))]);
     assert!(code == 2 && took < soon, "{code} {took:?}");

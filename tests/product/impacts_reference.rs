@@ -1,4 +1,4 @@
-//! The contact traces of the script timeav: its own figures with `legacy`, the truth without.
+//! Contact traces of the script `timeav`: `legacy` reproduces its printed figures, the default the truth.
 
 use std::path::{Path, PathBuf};
 use vibroimpact::measure::impacts::{Impacts, ImpactsOptions, impacts};
@@ -6,7 +6,7 @@ use vibroimpact::measure::legacy::contact_times;
 use vibroimpact::read::Reader;
 use vibroimpact::record::Trace;
 
-/// 2.56 × 50 Hz.
+/// Sampling rate in Hz: 2.56 × 50 Hz.
 const RATE: f64 = 128.0;
 
 const CASES: [&str; 7] = ["nominal", "ring60", "missing", "bigfirst", "noiselead", "irregular", "header"];
@@ -25,7 +25,7 @@ fn truth(case: &str) -> Vec<f64> {
     text.lines().skip(1).map(|l| l.trim().parse().unwrap()).collect()
 }
 
-/// A number after `key` in what the script printed.
+/// The number after `key` in the output of the script.
 fn printed(text: &str, key: &str) -> f64 {
     let rest = &text[text.find(key).unwrap() + key.len()..];
     rest.split_whitespace().next().unwrap().parse().unwrap()
@@ -46,31 +46,31 @@ fn legacy_gives_what_the_script_printed() {
         let times: Vec<f64> =
             text[text.find("peakt=").unwrap() + 6..].split_whitespace().map(|t| t.parse().unwrap()).collect();
         assert_eq!(found.times.len(), times.len(), "{case}");
-        // Six decimals were printed.
+        // The script printed six decimals.
         assert!(found.times.iter().zip(&times).all(|(a, b)| (a - b).abs() <= 0.5001e-6), "{case}");
         let (interval, frequency) = (printed(&text, "diffav="), printed(&text, "diffreq="));
         if times.len() == 1 {
             assert!(found.interval.is_nan() && interval.is_nan(), "{case}");
         } else {
-            // Seventeen digits were printed; sums of times differ by a few roundings.
+            // The script printed 17 digits; sums of times differ by a few roundings.
             assert!((found.interval / interval - 1.0).abs() < 1e-14, "{case} {}", found.interval);
             assert!((found.frequency / frequency - 1.0).abs() < 1e-14, "{case} {}", found.frequency);
         }
     }
 }
 
-/// Checks that found and true times belong together one by one, and gives the standard deviation of what is
-/// between them.
+/// Checks that each found time belongs to one true time. Returns the standard deviation of their
+/// differences in s.
 fn matches(case: &str, found: &Impacts) -> f64 {
     let truth = truth(case);
     assert_eq!(found.n, truth.len(), "{case}: {:?}", found.findings);
     let off: Vec<f64> = found.times.iter().zip(&truth).map(|(a, b)| a - b).collect();
     let mean = off.iter().sum::<f64>() / off.len() as f64;
-    // The truth counts the first sample as one interval and names the middle of a pulse; onsets lie up to two
-    // samples earlier.
+    // The truth begins one sampling interval after 0 and gives the middle of a pulse. Onsets lie up to two
+    // samples before the middle.
     assert!((-3.0 / RATE..0.0).contains(&mean), "{case}: {mean}");
     let worst = off.iter().map(|o| (o - mean).abs()).fold(0.0, f64::max);
-    // No onset is further than a sample from where it belongs.
+    // Apart from the mean difference, no onset is more than a sample off.
     assert!(worst < 1.0 / RATE, "{case}: {worst}");
     (off.iter().map(|o| (o - mean).powi(2)).sum::<f64>() / off.len() as f64).sqrt()
 }
@@ -93,10 +93,10 @@ fn every_true_impact_is_found_and_no_other() {
         assert_eq!((found.missed, found.doubled), (missing, 0), "{case}");
         assert_eq!(found.regular, case != "irregular", "{case}");
         if found.regular {
-            // The truth is 7.49 Hz exactly.
+            // The true impact frequency is 7.49 Hz.
             let off = (found.frequency.value - 7.49).abs() / found.frequency.std.unwrap();
             assert!(off < 4.0, "{case}: {:?}", found.frequency);
-            // Onsets below a sample: a tenth of one, where the script had one.
+            // Onsets scatter by less than a tenth of a sample; the script resolved whole samples.
             assert!(scatter < 0.1 / RATE, "{case}: {scatter}");
         }
     }

@@ -1,13 +1,13 @@
-//! The form of the sources. Data flows one way: a folder of `src` uses only folders to its left. The compiler
-//! holds the direction of the crates below. Comments fit the width of code.
+//! Rules of the source text. A folder of `src` uses only folders to its left; the compiler enforces the
+//! direction between crates. Comments fit the width of code, and some definitions exist only once.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// The flow, left to right.
+/// Layers of `src`, left to right.
 const FLOW: [&str; 6] = ["report", "campaign", "compare", "analysis", "proposal", "cli"];
 
-/// All files below a folder that a person wrote.
+/// All files below a folder, without folders that tools write.
 pub fn files(folder: &Path) -> Vec<PathBuf> {
     let below = |entry: fs::DirEntry| {
         let (path, name) = (entry.path(), entry.file_name());
@@ -20,7 +20,7 @@ pub fn files(folder: &Path) -> Vec<PathBuf> {
     fs::read_dir(folder).expect("a folder").flat_map(|entry| below(entry.expect("an entry"))).collect()
 }
 
-/// The sources of these folders of the project.
+/// The Rust files of these folders of the project.
 fn sources(folders: &[&str]) -> Vec<PathBuf> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let all = folders.iter().flat_map(|folder| files(&root.join(folder)));
@@ -29,8 +29,8 @@ fn sources(folders: &[&str]) -> Vec<PathBuf> {
 
 const ALL: [&str; 4] = ["src", "crates", "tests", "examples"];
 
-/// Top-level modules that a text of code names behind `crate::` with their line numbers, lists over several
-/// lines included. Comments do not count.
+/// Top-level modules that the code names after `crate::`, with line numbers. Lists over several lines
+/// count, comments do not.
 fn used(code: &str) -> Vec<(usize, String)> {
     let code: String =
         code.lines().map(|l| l.find("//").map_or(l, |at| &l[..at])).collect::<Vec<_>>().join("\n");
@@ -43,7 +43,7 @@ fn used(code: &str) -> Vec<(usize, String)> {
             let line = code[..at].matches('\n').count() + 1;
             let rest = &code[at + word.len()..];
             match rest.strip_prefix('{') {
-                // The first names of a list, whatever stands behind them in braces of their own.
+                // The first name of each item of the list; braces inside an item are skipped.
                 Some(list) => {
                     let (mut depth, mut parts) = (0, vec![String::new()]);
                     for c in list.chars() {
@@ -85,7 +85,7 @@ fn no_arrow_runs_back() {
         }
         for (line, target) in used(&text) {
             let to = FLOW.iter().position(|l| *l == target);
-            // What is no layer of this crate is another crate under its name here.
+            // A name that is no layer is that of another crate.
             if to.is_some_and(|to| to > place) {
                 wrong.push(format!("{}:{line}: {layer} uses {target}", inside.display()));
             }
@@ -103,7 +103,7 @@ fn the_test_sees_an_arrow() {
     assert!(targets("/// See [`crate::report`].").is_empty());
 }
 
-/// Comments are read beside code, which `rustfmt.toml` holds to as many columns.
+/// `rustfmt.toml` limits code to the same number of columns.
 #[test]
 fn comments_fit_the_width_of_code() {
     let files = sources(&ALL);
@@ -118,8 +118,8 @@ fn comments_fit_the_width_of_code() {
     assert!(files.len() > 400 && wide.is_empty(), "{} files; longer: {wide:#?}", files.len());
 }
 
-/// The files among these folders whose text is wrong, without the root of the project, in order. The words
-/// that are looked for stand in this file.
+/// Sorted paths, relative to the root, of the files whose text is wrong. This file is left out, since it
+/// contains the searched words.
 fn wrong(folders: &[&str], is_wrong: impl Fn(&str) -> bool) -> Vec<String> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let mut files = sources(folders);
@@ -130,7 +130,7 @@ fn wrong(folders: &[&str], is_wrong: impl Fn(&str) -> bool) -> Vec<String> {
     names
 }
 
-/// Each definition of a median would answer differently for none and for an even number.
+/// Separate definitions of a median could differ for no value and for an even number of values.
 #[test]
 fn medians_and_quantiles_are_defined_once() {
     let free = |line: &str| {
@@ -141,7 +141,7 @@ fn medians_and_quantiles_are_defined_once() {
     assert_eq!(wrong(&ALL, |text| text.lines().any(free)), ["crates/vibro-record/src/order.rs"]);
 }
 
-/// Whether a loop of this code halves an interval.
+/// Whether a loop in this code halves an interval.
 fn halves(code: &str) -> bool {
     let lines: Vec<&str> = code.lines().map(str::trim).collect();
     let loops = |line: &str| ["for _ in 0..", "while ", "loop {"].iter().any(|head| line.starts_with(head));
@@ -151,18 +151,19 @@ fn halves(code: &str) -> bool {
     lines.iter().enumerate().any(begins)
 }
 
-/// A loop by hand goes on where no number lies between, or ends before.
+/// A hand-written loop may continue after no number lies between the ends, or stop too early.
 #[test]
 fn intervals_are_halved_in_one_place() {
-    // An integer between two rows is no place between two numbers.
+    // A binary search over row numbers does not count.
     let search = |text: &str| halves(&text.replace("usize::midpoint(", ""));
     assert_eq!(wrong(&ALL, search), ["crates/vibro-math/src/bisection.rs"]);
     assert!(halves("for _ in 0..60 {\n    let middle = f64::midpoint(low, high);\n"));
     assert!(!halves("for _ in 0..60 {\n    step();\n}\nlet middle = f64::midpoint(low, high);\n"));
 }
 
-/// A generator of random numbers has a constant of its own. Those of the examples stay as they are, since
-/// documents hold numbers of their recordings, and `vibro-record` lies below the crate of the generator.
+/// Every generator of random numbers has a typical constant. The examples keep their own generator, since
+/// documents quote figures of their recordings; `vibro-record` keeps one, since it lies below the crate of
+/// the shared generator.
 #[test]
 fn random_numbers_come_from_one_place() {
     const CONSTANTS: [&str; 3] =
@@ -177,7 +178,7 @@ fn random_numbers_come_from_one_place() {
     assert_eq!(homes, known);
 }
 
-/// Words of another crate may change with its next release; the types of its errors do not without a word.
+/// Another crate may reword its errors in any release; a change of its error types breaks the build.
 #[test]
 fn no_code_reads_the_words_of_another_crates_error() {
     let mut read = Vec::new();
@@ -192,7 +193,7 @@ fn no_code_reads_the_words_of_another_crates_error() {
     assert!(read.is_empty(), "{read:#?}");
 }
 
-/// Lines of code that look into a text made of an error.
+/// Numbers of the lines that search in the text of an error.
 fn words_read(code: &str) -> impl Iterator<Item = usize> {
     let said = |line: &str| {
         ["message()", "error.to_string()", "e.to_string()", "source.to_string()"]
@@ -212,7 +213,7 @@ fn words_read(code: &str) -> impl Iterator<Item = usize> {
         ];
         into.iter().any(|look| line.contains(look))
     };
-    // A name that holds such a text, and every line that looks into it.
+    // Variables that hold such a text; then the lines that search in them.
     let named = |line: &str| Some(line.trim().strip_prefix("let ")?.split([' ', ':']).next()?.to_owned());
     let held: Vec<String> = code.lines().filter(|line| said(line)).filter_map(named).collect();
     let wrong = move |line: &str| {
@@ -232,7 +233,7 @@ fn the_test_sees_words_that_are_read() {
     assert!(lines("let text = error.to_string();\nprint(&text);").is_empty());
 }
 
-/// A finding's code that is branched on is a constant, which the compiler checks in both places.
+/// A finding's code in a condition is a constant, so that the compiler checks it wherever it is used.
 #[test]
 fn no_code_of_a_finding_is_compared_as_text() {
     let mut compared = Vec::new();

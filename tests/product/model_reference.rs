@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 use std::path::Path;
 use vibroimpact::model::{Excitation, Impulses, Orbit, Rig, Sine, orbits_of};
 
-/// One row of a reference file.
+/// One row of a reference file, in SI units; `fixtures/reference/README.md` describes the columns.
 struct Row {
     nu: f64,
     omega: f64,
@@ -41,8 +41,8 @@ fn rows(text: &str) -> Vec<Row> {
     text.lines().skip(1).map(row).collect()
 }
 
-/// How the equation amplifies roundings of its coefficients, large at a fold: size of its roots over the
-/// distance of the nearest other.
+/// Condition number of a root: largest |J| over the distance to the nearest other root, plus 1. It is large
+/// near a fold, where two roots merge.
 fn condition(all: &[Orbit], orbit: &Orbit) -> f64 {
     let nearest = all
         .iter()
@@ -93,7 +93,8 @@ fn check_file(name: &str, excitation: &Excitation, rig: &Rig) {
     assert!(borders * 50 < rows.len(), "{name}: {borders} verdicts on a border");
 }
 
-/// Verdicts must agree except on a border; returns 1 where this row is on one.
+/// Checks existence, stability and admissibility. Returns 1 for a row on a border, where verdicts may
+/// differ: |spectral radius − 1| < 1e-9, or an overlap below 0.1 µm.
 fn check_verdicts(row: &Row, orbit: &Orbit, place: &str) -> usize {
     let v = &orbit.validity;
     assert_eq!(v.exists, row.impulse > 0.0, "{place}");
@@ -102,8 +103,9 @@ fn check_verdicts(row: &Row, orbit: &Orbit, place: &str) -> usize {
     if row.radius.is_nan() {
         assert!(radius.is_nan() && v.stable == Some(false) && !row.stable, "{place}: radius {radius}");
     } else {
-        // Elements of the monodromy grow like accelerations over the approach speed; a double multiplier
-        // feels the root of that rounding.
+        // Elements of the monodromy matrix scale with acceleration over approach velocity, and so do their
+        // roundings; 40 is the assumed acceleration in m/s². A double multiplier is off by the square root
+        // of it.
         let size = 1.0 + 40.0 / orbit.approach_velocity;
         let simple = (radius - row.radius).abs() < 1e-10 * size;
         let double = (radius - row.radius).abs() < (1e-15 * size).sqrt() * 10.0;
@@ -114,7 +116,7 @@ fn check_verdicts(row: &Row, orbit: &Orbit, place: &str) -> usize {
             assert_eq!(v.stable, Some(row.stable), "{place}");
         }
     }
-    // The reference lets an overlap of 0.1 µm pass; here none passes.
+    // The reference accepts an overlap of up to 0.1 µm; this library accepts none.
     if row.impulse > 0.0 && row.min_gap < 0.0 && row.min_gap > -1e-7 {
         border = 1;
     } else {
@@ -123,11 +125,12 @@ fn check_verdicts(row: &Row, orbit: &Orbit, place: &str) -> usize {
     border
 }
 
-/// Sampled quantities: exact ones here reach at least as far, and no further than a sample's distance allows.
+/// The reference samples each period 8000 times. Exact extremes exceed sampled ones, at most by what lies
+/// between two samples.
 fn check_samples(row: &Row, orbit: &Orbit, place: &str) {
     let step = orbit.period() / SAMPLES;
-    // Slopes at the kinks of impact and impulse, and curvature elsewhere (harmonics of no more than ω and the
-    // natural frequencies).
+    // Missed between samples: velocity × step at velocity jumps, acceleration × step² elsewhere. The
+    // acceleration is at most max(ω, 40 rad/s)² × amplitude, since no natural frequency exceeds 40 rad/s.
     let mut slope = [0.0_f64; 2];
     for i in 0..=2000 {
         let state = orbit.state(orbit.period() * f64::from(i) / 2000.0);

@@ -1,10 +1,11 @@
-//! Measurement files of other people, which are no part of the project.
+//! Measurement files of other people, which are not part of the project.
 
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
-/// The folder of this name under `../shared/data`. Where it is absent a line says so past the capture of the
-/// test harness, which would swallow `eprintln!`: `.ci/run` counts these lines.
+/// The folder of this name under `../shared/data`. If it is absent, prints a line for `.ci/run`, which
+/// counts skipped tests. The line bypasses the capture of the test harness, which would swallow
+/// `eprintln!`.
 pub fn folder(name: &str) -> Option<PathBuf> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data").join(name);
     if path.is_dir() {

@@ -1,4 +1,4 @@
-//! Reading: files of other people's instruments, and what can be odd about a file.
+//! Reading of files: those of other people's instruments, and files with unusual content.
 
 mod ascii_rows;
 mod ascii_statements;
@@ -14,7 +14,7 @@ mod uff_meaning;
 mod uff_set;
 mod uff_text;
 
-/// What a person reads of findings.
+/// The sentences that a user reads for these findings.
 fn sentences(findings: &[vibroimpact::record::Finding]) -> Vec<String> {
     use vibroimpact::report::words;
     let about = findings.iter().map(|finding| (String::new(), finding.clone()));

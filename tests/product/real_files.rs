@@ -26,7 +26,7 @@ fn results(campaign: &str) -> (Value, tempfile::TempDir) {
     (Value::Object(found.answer.result), folder)
 }
 
-/// The modes of a function.
+/// Modes found in FRF number `index`.
 fn modes(results: &Value, index: usize) -> &Vec<Value> {
     results["frf"][index]["modes"].as_array().unwrap()
 }
@@ -46,18 +46,18 @@ fn resonances_of_a_hammer_test() {
     let file = data.join("uff/dataset58_FRF.unv");
     let (found, _folder) =
         results(&format!("name = \"hammer test\"\n[[frf]]\nfile = {:?}\n", file.display().to_string()));
-    // Lines are 0.5 Hz apart and the stated figures are lines: interpolated peaks lie within one line.
+    // Stated resonances lie on spectral lines, 0.5 Hz apart. Interpolated peaks lie within one line of them.
     for f in [62.0, 81.5, 96.5, 125.0, 140.5, 175.0] {
         assert!(near(&found, 0, f, 0.5), "{f}: {:?}", found["frf"][0]["findings"]);
     }
-    // Beside the peak at 41 Hz lies a dip that no single mode explains: it is named, and no mode is made of
-    // it.
+    // Beside the peak at 41 Hz lies a dip that no single mode explains. A finding reports the peak, and no
+    // mode is fitted there.
     let warnings = found["warnings"].to_string();
     let mut findings = found["findings"].as_array().unwrap().iter();
     let unexplained =
         findings.any(|f| f["code"] == "modal-peak-unsupported" && f["numbers"]["frequency"] == 41.0);
     assert!(unexplained && !near(&found, 0, 41.0, 3.0), "{warnings}");
-    // Label and unit of that file contradict each other, and the report says so.
+    // Label and unit of that file contradict each other, and a warning reports it.
     assert!(warnings.contains("eceptance"), "{warnings}");
 }
 
@@ -79,15 +79,15 @@ fn resonances_of_measured_accelerances() {
     }
 }
 
-/// Where a peak has enough lines, circle and half-power agree with the fit: the frequency within a line, the
-/// damping within a fifth.
+/// Where a peak has enough lines, circle fit and half-power method agree with the fit: the frequency within
+/// a line (0.5 Hz), the damping within 20 %.
 #[test]
 fn three_methods_agree_on_measured_modes() {
     let Some(data) = data() else { return };
     let file = data.join("uff/dataset58_FRF.unv").display().to_string();
     let (found, _folder) = results(&format!("[[frf]]\nfile = {file:?}\n"));
     let mut compared = 0;
-    // The named resonances below 200 Hz that stand alone; above it the modes overlap.
+    // Well separated resonances below 200 Hz; above, the modes overlap.
     let named = [62.0, 81.5, 96.5, 125.0, 140.5, 175.0];
     let modes = modes(&found, 0).iter();
     for mode in modes.filter(|m| named.iter().any(|f| (number(&m["frequency"]["value"]) - f).abs() < 1.0)) {
@@ -97,8 +97,8 @@ fn three_methods_agree_on_measured_modes() {
         };
         for method in ["circle fit", "half power"] {
             let Some(by) = of(method) else { continue };
-            // The peak at 81.5 Hz has no uncertainty, since two modes explain it better; the methods agree on
-            // its one.
+            // ζ of the 81.5 Hz mode has no uncertainty, since two modes fit that peak better. It counts as
+            // 0, so the mode is compared all the same. Modes with ζ uncertain by more than 10 % are skipped.
             let (f, zeta) = (number(&mode["frequency"]["value"]), number(&mode["zeta"]["value"]));
             let std = mode["zeta"]["std"].as_f64().unwrap_or(0.0);
             if std > 0.1 * zeta {
@@ -114,7 +114,8 @@ fn three_methods_agree_on_measured_modes() {
     assert!(compared >= 8, "{compared}");
 }
 
-/// Every file is read or refused with a sentence, and a survey says of each record what reading it says.
+/// Every file can be read, and the survey gives each record the same length and largest value as reading
+/// does.
 #[test]
 fn every_file_is_listed_as_it_is_read() {
     let Some(data) = data() else { return };
@@ -132,7 +133,7 @@ fn every_file_is_listed_as_it_is_read() {
                 assert_eq!(header.n, record.len(), "{path:?}");
                 let max = record.extremes().largest().map(|m| m.1);
                 let same = match (header.max_abs, max) {
-                    // A complex magnitude may be scaled before or after it is taken.
+                    // Scaling before or after taking the modulus differs by a few roundings.
                     (Some(a), Some(b)) => (a - b).abs() <= 4.0 * f64::EPSILON * b,
                     (a, b) => a == b,
                 };

@@ -19,7 +19,7 @@ fn texts(drawing: &Drawing) -> Vec<String> {
     texts.filter_map(|n| n.text().map(str::to_owned)).collect()
 }
 
-/// Every number in the attributes that place things, to see that none is missing or out of the page.
+/// Checks that the drawing contains no NaN and no infinite number.
 fn places_are_finite(drawing: &Drawing) {
     let svg = drawing.svg();
     assert!(!svg.contains("NaN") && !svg.contains("inf"), "{svg}");
@@ -42,7 +42,7 @@ fn spectra(rows: usize, columns: usize) -> (Vec<f64>, Vec<f64>, Array2<f64>) {
     (frequency, excitation, magnitude)
 }
 
-/// One figure with everything in it.
+/// A figure with every kind of series and panel.
 fn everything() -> Figure {
     let (x, y) = axes();
     let at = [3.0, 4.0, 5.0, 6.0];
@@ -106,10 +106,10 @@ fn figures_drawn_at_once_are_those_drawn_alone() {
 fn a_picture_has_the_size_in_print_and_its_resolution() {
     let png = one(Plot::new(axes().0, axes().1)).png(300.0).unwrap();
     let word = |at: usize| u32::from_be_bytes(png[at..at + 4].try_into().unwrap());
-    // Width and height follow the signature, a length and the name IHDR: 86 and 62 mm of 25.4 to the inch.
+    // Width and height in pixels follow the signature, a length and the name IHDR: 86 mm × 62 mm at 300 dpi.
     assert_eq!((word(16), word(20)), (1016, 732));
     let phys = png.windows(4).position(|w| w == b"pHYs").unwrap();
-    // 300 dots per inch are 11 811.02 a metre.
+    // 300 dots per inch are 11 811.02 dots per metre.
     assert_eq!((word(phys + 4), word(phys + 8), png[phys + 12]), (11_811, 11_811, 1));
 }
 
@@ -137,7 +137,7 @@ fn text_and_maps_reach_the_pixels() {
     assert!(named > nothing + 0.002, "{named} {nothing}");
     let (frequency, excitation, magnitude) = spectra(9, 40);
     let map = Heatmap::new(&frequency, &excitation, &magnitude, AxisSpec::new("Level", "m")).unwrap();
-    // The frame takes most of the page, and the map all of the frame.
+    // The frame fills most of the page, and the map all of the frame.
     assert!(ink(&one(Plot::new(x, AxisSpec::new("Excitation", "Hz")).heatmap(map))) > 0.4);
 }
 
@@ -189,7 +189,7 @@ fn one_value_and_equal_values_are_drawn() {
         let drawing = one(Plot::new(fx, fy).with(Series::points("", x, y)));
         let texts = texts(&drawing);
         assert!(!texts.contains(&"no data".to_owned()), "{texts:?}");
-        // Two numbers at least on each axis, and its name.
+        // At least two numbers on each axis, and the names of the axes.
         assert!(texts.len() >= 6, "{texts:?}");
         places_are_finite(&drawing);
     }
@@ -197,7 +197,7 @@ fn one_value_and_equal_values_are_drawn() {
 
 #[test]
 fn a_legend_covers_no_data_even_where_there_is_no_free_corner() {
-    // A lattice of points fills the frame, so no place inside is free: the names must stand outside the
+    // A lattice of points fills the frame, so the legend has no free place inside and must lie outside the
     // outermost points.
     let lattice: Vec<(f64, f64)> = (0..400).map(|i| (f64::from(i % 20), f64::from(i / 20))).collect();
     let (x, y): (Vec<f64>, Vec<f64>) = lattice.into_iter().unzip();
@@ -206,7 +206,7 @@ fn a_legend_covers_no_data_even_where_there_is_no_free_corner() {
     let document = roxmltree::Document::parse(&svg).unwrap();
     let name = document.descendants().find(|n| n.text() == Some("name")).unwrap();
     let at: f64 = name.attribute("y").unwrap().parse().unwrap();
-    // The frame is the one closed outline of five points, written as its corner and four sides.
+    // The frame is the outline with a stroke width of 0.75, written as its corner and four sides.
     let frame = document.descendants().find(|n| n.attribute("stroke-width") == Some(".75")).unwrap();
     let corner = frame.attribute("d").unwrap().trim_start_matches('M').split(['l', ' ']).nth(1).unwrap();
     assert!(at < corner.parse().unwrap(), "{at} {corner}");
@@ -227,7 +227,7 @@ fn a_folder_of_results_is_written_whole() {
     assert_eq!(std::fs::read_to_string(folder.join("report.html")).unwrap(), page.html());
 }
 
-/// Numbers as they come from broken files as well as from sound ones.
+/// Numbers as in sound and in broken files.
 fn number() -> impl Strategy<Value = f64> {
     prop_oneof![
         4 => -10.0..10.0f64,
@@ -284,8 +284,7 @@ fn panel() -> impl Strategy<Value = Panel> {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(200))]
 
-    /// Nothing that is drawn depends on luck with the data: any numbers, names and sizes give a well-formed
-    /// picture.
+    /// Any numbers, names and sizes give a well-formed picture.
     #[test]
     fn any_figure_is_drawn(
         panels in prop::collection::vec(panel(), 0..4),

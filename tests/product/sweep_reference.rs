@@ -1,4 +1,5 @@
-//! Every case of the reference sweeps in both modes: the scripts' own output, and the truth.
+//! Every case of the reference sweeps: `legacy` against the output of the scripts, the default against the
+//! truth.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -41,7 +42,8 @@ fn the_default_is_right_on_every_point() {
             let relative = point.amplitude.value / truth[1] - 1.0;
             assert!(relative.abs() < 0.002, "{case} {i}: amplitude off by {relative}");
             if let Some(std) = point.amplitude.std {
-                // The simulated noise is white; five standard deviations, and the printed digits.
+                // The simulated noise is white: five standard uncertainties, plus the rounding of the
+                // printed digits.
                 let error = (point.amplitude.value - truth[1]).abs();
                 assert!(error < 5.0 * std + 1e-6 * truth[1], "{case} {i}: {error} against {std}");
             }
@@ -90,7 +92,7 @@ fn legacy_gives_what_the_scripts_gave() {
             compared += 1;
         }
     }
-    // nominal, dcforce, fd03125 and lastharm printed something in all three scripts.
+    // In the cases nominal, dcforce, fd03125 and lastharm all three scripts printed results.
     assert_eq!(compared, 12);
 }
 

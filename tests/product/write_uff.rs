@@ -1,4 +1,4 @@
-//! What is written as data set 58 or 58b is read again as it was, as far as the format has room for it.
+//! Records written as data set 58 or 58b are read back unchanged, as far as the format can hold them.
 
 use crate::others_files;
 use num_complex::Complex64;
@@ -30,10 +30,10 @@ fn again(records: &[Record], storage: Storage) -> Vec<Record> {
     recording.records
 }
 
-/// Largest relative error of a value that is stored so.
+/// Largest relative rounding error of a value in this storage.
 fn rounding(storage: Storage) -> f64 {
     match (storage.binary, storage.precision) {
-        // Half a unit of the sixth or thirteenth digit, where the first digit is 1.
+        // Half a unit of the last of six or thirteen digits, relative to a value whose first digit is 1.
         (false, Precision::Single) => 0.5e-5,
         (false, Precision::Double) => 0.5e-12,
         // Half a unit in the last place.
@@ -63,7 +63,7 @@ fn scaling(record: &Record) -> Option<(Scaling, Option<Window>, Option<f64>)> {
     if let Record::Spectrum(s) = record { Some((s.scaling, s.window, s.enbw)) } else { None }
 }
 
-/// Checks that `after` is `before`, as far as `storage` keeps it.
+/// Checks that `after` equals `before`, as far as `storage` can hold it.
 fn same(before: &Record, after: &Record, storage: Storage) -> Result<(), TestCaseError> {
     prop_assert_eq!((before.kind(), before.len()), (after.kind(), after.len()));
     prop_assert_eq!(before.is_complex(), after.is_complex());
@@ -103,7 +103,7 @@ fn name() -> impl Strategy<Value = String> {
     .prop_filter("a name that stands for nothing", |name| !name.eq_ignore_ascii_case("none"))
 }
 
-/// Numbers that single precision holds too.
+/// Numbers within the range of single precision.
 fn number() -> impl Strategy<Value = f64> {
     prop_oneof![
         8 => (-1e6f64..1e6, -20i32..20).prop_map(|(m, e)| m * 10f64.powi(e)),
@@ -112,14 +112,13 @@ fn number() -> impl Strategy<Value = f64> {
     ]
 }
 
-/// Steps of two and one times a number of two digits in turn: few enough digits for text and single
-/// precision.
+/// Abscissa whose steps are 2 and 1 times `first` in turn: few enough digits for text and single precision.
 fn uneven(first: u32, n: usize) -> Vec<f64> {
     (0..n).map(|i| f64::from(first) * (i + i.div_ceil(2)) as f64).collect()
 }
 
 fn axis(kind: AxisKind, n: usize) -> impl Strategy<Value = Axis> {
-    // A start of few digits: others do not survive beside a small step, and are refused.
+    // A start with few digits: others cannot be stored beside a small step and are refused.
     let even = (-9999i32..9999, 1e-6f64..1e3).prop_map(move |(start, step)| Grid::Even {
         start: f64::from(start) / 1e4,
         step,
@@ -201,7 +200,7 @@ proptest! {
             let after = again(&records, storage);
             prop_assert_eq!(records.len(), after.len());
             for (a, b) in records.iter().zip(&after) {
-                // Channels of one name are numbered when they are read.
+                // Reading numbers the channels that have the same name.
                 let mut b = b.clone();
                 b.meta_mut().name.clone_from(&a.meta().name);
                 same(a, &b, storage)?;
@@ -212,7 +211,7 @@ proptest! {
     /// Any text as a name: it may be shortened, but never breaks the file.
     #[test]
     fn no_name_breaks_the_file(name in any::<String>(), unit in any::<String>()) {
-        // A text that no unit begins with: a unit that happens to be one is converted when it is read.
+        // No unit begins with `?`. Values in a known unit would be converted when read.
         let meta = Meta { unit: Unit::opaque(&format!("?{unit}")), ..Meta::new(name, Unit::none()) };
         let record = Record::Trace(Trace { meta, axis: Axis::time(0.0, 0.5, 2), values: vec![-1.0, 2.0] });
         for storage in STORAGES {
@@ -222,7 +221,7 @@ proptest! {
     }
 }
 
-/// Bits of a double survive binary storage, whatever they are.
+/// Binary storage in double precision keeps every bit.
 #[test]
 fn extreme_doubles_keep_their_bits() {
     let values = vec![f64::MIN_POSITIVE, f64::MAX, -0.0, 5e-324, 1.0 + f64::EPSILON, 0.1];
@@ -232,14 +231,14 @@ fn extreme_doubles_keep_their_bits() {
     let after = again(std::slice::from_ref(&record), STORAGES[3]);
     let bits = |values: Vec<Complex64>| values.iter().map(|v| v.re.to_bits()).collect::<Vec<_>>();
     assert_eq!(bits(numbers(&after[0])), bits(numbers(&record)));
-    // Text of three-digit exponents: thirteen digits, and no number is lost.
+    // As text, thirteen digits are kept even with exponents of three digits.
     for (a, b) in numbers(&record).iter().zip(numbers(&again(std::slice::from_ref(&record), STORAGES[1])[0]))
     {
         assert!(near(a.re, b.re, 0.5e-12) || a.re < 1e-300, "{a} became {b}");
     }
 }
 
-/// Numbers and lines that lie across the end of the reader's buffer.
+/// Numbers and lines that cross the end of the reader's buffer.
 #[test]
 fn long_records_are_read_across_buffers() {
     let n = 60_000;
@@ -326,7 +325,7 @@ fn files_of_instruments_survive_a_second_writing() {
             continue; // nodes and trace lines only
         }
         for storage in STORAGES {
-            // An uneven abscissa may need more digits than there are.
+            // An uneven abscissa may need more digits than the format has.
             if let Err(error) = write_uff58(&before, &mut Vec::new(), storage) {
                 assert!(error.to_string().contains("has too few digits"), "{error}");
                 refused += 1;

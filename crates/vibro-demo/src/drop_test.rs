@@ -27,7 +27,7 @@ const GRAVITY: f64 = 9.806_65;
 /// Sampling rate of the accelerometer in Hz: low, so that the files stay small.
 const RATE: f64 = 5000.0;
 
-/// Times in s and speeds in m/s of the impacts of a ball that falls from rest at time 0.
+/// Times in s and speeds in m/s of the impacts of a ball that falls from [`HEIGHT`] at time 0.
 fn bounces(restitution: f64, impacts: usize) -> Vec<(f64, f64)> {
     let mut speed = (2.0 * GRAVITY * HEIGHT).sqrt();
     let mut time = speed / GRAVITY;

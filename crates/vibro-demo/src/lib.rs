@@ -1,6 +1,6 @@
-//! Example campaigns with their recordings. They are the same every time: the noise has fixed seeds and
-//! nothing depends on the clock. (At one step of the sweeps the rig moves irregularly: there the last bit of
-//! a sine, hence the compiler, changes the recording.)
+//! Example campaigns with their recordings. They are the same every time: the noise has fixed seeds, and
+//! nothing depends on the clock. Exception: at one step of the sweeps the rig moves irregularly, so that
+//! the rounding of `sin`, hence the compiler, changes the recording.
 //!
 //! ```
 //! let demo = vibro_demo::DEMOS.iter().find(|demo| demo.name == "bench").unwrap();
@@ -21,7 +21,7 @@ mod two_mass_rig;
 
 use vibro_record::Result;
 
-/// Takes a file: its path in the folder of the example, and its bytes.
+/// Receives a file: its path in the folder of the example, and its bytes.
 pub type Sink<'a> = dyn FnMut(&str, &[u8]) -> Result<()> + 'a;
 
 /// An example campaign.
@@ -64,7 +64,8 @@ pub const DEMOS: [Demo; 4] = [
 ];
 
 impl Demo {
-    /// Writes its files, the campaign first, so that an obstacle shows before anything is computed.
+    /// Writes the files of the example. The campaign comes first, so that an obstacle shows before anything
+    /// is computed.
     ///
     /// # Errors
     /// Those of `sink`.

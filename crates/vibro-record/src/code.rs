@@ -2,7 +2,7 @@
 
 /// Samples are missing in a record.
 pub const SAMPLES_LOST: &str = "samples-lost";
-/// Times fit an even step, and as well a shorter one with lost samples.
+/// Times fit an even step, but also a shorter step with lost samples.
 pub const AXIS_ROUNDED_OR_LOST: &str = "axis-rounded-or-lost";
 /// Times or frequencies fall.
 pub const AXIS_BACKWARDS: &str = "axis-backwards";

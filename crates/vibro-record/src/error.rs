@@ -152,8 +152,8 @@ impl Error {
         self.0.code
     }
 
-    /// The system refused `action` on `path`.
-    // By value, as `map_err` hands it out.
+    /// The operating system refused `action` on `path`.
+    // By value, since `map_err` passes an owned error.
     #[allow(clippy::needless_pass_by_value)]
     pub fn io(action: &str, path: impl AsRef<Path>, source: std::io::Error) -> Self {
         let path = path.as_ref();
@@ -281,7 +281,8 @@ impl Error {
         self
     }
 
-    /// Names the cell of a workbook in place of line and column, from which `cell` gives it.
+    /// Names the cell of a workbook in place of line and column; `cell` makes the name of the cell from
+    /// them.
     pub fn in_cell(mut self, cell: impl FnOnce(u64, u64) -> Option<String>) -> Self {
         if let Some(Place { line: Some(line), column: Some(column), cell: named, .. }) =
             self.fault().map(|fault| &mut fault.place)
@@ -348,7 +349,7 @@ impl Error {
     }
 }
 
-/// A text between two others; empty where the text is.
+/// `text` between `before` and `after`; empty if `text` is empty.
 fn part(before: &str, text: &str, after: &str) -> String {
     if text.is_empty() { String::new() } else { [before, text, after].concat() }
 }

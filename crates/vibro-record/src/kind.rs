@@ -4,7 +4,7 @@
 use crate::nearest;
 use std::fmt;
 
-/// Kind of a value that a person types. As an error it says that the value typed is of another kind.
+/// Kind of a value that a person types. As an error it means that the typed value is of another kind.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Kind {
     /// A number.
@@ -99,7 +99,7 @@ pub fn number(text: &str) -> Result<f64, Kind> {
 /// A whole number from `LEAST` to `MOST`.
 ///
 /// # Errors
-/// If it is no whole number, or outside.
+/// If the text is no whole number, or the number is out of range.
 pub fn whole<T: TryFrom<i64>, const LEAST: i64, const MOST: i64>(text: &str) -> Result<T, Kind> {
     let number = text.parse().ok().filter(|number| (LEAST..=MOST).contains(number));
     number.and_then(|number| T::try_from(number).ok()).ok_or(Kind::Whole(LEAST, MOST))

@@ -98,7 +98,7 @@ mod tests {
     fn a_calibration_leaves_its_step_and_takes_only_its_doubt() {
         let mut t = trace();
         t.calibrate(-40.0, &Unit::parse("mm/s").unwrap()).unwrap();
-        // 0.5 · 40 mm/s = 20 mm/s; a product with two roundings.
+        // 0.5 · 40 mm/s = 20 mm/s; the product has two rounding errors.
         assert!((t.values[0] + 0.02).abs() < 1e-17);
         assert!(t.values[1].is_nan());
         assert_eq!((t.meta.quantity, t.meta.unit.symbol()), (Quantity::Velocity, "m/s"));

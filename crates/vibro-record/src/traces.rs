@@ -4,7 +4,7 @@ use crate::units::notation;
 use crate::{Error, Finding, Meta, Place, Result, Trace, code, nearest, units};
 use std::path::{Path, PathBuf};
 
-/// Samples of each channel in a block of traces that are in memory: larger blocks take more memory, smaller
+/// Number of samples per channel in a block, for traces in memory: larger blocks take more memory, smaller
 /// ones more calls.
 const BLOCK: usize = 16 * 1024;
 
@@ -21,14 +21,14 @@ pub trait Stream: Send {
     /// If the source cannot be read, or a sample is missing and that is not allowed.
     fn append(&mut self, block: &mut Vec<Vec<f64>>) -> Result<usize>;
 
-    /// From here on hands out only these channels, in this order; the indices count the present channels.
+    /// From now on returns only these channels, in this order; the indices refer to the present channels.
     fn keep(&mut self, channels: &[usize]);
 
     /// Adds findings that depend on the values to their channels, after all samples have been read.
     fn finish(&self, channels: &mut [Meta]);
 }
 
-/// Time traces of one sampling rate and length, handed out block by block in SI units.
+/// Time traces of one sampling rate and length, returned block by block in SI units.
 ///
 /// ```
 /// use vibro_record::{Axis, Meta, Trace, Traces, units::Unit};
@@ -53,7 +53,7 @@ pub struct Traces {
     /// Calibration factor of each channel; values from the stream are multiplied by it.
     factors: Vec<f64>,
     stream: Box<dyn Stream>,
-    /// Samples that were looked at and are still to be handed out.
+    /// Samples that [`Traces::peek`] has read and that are still to be returned.
     ahead: Vec<Vec<f64>>,
 }
 
@@ -157,7 +157,7 @@ impl Traces {
         self.start
     }
 
-    /// Samples of each channel.
+    /// Number of samples in each channel.
     pub fn frames(&self) -> usize {
         self.frames
     }
@@ -198,8 +198,8 @@ impl Traces {
         Ok(frames)
     }
 
-    /// The next samples of each channel, at least `frames` or all: [`Traces::append`] still hands them out.
-    /// Channels are chosen and calibrated before.
+    /// The next samples of each channel, at least `frames` or all that are left; [`Traces::append`] still
+    /// returns them. Channels must be chosen and calibrated before.
     ///
     /// # Errors
     /// As [`Traces::next_block`].
@@ -223,14 +223,14 @@ impl Traces {
         Ok(frames)
     }
 
-    /// From here on hands out only these channels, in this order; indices that do not exist are ignored.
+    /// From now on returns only these channels, in this order; indices that do not exist are ignored.
     pub fn keep(&mut self, channels: &[usize]) {
         self.stream.keep(channels);
         self.factors = picked(&self.factors, channels);
         self.channels = picked(&self.channels, channels);
     }
 
-    /// Multiplies a channel by a factor from here on.
+    /// Multiplies a channel by a factor from now on.
     ///
     /// # Errors
     /// If there is no such channel, the factor is 0 or not finite, or the channel is in fractions of full

@@ -1,6 +1,6 @@
-//! Answers what a page would ask, for the comparison with it: each line of standard input has the 16 numbers
-//! of `vibro_whatif`, behind `response` or `motion`; each line of standard output has the bits of the
-//! answer's numbers.
+//! Computes the answers that the report page requests, to compare both. A line of standard input is
+//! `response` or `motion` and the 16 numbers of the page's input. A line of standard output has the numbers
+//! of the answer, with all digits.
 
 use vibro_model::Rig;
 use vibro_whatif::Scene;

@@ -1,5 +1,5 @@
-//! Predictions for a rig with other parameters: the model crate with numbers as input and output, for the
-//! report page.
+//! Predictions for a rig with other parameters, for the report page: the model crate with plain numbers as
+//! input and output.
 //!
 //! ```
 //! use vibro_whatif::Scene;
@@ -23,7 +23,7 @@ pub struct Scene {
     pub rig: Rig,
     /// Force amplitude in N.
     pub force: f64,
-    /// Stiffness of the contact in N/m; rigid where it is not finite or not above 0.
+    /// Stiffness of the contact in N/m; the contact is rigid unless this is finite and above 0.
     pub stiffness: f64,
 }
 
@@ -33,7 +33,8 @@ impl Default for Scene {
     }
 }
 
-/// Cycles before a motion from rest is shown: by then a disturbance of the thesis' rig has decayed below e⁻⁸.
+/// Cycles from rest before a motion is shown: by then a disturbance of the thesis' rig has decayed below
+/// e⁻⁸.
 const SETTLE: u32 = 300;
 /// Cycles shown.
 const SHOWN: u32 = 4;
@@ -41,17 +42,18 @@ const SHOWN: u32 = 4;
 const POINTS: u32 = 200;
 
 impl Scene {
-    /// Motions with one impact a cycle, and the one without impacts, at `points` frequencies in Hz. There are
-    /// 8 numbers for each, NaN where there is no motion. First the frequency in Hz and the amplitude in m of
-    /// mass 1 without impacts. Then, for two motions, the larger first: amplitudes in m of both masses at the
-    /// excitation frequency, and 2 for stable, 1 for unstable, 0 for no real motion.
+    /// The motion without impacts and the motions with one impact a cycle, at `points` frequencies from
+    /// `from` to `to` in Hz. There are 8 numbers for each frequency, NaN where there is no motion. First the
+    /// frequency in Hz and the amplitude in m of mass 1 without impacts. Then for two motions, the larger
+    /// first: amplitudes in m of both masses at the excitation frequency, and 2 for stable, 1 for unstable,
+    /// 0 for no real motion.
     pub fn response(&self, from: f64, to: f64, points: usize) -> Vec<f64> {
         let step = (to - from) / points.saturating_sub(1).max(1) as f64;
         (0..points).flat_map(|k| self.at(from + step * k as f64)).collect()
     }
 
-    /// The motion from rest at a frequency in Hz, after the transient: 5 numbers a point, time in s, x₁, x₂
-    /// in m, v₁, v₂ in m/s; empty where it cannot be computed.
+    /// The motion from rest at a frequency in Hz, after the transient: 5 numbers a point, which are time in
+    /// s, x₁ and x₂ in m, v₁ and v₂ in m/s. Empty if it cannot be computed.
     pub fn motion(&self, frequency: f64) -> Vec<f64> {
         self.followed(frequency).unwrap_or_default()
     }
@@ -85,8 +87,8 @@ impl Scene {
         row
     }
 
-    /// Amplitudes in m of both masses for each orbit; with a soft contact `None` where the correction for it
-    /// does not hold.
+    /// Amplitudes in m of both masses for each orbit. With a soft contact `None` for an orbit to which the
+    /// correction for it does not apply.
     fn amplitudes(&self, excitation: &Excitation, found: &Orbits) -> Vec<Option<[f64; 2]>> {
         let Some(stiffness) = self.contact() else {
             return found.orbits.iter().map(|orbit| Some(orbit.fundamental.map(Complex64::norm))).collect();
@@ -142,8 +144,8 @@ mod tests {
         assert_eq!(row[2..5], [x1, x2, 2.0]);
     }
 
-    /// The stable motion is reached from rest: half its peak-to-peak value agrees within the resolution of
-    /// 200 points a cycle for a sine, (π/200)²/2.
+    /// The motion from rest settles on the stable orbit: the peak-to-peak values agree within the resolution
+    /// of 200 points a cycle, which is (π/200)²/2 for a sine.
     #[test]
     fn a_motion_from_rest_comes_to_the_stable_orbit() {
         let scene = Scene::default();

@@ -1,4 +1,4 @@
-//! Trains of bounces in which scatter of R rules the first flights and noise of the onsets the last.
+//! Trains of bounces: the scatter of R dominates the first flights, the noise of the onsets the last.
 
 use super::draws::Draws;
 use super::noise::Noise;
@@ -7,7 +7,9 @@ use vibroimpact::measure::restitution::{Measured, restitution};
 
 const CASES: u64 = 600;
 
-/// Cases of which the intervals hold R, and cases in which a flight was left out. `from` is the first seed.
+/// Number of cases whose interval holds R, and number of cases in which a flight is left out. `from` is the
+/// first seed, `per_bounce` the scatter of R, and `timing` the noise of the onsets in s, which the analysis
+/// knows if `stated`.
 fn held(
     draws: Draws,
     from: u64,
@@ -53,9 +55,9 @@ fn scatter_of_the_first_flights_is_covered_beside_noise_of_the_last(draws: Draws
                 if stated { "" } else { " (not stated)" },
                 100.0 * coverage
             );
-            // Where the noise of the first ratio, √6 σ over 0.2 s, is as large as the scatter of R, flights
-            // do not show how small that is: it errs to the safe side. 600 cases scatter the
-            // coverage by 0.9 %.
+            // The first ratio of flights has a noise of √6 σ over 0.2 s. Where this exceeds half the scatter
+            // of R, the flights cannot show how small the scatter is, and intervals are too wide. The
+            // coverage of 600 cases scatters by 0.9 %.
             let most = if 6f64.sqrt() * timing / 0.2 > 0.5 * per_bounce { 1.0 } else { 0.98 };
             assert!(
                 draws.part(0.92..=most).contains(&coverage),
@@ -65,7 +67,7 @@ fn scatter_of_the_first_flights_is_covered_beside_noise_of_the_last(draws: Draws
     }
 }
 
-/// The short flights scatter the more, without being wrong.
+/// Short flights scatter more without being outliers.
 #[test]
 fn noise_of_the_onsets_makes_no_outliers() {
     for (r, flights, timing) in [(0.62, 10, 3e-4), (0.62, 8, 3e-4), (0.8, 12, 5e-4)] {
@@ -73,14 +75,14 @@ fn noise_of_the_onsets_makes_no_outliers() {
         println!(
             "bounces, R {r}, onsets {timing:e} s, {flights} flights: {CASES} cases, seeds 170000.., a flight left out in {named}"
         );
-        // The quantile leaves out 0.1 % of flights, both sides together: 1.2 % of trains of twelve.
-        // Neighbouring flights share their onsets, and where they are not much longer than the noise
-        // their logarithms are not normal: three times that.
+        // Of all flights 0.1 % lie beyond the quantile (both sides): 1.2 % of trains of twelve. Neighbouring
+        // flights share an onset, and the logarithm of a flight not much longer than the noise is not
+        // normal. Three times that is allowed.
         assert!(named as f64 <= 0.036 * CASES as f64, "{r} {flights}: {named}");
     }
 }
 
-/// Few draws: no truth lies far outside.
+/// 4 cases of each kind, run with every test.
 mod few {
     use super::Draws;
 
@@ -90,7 +92,7 @@ mod few {
     }
 }
 
-/// All draws: the statistic.
+/// All cases, run with `--ignored`.
 mod all {
     use super::Draws;
 

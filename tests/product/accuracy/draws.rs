@@ -1,23 +1,23 @@
-//! How many random cases a test draws: a few in the quick ones, all in the long ones.
+//! Number of random cases in a test: a few in the quick tests, all in the long ones.
 
 use std::ops::RangeInclusive;
 
 /// Cases of a quick test.
 const FEW: u64 = 4;
 
-/// Standard uncertainties that no error of a few cases may exceed: one of two million does.
+/// Limit of the errors of a few cases, in standard uncertainties: one error of two million exceeds it.
 const FAR: f64 = 5.0;
 
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum Draws {
-    /// That no truth lies far outside.
+    /// A few cases: every truth lies within [`FAR`] standard uncertainties.
     Few,
-    /// The statistic.
+    /// All cases: the share of intervals that hold the truth.
     All,
 }
 
 impl Draws {
-    /// How many of so many cases.
+    /// Number of cases to draw of `all`.
     pub fn of(self, all: u64) -> u64 {
         match self {
             Draws::Few => all.min(FEW),
@@ -25,7 +25,7 @@ impl Draws {
         }
     }
 
-    /// Half the width of the interval that is looked at, in standard uncertainties.
+    /// Half-width of the tested intervals in standard uncertainties.
     pub fn reach(self) -> f64 {
         match self {
             Draws::Few => FAR,
@@ -33,7 +33,7 @@ impl Draws {
         }
     }
 
-    /// The part of these intervals that must hold the truth, where it is `all` of the narrow ones.
+    /// Allowed share of these intervals that hold the truth; `all` is the share for 95 % intervals.
     pub fn part(self, all: RangeInclusive<f64>) -> RangeInclusive<f64> {
         match self {
             Draws::Few => 1.0..=1.0,
@@ -42,7 +42,7 @@ impl Draws {
     }
 }
 
-/// Fails where the largest error of a few cases is far outside of its uncertainty.
+/// Fails if the largest error of a few cases exceeds [`FAR`] standard uncertainties.
 pub fn none_far(what: &str, worst: f64) {
     assert!(worst <= FAR, "{what}: {worst} standard uncertainties off");
 }

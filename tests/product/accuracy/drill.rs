@@ -1,4 +1,4 @@
-//! Drill records made up from a machine that is known.
+//! Synthetic drill records of machines whose values are known.
 
 use super::draws::{Draws, none_far};
 use crate::drill::noise::ShiftedNoise;
@@ -7,26 +7,26 @@ use vibroimpact::measure::Estimate;
 use vibroimpact::measure::drill::{AngleOrigin, Beam, Drill, DrillOptions, Edge, Slices, TurnsFrom, drill};
 
 const CASES: u64 = 240;
-/// Whole records: ten parts are checked one by one, each scatters by 0.75 % of this many, and none may be
-/// below 92 % by chance.
+/// Number of records. Eleven quantities are checked separately. The coverage of each scatters by 0.7 % over
+/// 960 records, so none falls below 92 % by chance.
 const RECORDS: u64 = 960;
 const RATE: f64 = 51_200.0;
 const COUNT: usize = 80_000;
 const MASS: f64 = 0.14;
-/// Three times the striker: the rebounds below then ask for a restitution of 0.47 to 0.87; at twice it, for
-/// up to 1.1, which is refused.
+/// Mass of the struck body in kg, three times the striker: the rebounds below are then restitutions of 0.47
+/// to 0.87. Twice the striker would make them up to 1.1, which is refused.
 const STRUCK: f64 = 0.42;
 
-/// How many intervals of ± 1.96 standard uncertainties hold the truth.
+/// Number of intervals of ±1.96 standard uncertainties that hold the truth.
 #[derive(Default)]
 struct Coverage {
     name: &'static str,
     inside: usize,
     all: usize,
-    /// Cases in which nothing is stated.
+    /// Cases without a stated uncertainty.
     open: usize,
     squares: f64,
-    /// The largest deviation in standard uncertainties.
+    /// Largest error in standard uncertainties.
     worst: f64,
 }
 
@@ -54,8 +54,8 @@ impl Coverage {
         100.0 * self.inside as f64 / self.all as f64
     }
 
-    /// Nothing may be stated in one case of fifty: chance makes a few turns look like a slow change of which
-    /// the mean is not known.
+    /// At most one case of fifty may lack an uncertainty: by chance a few turns look like a slow drift,
+    /// whose mean is not known.
     fn mostly_stated(&self) {
         assert!(50 * self.open <= self.all + self.open, "{}: {} of {} open", self.name, self.open, self.all);
     }
@@ -80,7 +80,7 @@ struct Case {
     run: Run,
     dropouts: usize,
     found: Drill,
-    /// Without the reference.
+    /// Result for the same record without its reference.
     own: Drill,
 }
 
@@ -103,7 +103,8 @@ fn case(seed: u64) -> Case {
     let mut noise = ShiftedNoise::new(seed);
     let machine = machine(40.0, &mut noise);
     let run = machine.run(COUNT as f64 / RATE, &mut noise);
-    // A laser from the side: it sees half of the motion, a volt is 2 m/s, and its noise is 5 mm/s.
+    // The laser at 30° to the normal measures half of the velocity, at 2 m/s per volt and with 5 mm/s of
+    // noise.
     let mut volts: Vec<f64> =
         run.velocity(RATE, COUNT).iter().map(|v| 0.25 * v + 0.0025 * noise.normal()).collect();
     let pulse: Vec<f64> = run.pulse(RATE, COUNT).iter().map(|p| 5.0 * p + 0.02 * noise.normal()).collect();
@@ -132,7 +133,8 @@ fn case(seed: u64) -> Case {
     Case { machine, run, dropouts, found, own }
 }
 
-/// Mean stroke of the turns within the record: sums of the true velocity, what a turn gains taken away.
+/// Mean stroke in m of the turns within the record: integral of the true velocity minus its mean over each
+/// turn.
 fn stroke(run: &Run) -> f64 {
     let velocity = run.velocity(RATE, COUNT);
     let whole = |w: &&[f64]| w[0] >= 0.0 && w[1] * RATE < COUNT as f64;
@@ -160,7 +162,8 @@ fn uncertainties_of_a_drill_are_true(draws: Draws) {
     let (mut impacts, mut found_impacts, mut worst) = (0, 0, 0.0f64);
     for seed in 1..=draws.of(RECORDS) {
         let Case { machine, run, dropouts, found, own } = case(seed);
-        // The same impacts but one or two at the ends and beside each that is hidden.
+        // Without the reference, one or two impacts are missing at the ends of the record and beside each
+        // hidden one.
         assert!(own.impacts.len() + 3 * (1 + found.hidden) >= found.impacts.len(), "seed {seed}");
         let both = |d: &Drill| [d.before.clone(), d.after.clone(), d.restitution.clone()].map(Option::unwrap);
         for (a, b) in both(&own).into_iter().zip(both(&found)) {
@@ -178,7 +181,8 @@ fn uncertainties_of_a_drill_are_true(draws: Draws) {
         let square = m.before.powi(2) * (1.0 + m.before_scatter.powi(2));
         let rebound = m.rebound.powi(2) + m.rebound_scatter.powi(2);
         let ratio = MASS / STRUCK;
-        // Turns of some 1000 samples; with the default low-pass, noise, and bridges over drop-outs.
+        // A turn has some 1000 samples. The low-pass, the noise and the bridged drop-outs add to the error
+        // of the stroke.
         let off = found.displacement.stroke.value / stroke(&run) - 1.0;
         worst = worst.max(off.abs());
         assert!(off.abs() < 0.01, "seed {seed}: stroke off by {off}");
@@ -201,7 +205,7 @@ fn uncertainties_of_a_drill_are_true(draws: Draws) {
         for ((coverage, estimate), truth) in means.iter_mut().zip(estimates).zip(truths) {
             coverage.estimate(estimate.as_ref().expect("an estimate"), truth);
         }
-        // A pulse that rises within ten samples of an end of the record may or may not be seen.
+        // A pulse within ten samples of an end of the record may or may not be detected.
         let edges = |margin: f64| {
             let inside = margin / RATE..(COUNT as f64 - margin) / RATE;
             run.edges.iter().filter(|e| inside.contains(*e)).count()
@@ -223,14 +227,14 @@ fn uncertainties_of_a_drill_are_true(draws: Draws) {
         draws.of(RECORDS)
     );
     println!("stroke off by {:.3} % at most", 100.0 * worst);
-    // Faults beside a contact may leave too few samples for a fit: those are not reported.
+    // Faults near a contact may leave too few samples for a fit; such impacts are not reported.
     assert!(found_impacts as f64 > 0.98 * impacts as f64);
     speed.check(draws);
     own_speed.check(draws);
     means.iter().chain(&single).for_each(|c| c.check(draws));
 }
 
-/// Standard normal numbers, each `rho` times the one before and something new.
+/// Standard normal numbers with a correlation of `rho` from one to the next.
 struct Chain {
     rho: f64,
     now: f64,
@@ -247,12 +251,12 @@ impl Chain {
     }
 }
 
-/// Samples in which `turns` whole turns are seen, and one more edge.
+/// Number of samples that hold `turns` whole turns and one more edge.
 fn samples(turns: usize, speed: f64) -> usize {
     ((turns as f64 + 1.2) / speed * RATE) as usize
 }
 
-/// Adds the intervals of a machine whose turns depend on each other.
+/// Adds the estimates of a machine whose values are correlated from turn to turn.
 fn wandering(turns: usize, rho: f64, seed: u64, means: &mut [Coverage; 7]) {
     let mut noise = ShiftedNoise::new(seed);
     let m = machine(80.0, &mut noise);
@@ -292,8 +296,8 @@ fn wandering(turns: usize, rho: f64, seed: u64, means: &mut [Coverage; 7]) {
     }
 }
 
-/// Adds the intervals of stroke and drift of a velocity A sin 2πφ + d, both varying from turn to turn: the
-/// stroke is A T/π, the drift d T.
+/// Adds the estimates of stroke and drift of a velocity A sin 2πφ + d, where A and d vary from turn to
+/// turn. With the duration T of a turn the stroke is A T/π, the drift d T.
 fn strokes(turns: usize, rho: f64, seed: u64, means: &mut [Coverage; 2]) {
     let mut noise = ShiftedNoise::new(seed);
     let (speed, amplitude, offset) =
@@ -325,7 +329,7 @@ fn strokes(turns: usize, rho: f64, seed: u64, means: &mut [Coverage; 2]) {
     means[1].estimate(&found.displacement.drift, offset / speed);
 }
 
-/// Coverage of all means over `turns` turns, each `rho` times the one before, by records of known machines.
+/// Coverage of all means over `turns` turns with a correlation of `rho` from turn to turn.
 fn covered(turns: usize, rho: f64, draws: Draws) {
     let names = ["speed", "before", "after", "phase", "energy", "energy given", "restitution"];
     let mut means = names.map(Coverage::new);
@@ -338,8 +342,8 @@ fn covered(turns: usize, rho: f64, draws: Draws) {
     let each: Vec<String> = all.iter().map(|c| format!("{} {:.1}", c.name, c.part())).collect();
     let part = all.iter().map(|c| c.part()).sum::<f64>() / all.len() as f64;
     println!("{turns} turns, rho {rho}, seeds 1 to {}: {part:.1} % ({})", draws.of(CASES), each.join(", "));
-    // Of 240 intervals the part that holds the truth scatters by 1.4 %, that of nine quantities of which some
-    // depend on each other by about 0.7 %: the limits are for the mean, and none of them may be off by
+    // The coverage of one quantity scatters by 1.4 to 1.6 % over 240 records, the mean over nine partly
+    // dependent quantities by about 0.7 %. The limits apply to this mean. No quantity may deviate from it by
     // four times its own scatter.
     for coverage in &all {
         coverage.mostly_stated();
@@ -366,7 +370,7 @@ fn means_over_turns_that_depend_much(draws: Draws) {
     covered(60, 0.6, draws);
 }
 
-/// Few draws: no truth lies far outside.
+/// 4 cases of each kind, run with every test.
 mod few {
     use super::Draws;
 
@@ -391,7 +395,7 @@ mod few {
     }
 }
 
-/// All draws: the statistic.
+/// All cases, run with `--ignored`.
 mod all {
     use super::Draws;
 

@@ -1,4 +1,4 @@
-//! Hand-arm exposure of handles whose vibration is known.
+//! Hand-arm exposure of handles with known vibration.
 
 use super::draws::Draws;
 use super::score::Score;
@@ -12,8 +12,8 @@ const TONE: f64 = 100.0;
 /// Time between two knots of the amplitude in s.
 const KNOT: f64 = 0.5;
 
-/// Amplitudes 1 + m of a vibration that waxes and wanes: m is straight between knots of variance `scatter`²
-/// that depend on the one before by `rho`.
+/// Values m at the knots of a slowly varying amplitude 1 + m, which is linear between knots. They have the
+/// standard deviation `scatter` and a correlation of `rho` from one knot to the next.
 fn knots(count: usize, scatter: f64, rho: f64, noise: &mut ShiftedNoise) -> Vec<f64> {
     let mut m = scatter * noise.normal();
     (0..count)
@@ -30,13 +30,13 @@ fn uncertainties_of_an_exposure_are_true(draws: Draws) {
     for seed in 1..=draws.of(CASES) {
         let mut noise = ShiftedNoise::new(seed);
         let seconds = 20.0 + 40.0 * noise.uniform();
-        // From axes that know nothing of each other to axes that rise and fall as one.
+        // `common` is 0 for independent axes and 1 for axes that vary together.
         let (common, rho) = (noise.uniform(), 0.5 * noise.uniform());
         let scatter = 0.1 + 0.1 * noise.uniform();
         let count = (seconds / KNOT) as usize + 2;
         let shared = knots(count, scatter, rho, &mut noise);
-        // Mean square of 1 + m: at a share s between two knots m has the variance (1 − s)² + s² + 2s(1 − s)ρ,
-        // on average 2/3 + ρ/3, times scatter².
+        // Mean square of 1 + m. At a share s of the way between two knots, m has the variance (1 − s)² + s²
+        // + 2s(1 − s)ρ times scatter²; the average of the factor is 2/3 + ρ/3.
         let square = 1.0 + scatter * scatter * (2.0 + rho) / 3.0;
         let mut handles = Vec::new();
         let mut truths = Vec::new();
@@ -50,14 +50,14 @@ fn uncertainties_of_an_exposure_are_true(draws: Draws) {
                     let (k, s) = (at as usize, at.fract());
                     let part = |m: &[f64]| (1.0 - s) * m[k] + s * m[k + 1];
                     let m = common.sqrt() * part(&shared) + (1.0 - common).sqrt() * part(&own);
-                    // A period is 64 samples: the phase is exact.
+                    // A period has 64 samples, so the phase is exact.
                     let angle = std::f64::consts::TAU * (i % 64) as f64 / 64.0;
                     offset + amplitude * (1.0 + m) * angle.sin()
                 })
                 .collect();
             handles.push(values);
-            // The digital weighting at 100 Hz is off the formula by at most (π·100/6400)²/3 = 0.08 %, a tenth
-            // of the smallest uncertainty here.
+            // At 100 Hz the digital weighting differs from the formula by at most (π·100/6400)²/3 = 0.08 %,
+            // a tenth of the smallest uncertainty here.
             truths.push(0.5 * amplitude * amplitude * square * weighting(TONE).norm_sqr());
         }
         let handles: Vec<&[f64]> = handles.iter().map(Vec::as_slice).collect();
@@ -75,7 +75,7 @@ fn uncertainties_of_an_exposure_are_true(draws: Draws) {
     daily.covers(draws, "A(8)");
 }
 
-/// Few draws: no truth lies far outside.
+/// 4 cases, run with every test.
 mod few {
     use super::Draws;
 
@@ -85,7 +85,7 @@ mod few {
     }
 }
 
-/// All draws: the statistic.
+/// All cases, run with `--ignored`.
 mod all {
     use super::Draws;
 

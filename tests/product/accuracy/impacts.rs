@@ -1,4 +1,4 @@
-//! Impact times and intervals against their bounds.
+//! Impact times and intervals against their theoretical bounds.
 
 use super::noise::Noise;
 use vibroimpact::measure::impacts::{ImpactsOptions, impacts, interval};
@@ -7,14 +7,14 @@ use vibroimpact::units::Unit;
 
 const CASES: u64 = 400;
 
-/// Cases of which ±1.96 u must hold 92 to 98 %: 400 scatter that part by 1.1 %.
+/// Checks that ±1.96 u hold the truth in 92 to 98 % of cases. The coverage of 400 cases scatters by 1.1 %.
 fn covered(what: &str, inside: usize, total: usize) {
     let coverage = inside as f64 / total as f64;
     println!("{what}: {total} cases, 95 % coverage {:.1} %", 100.0 * coverage);
     assert!((0.92..=0.98).contains(&coverage), "{what}: {coverage}");
 }
 
-/// A contact closes within a millisecond and opens slowly; time in samples at 5 kHz.
+/// Contact pulse over the time in samples at 5 kHz: it rises within a millisecond and decays slowly.
 fn pulse(x: f64) -> f64 {
     let rise = 0.5 * (1.0 + (x / 2.0).tanh());
     rise * (-(x.max(0.0) / 20.0).powi(2)).exp()
@@ -30,8 +30,8 @@ fn trace(noise: &mut Noise, at: &[f64], heights: &[f64], n: usize, sigma: f64) -
     Trace { meta: Meta::new("contact", Unit::parse("V").unwrap()), axis: Axis::time(0.0, 1.0, n), values }
 }
 
-/// Cramér–Rao bound of the time of one pulse of unknown height in white noise: σ² over the information that
-/// is left beside the height, from slopes by central differences.
+/// Cramér–Rao bound, in samples, of the time of one pulse in white noise whose height is also estimated.
+/// Slopes are central differences.
 fn bound(at: f64, height: f64, sigma: f64) -> f64 {
     let (mut tt, mut th, mut hh) = (0.0, 0.0, 0.0);
     for i in -200..400 {
@@ -55,8 +55,8 @@ fn onset_times_reach_their_bound() {
         let heights: Vec<f64> = at.iter().map(|_| 0.8 + 0.4 * noise.uniform()).collect();
         let found = impacts(&trace(&mut noise, &at, &heights, 3200, sigma), &options).unwrap();
         assert_eq!(found.n, at.len(), "seed {seed}: {:?}", found.findings);
-        // An average knows no origin: what is common to a record is taken out, with its one degree of
-        // freedom.
+        // The averaged pulse does not fix the onset, so the mean error of each record is removed, with one
+        // degree of freedom.
         let off: Vec<f64> = found.times.iter().zip(&at).map(|(a, b)| a - b).collect();
         let common = off.iter().sum::<f64>() / off.len() as f64;
         let free = off.len() as f64 / (off.len() - 1) as f64;
@@ -75,12 +75,12 @@ fn onset_times_reach_their_bound() {
         100.0 * inside as f64 / n
     );
     assert!(ratio < 1.3, "{ratio}");
-    // 400 cases scatter the mean by 0.05.
+    // The mean of 400 cases scatters by 0.05.
     assert!(bias.abs() < 0.2, "{bias}");
     assert!((0.92..=0.98).contains(&(inside as f64 / n)), "{inside} of {n}");
 }
 
-/// Times of n impacts with onset noise and jitter, T = 1.
+/// Times of `n` impacts with noise of the onsets and jitter of the intervals, whose mean is 1.
 fn times(noise: &mut Noise, n: usize, onset: f64, jitter: f64) -> Vec<f64> {
     let mut phase = 0.0;
     (0..n)
@@ -94,15 +94,16 @@ fn times(noise: &mut Noise, n: usize, onset: f64, jitter: f64) -> Vec<f64> {
 #[test]
 fn intervals_are_covered_whatever_the_ratio_of_jitter_to_onset_noise() {
     let ratios = [0.0, 0.1, 0.3, 1.0, 3.0, f64::INFINITY];
-    // Where these few intervals cannot tell the ratio from a larger one that would matter, the uncertainty
-    // errs to the safe side.
+    // Ratios up to which so few intervals cannot exclude a larger ratio that would matter; the stated
+    // uncertainty is too large there.
     let safe =
         |n: usize, ratio: f64| ratio <= [(8, 1.0), (20, 0.3), (60, 0.1)].iter().find(|s| s.0 == n).unwrap().1;
     let total = 2000;
     for n in [8, 20, 60] {
         for ratio in ratios {
             let (onset, jitter) = if ratio.is_infinite() { (0.0, 0.02) } else { (0.02, 0.02 * ratio) };
-            // Efficient standard uncertainties of T where one of both scatters alone.
+            // Smallest possible standard uncertainty of the mean interval, where only onsets or only
+            // intervals scatter.
             let count = n as f64;
             let best = if jitter == 0.0 {
                 Some(onset * (12.0 / (count * (count * count - 1.0))).sqrt())
@@ -128,7 +129,7 @@ fn intervals_are_covered_whatever_the_ratio_of_jitter_to_onset_noise() {
                 100.0 * coverage,
                 (stated / total as f64).sqrt() / std
             );
-            // 2000 cases scatter the coverage by 0.5 %.
+            // The coverage of 2000 cases scatters by 0.5 %.
             let most = if safe(n, ratio) { 1.0 } else { 0.98 };
             assert!((0.92..=most).contains(&coverage), "n {n}, s/σ {ratio}: {coverage}");
             assert!(best.is_none() || over < 1.35, "n {n}, s/σ {ratio}: {over}");
@@ -136,7 +137,7 @@ fn intervals_are_covered_whatever_the_ratio_of_jitter_to_onset_noise() {
     }
 }
 
-/// Intervals of a speed that wanders: each depends on the one before by ρ, and scatters by 3 %.
+/// Intervals of a wandering speed: they scatter by 3 %, with a correlation of ρ from one to the next.
 #[test]
 fn intervals_that_depend_on_those_before_are_covered() {
     let n = 61;
@@ -164,8 +165,8 @@ fn intervals_that_depend_on_those_before_are_covered() {
             100.0 * part(inside),
             100.0 * part(told)
         );
-        // 800 cases scatter the coverage by 0.8 %. Sixty intervals hold three times what ρ = 0.9 remembers
-        // (20 intervals): the mean of such a chain is covered in 89 %, and most are said to wander.
+        // The coverage of 800 cases scatters by 0.8 %. At ρ = 0.9 the correlation extends over 20 intervals,
+        // a third of the record: the coverage falls to 89 %, and most records are reported as wandering.
         if rho < 0.9 {
             assert!((0.92..=0.98).contains(&part(inside)), "{rho}: {}", part(inside));
         } else {
@@ -174,7 +175,7 @@ fn intervals_that_depend_on_those_before_are_covered() {
     }
 }
 
-/// Fewer than eight pulses are not averaged: each is timed by its own flank.
+/// Fewer than eight pulses are not averaged; each is timed by its own flank.
 #[test]
 fn onsets_of_single_flanks_are_covered() {
     let (sigma, per_record) = (0.02, 6);
@@ -193,8 +194,8 @@ fn onsets_of_single_flanks_are_covered() {
             found.interval.method
         );
         let u = found.onset_std.unwrap();
-        // Where half a height is passed is the same in all pulses: its mean is taken out, with its degree of
-        // freedom.
+        // Half the height is reached equally late in all pulses, so the mean error of each record is
+        // removed, with one degree of freedom.
         let off: Vec<f64> = found.times.iter().zip(&at).map(|(a, b)| a - b).collect();
         let common = off.iter().sum::<f64>() / f64::from(per_record);
         let free = (f64::from(per_record) / f64::from(per_record - 1)).sqrt();
@@ -209,7 +210,8 @@ fn onsets_of_single_flanks_are_covered() {
     covered("impact onset, single flanks, seeds 30000..", inside, n);
 }
 
-/// The phase of an impact has the uncertainty of its onset; that of the pattern its spread over √n.
+/// The uncertainty of one impact's phase is that of its onset; that of the mean phase is the spread over
+/// √n.
 #[test]
 fn phases_of_impacts_are_covered() {
     let (period, sigma, jitter, per_record) = (150.0, 0.01, 1.5, 20);
@@ -228,16 +230,16 @@ fn phases_of_impacts_are_covered() {
         let u = found.onset_std.unwrap() / period;
         let off = found.phase.iter().zip(&at).map(|(p, t)| p - (t / period).rem_euclid(1.0));
         let off: Vec<f64> = off.map(|o| o - o.round()).collect();
-        // An average knows no origin: what is common to a record is taken out, with its one degree of
-        // freedom.
+        // The averaged pulse does not fix the onset, so the mean error of each record is removed, with one
+        // degree of freedom.
         let common = off.iter().sum::<f64>() / off.len() as f64;
         let free = (off.len() as f64 / (off.len() - 1) as f64).sqrt();
         single += off.iter().filter(|o| ((**o - common) * free).abs() < 1.96 * u).count();
         let place = found.phases[0];
         let off = place.mean - phase;
-        // Twenty impacts, the circular spread is that of a sample: one degree of freedom less.
+        // The circular spread is that of a sample of twenty: one degree of freedom less.
         let u = place.spread / (place.n as f64 - 1.0).sqrt();
-        // Student's quantile of 97.5 % for 19 degrees of freedom.
+        // Student's quantile of 97.5 % with 19 degrees of freedom.
         mean += usize::from((off - off.round()).abs() < 2.093 * u);
     }
     covered("phase of an impact, seeds 40000..", single, CASES as usize * 20);

@@ -1,4 +1,4 @@
-//! Modes of frequency response functions in noise. The functions are written here as sums of modes.
+//! Modes of noisy frequency response functions, which are computed here as sums of modes.
 
 use super::draws::Draws;
 use super::noise::Noise;
@@ -10,8 +10,8 @@ use vibroimpact::units::Quantity;
 
 const CASES: u64 = 250;
 
-/// One mode with a constant and a mass-like residual term, times (iω)^power; `p` is frequency, ζ, and the
-/// real and imaginary parts of the modal constant and of the two residual terms.
+/// Response of one mode with two residual terms, times (iω)^`power`. `p` holds frequency in Hz and ζ, then
+/// real and imaginary parts of the modal constant, the constant residual and the mass-like residual.
 fn one(p: &[f64], f: f64, power: i32) -> Complex64 {
     let (omega, own) = (TAU * f, TAU * p[0]);
     let constant = Complex64::new(p[2], p[3]);
@@ -33,8 +33,8 @@ fn measured(frequency: Vec<f64>, values: Vec<Complex64>, kind: Quantity) -> Meas
     Measured::new(frequency, values, kind)
 }
 
-/// A bandwidth 2ζf of one line, the mode anywhere between two lines; noise equal on all lines, or
-/// proportional to the response.
+/// A mode whose bandwidth 2ζf is one line spacing, anywhere between two lines. The noise is equal on all
+/// lines or proportional to the response.
 fn a_mode_one_line_wide(proportional: bool, from: u64, draws: Draws) {
     let (mut frequency, mut zeta, mut constant) = <(Score, Score, Score)>::default();
     let cases = draws.of(CASES);
@@ -57,8 +57,8 @@ fn a_mode_one_line_wide(proportional: bool, from: u64, draws: Draws) {
             lines.iter().zip(&clean).filter(|(f, _)| near(f)).map(|(_, v)| v.norm()).fold(0.0, f64::max);
         let sigma: Vec<f64> =
             clean.iter().map(|v| if proportional { level * v.norm() } else { level * top }).collect();
-        // The bound is that of the forty lines on either side, real and imaginary parts, beyond which other
-        // modes would be.
+        // The bound uses 40 lines on either side, real and imaginary parts: in a real structure other modes
+        // lie beyond them.
         let part: Vec<(f64, f64)> =
             lines.iter().zip(&sigma).filter(|(f, _)| near(f)).map(|(f, s)| (*f, *s)).collect();
         let spread: Vec<f64> = part.iter().flat_map(|(_, s)| [*s, *s]).collect();
@@ -84,7 +84,7 @@ fn a_mode_one_line_wide(proportional: bool, from: u64, draws: Draws) {
         assert!(mode.frequency.std.is_some(), "seed {seed}: {:?}", found.findings);
         frequency.add(&mode.frequency, f0, bound[0]);
         zeta.add(&mode.zeta, damping, bound[1]);
-        // |A| moves with its real part by cos of its phase; the imaginary part's share is left to the
+        // Upper bound for |A|, from those of both parts; the stated uncertainty itself is tested by its
         // coverage.
         constant.add(&mode.modal_constant, a.hypot(b), bound[2].hypot(bound[3]));
     }
@@ -102,8 +102,8 @@ fn a_mode_one_line_wide_in_proportional_noise(draws: Draws) {
     a_mode_one_line_wide(true, 5000, draws);
 }
 
-/// Several modes found without a band, bandwidths of half a line to some lines: what is printed as
-/// uncertainty covers the error, of noise and of the modes beside.
+/// Four modes found without a band, with bandwidths of half a line to four lines. The stated uncertainty
+/// covers the errors due to noise and to neighbouring modes.
 fn modes_beside_each_other(draws: Draws) {
     let (mut frequency, mut zeta) = <(Score, Score)>::default();
     let cases = draws.of(100);
@@ -150,8 +150,8 @@ fn modes_beside_each_other(draws: Draws) {
     zeta.judge(draws, "modes beside each other, ζ against its own uncertainty", 1.3);
 }
 
-/// A function and its coherence from `averages` blows of a force that scatters by a tenth; noise in the
-/// response 1/30 of its height.
+/// A function and its coherence from `averages` hammer blows. The force scatters by 10 %, and the noise in
+/// the response is 1/30 of the peak.
 fn averaged(averages: usize, frequency: f64, damping: f64, noise: &mut Noise) -> Measured {
     let step = 0.3125;
     let lines: Vec<f64> =
@@ -204,8 +204,8 @@ fn modes_by_the_coherence_of_few_averages(draws: Draws) {
     }
 }
 
-/// Whether the clean function has a peak near `f` that stands a factor of 2.2 over the valleys towards
-/// anything higher: more than the two that is asked of a peak, as noise may cut it.
+/// Whether the clean function has a peak near `f` that is 2.2 times the valleys between it and anything
+/// higher. A peak needs a factor of 2; the rest is a margin for noise.
 fn stands(lines: &[f64], clean: &[Complex64], f: f64) -> bool {
     let height: Vec<f64> = clean.iter().map(|v| v.norm()).collect();
     let near = |i: &usize| (lines[*i] - f).abs() < 0.05 * f;
@@ -217,12 +217,12 @@ fn stands(lines: &[f64], clean: &[Complex64], f: f64) -> bool {
     (lines[peak] - f).abs() < 0.03 * f && height[peak] > 2.2 * valleys
 }
 
-/// Structures of three to six modes, damped by 0.3 to 3 %, of either sign, noise of the variance that the
-/// coherence says (Bendat & Piersol 2010, 9.90, sixteen averages). The band holds them all: all that have a
-/// peak of their own are found and nothing else, and what is printed as uncertainty covers the error.
+/// Structures of three to six modes with ζ of 0.3 to 3 % and modal constants of either sign. The noise has
+/// the variance that follows from the coherence (Bendat & Piersol 2010, 9.90, sixteen averages). Every mode
+/// with a peak of its own is found and no other, and the stated uncertainty covers the error.
 fn structures_in_a_band(with_coherence: bool, banded: bool, from: u64, draws: Draws) {
     let (mut frequency, mut zeta, mut constant) = <(Score, Score, Score)>::default();
-    // One structure has three modes or more, and takes seconds in a build for development.
+    // One structure has three modes or more and takes seconds in a debug build.
     let cases = if draws == Draws::Few { 1 } else { 60 };
     println!("seeds {from} to {}", from + cases);
     let (mut missed, mut false_ones, mut modes) = (0, 0, 0);
@@ -246,7 +246,7 @@ fn structures_in_a_band(with_coherence: bool, banded: bool, from: u64, draws: Dr
             .collect();
         let seen: Vec<bool> = truth.iter().map(|t| stands(&lines, &clean, t[0])).collect();
         let gamma = 1.0 - 10f64.powf(noise.between(-4.0, -1.0));
-        // Real and imaginary parts have half of the variance of a line each.
+        // The real and the imaginary part have half the variance of a line each.
         let relative = ((1.0 - gamma) / (2.0 * 16.0 * gamma)).sqrt();
         let sigma: Vec<f64> = clean.iter().map(|v| relative * v.norm()).collect();
         let mut measured = measured(lines.clone(), noisy(&clean, &sigma, &mut noise), kind);
@@ -299,7 +299,7 @@ fn structures_without_a_band(draws: Draws) {
     structures_in_a_band(true, false, 13_000, draws);
 }
 
-/// Few draws: no truth lies far outside.
+/// 4 cases of each kind (one structure), run with every test.
 mod few {
     use super::Draws;
 
@@ -339,7 +339,7 @@ mod few {
     }
 }
 
-/// All draws: the statistic.
+/// All cases, run with `--ignored`.
 mod all {
     use super::Draws;
 

@@ -1,5 +1,5 @@
-//! Contact pulses in white noise. The pulse is made by formulas written here, and what a low-pass makes of it
-//! by integrating the filter's differential equation: nothing is taken from the code under test.
+//! Contact pulses in white noise. The pulse comes from formulas written here, and its low-pass response
+//! from integrating the filter's differential equation: nothing is taken from the code under test.
 
 use super::draws::Draws;
 use super::noise::Noise;
@@ -10,21 +10,23 @@ use vibroimpact::measure::pulse::{Instrument, LowPass, PulseOptions, pulse, two_
 use vibroimpact::record::{Axis, Meta, Trace};
 use vibroimpact::units::Unit;
 
-/// A coverage of 95 % scatters by 0.9 % over so many.
+/// Over this many cases a coverage of 95 % scatters by 0.9 %.
 const CASES: u64 = 600;
 
-/// Cases whose filter is integrated, which takes longer; about 15 of them lie beyond what the bound can say.
+/// Cases with a low-pass, whose integration takes longer. About 15 of them are skipped, since the bound
+/// does not apply to them.
 const FILTERED: u64 = 220;
 
-/// Deceleration of a contact of spring and damper at time t: −ẍ of x = e^{−ht} sin(Ωt)/Ω, differentiated
-/// twice.
+/// Deceleration of a spring–damper contact in m/s² at time `t` (s), for an approach velocity of 1 m/s: −ẍ
+/// of x = e^{−ht} sin(Ωt)/Ω with h = ξω and Ω = ω√(1 − ξ²).
 pub fn contact(xi: f64, omega: f64, t: f64) -> f64 {
     let (h, turn) = (xi * omega, omega * (1.0 - xi * xi).sqrt());
     let (sin, cos) = (turn * t).sin_cos();
     (-h * t).exp() * ((turn * turn - h * h) * sin + 2.0 * h * turn * cos) / turn
 }
 
-/// Its end: where the above vanishes, tan Ωt = −2hΩ/(Ω² − h²) in the second quadrant.
+/// End of the contact in s, where the deceleration vanishes: tan Ωt = −2hΩ/(Ω² − h²) in the second
+/// quadrant.
 pub fn end(xi: f64, omega: f64) -> f64 {
     let turn = (1.0 - xi * xi).sqrt();
     (2.0 * xi * turn).atan2(xi * xi - turn * turn) / (omega * turn)
@@ -46,7 +48,7 @@ impl Case {
         Case::within(noise, (0.08, 0.4))
     }
 
-    /// A case of ξ between these.
+    /// A random case with ξ between these limits.
     pub fn within(noise: &mut Noise, (least, most): (f64, f64)) -> Case {
         let (xi, frequency) = (noise.between(least, most), noise.between(1e3, 25e3));
         let length = end(xi, TAU * frequency);
@@ -69,12 +71,13 @@ impl Case {
         [self.onset, self.base, self.velocity, self.xi, self.frequency]
     }
 
-    /// Small against the size of each parameter; the onset moves by less than to the next sample.
+    /// Steps for slopes, small against each parameter; the onset moves by much less than a sample.
     fn steps(&self) -> [f64; 5] {
         [1e-6 * self.dt, 1e-6, 1e-6, 1e-6, 1e-6 * self.frequency]
     }
 
-    /// Samples without noise; the first inside the contact is given, so that the bound's slopes know no jump.
+    /// Samples without noise. `first` is the first sample inside the contact; it is fixed, so that slopes
+    /// for the bound see no jump.
     pub fn plain(&self, p: &[f64], first: usize) -> Vec<f64> {
         let omega = TAU * p[4];
         let last = end(p[3], omega);
@@ -86,8 +89,8 @@ impl Case {
             .collect()
     }
 
-    /// The same behind a Butterworth low-pass: a chain of parts of first and second order, by Runge and
-    /// Kutta.
+    /// The same after a Butterworth low-pass with this corner in Hz: a chain of sections of first and second
+    /// order, integrated by Runge–Kutta.
     pub fn filtered(&self, p: &[f64], corner: f64, order: usize) -> Vec<f64> {
         let (omega, corner) = (TAU * p[4], TAU * corner);
         let last = end(p[3], omega);
@@ -119,8 +122,8 @@ impl Case {
                     // Steps end at the end of the contact, where the input has a corner.
                     let stops = if now < last && t > last { vec![last, t] } else { vec![t] };
                     for stop in stops {
-                        // A quarter of the filter's time constant at most: Runge and Kutta err by 0.25⁵/120
-                        // there.
+                        // Steps are at most a quarter of the filter's time constant, where Runge–Kutta errs
+                        // by 0.25⁵/120.
                         let parts = (corner * (stop - now) / 0.25).ceil().max(4.0) as u32;
                         let h = (stop - now) / f64::from(parts);
                         for _ in 0..parts {
@@ -170,8 +173,8 @@ fn a_sampled_pulse(draws: Draws) {
         velocity.add(&found.initial_velocity.expect("an acceleration"), case.velocity.abs(), bound[2]);
         let theta = case.xi.asin();
         let r = |xi: f64| (-(PI - 2.0 * xi.asin()) * xi.asin().tan()).exp();
-        // |dR/dξ| carries the bound of ξ to R, and so do both derivatives that of ξ and f to the duration,
-        // left to its coverage.
+        // |dR/dξ| carries the bound of ξ to R. The duration depends on ξ and f; it is compared with its own
+        // uncertainty only.
         let slope = (r(case.xi + 1e-6) - r(case.xi - 1e-6)) / 2e-6;
         restitution.add(
             &found.restitution,
@@ -193,14 +196,14 @@ fn a_sampled_pulse_behind_a_low_pass(draws: Draws) {
     for seed in 1000..1000 + draws.of(FILTERED) {
         let mut noise = Noise::new(seed);
         let case = Case::new(&mut noise);
-        // From the corner of the thesis' instrument, 30 kHz for a contact of 25 kHz, to where a filter hardly
-        // matters.
+        // Corners of 1.2 times the contact frequency (as in the thesis, 30 kHz for 25 kHz) to 5 times, where
+        // the filter hardly matters.
         let (corner, order) = (case.frequency * noise.between(1.2, 5.0), 1 + (seed % 5) as usize);
         let p = case.parameters();
         let clean = case.filtered(&p, corner, order);
         let steps = case.steps().map(|s| 1e2 * s);
         let bound = bounds(&p, &steps, &vec![case.sigma; case.n], |p| case.filtered(p, corner, order));
-        // The bound is one for small errors; where ξ may be anything it says nothing.
+        // The bound is valid for small errors only.
         if bound[3] > 0.05 {
             continue;
         }
@@ -217,8 +220,7 @@ fn a_sampled_pulse_behind_a_low_pass(draws: Draws) {
     velocity.judge(draws, "pulse behind a low-pass, initial velocity", 1.3);
 }
 
-/// Corners from just above half the sampling rate up: the rise lies between two samples, and several onsets
-/// fit.
+/// Corners of 0.51 to 2 times the sampling rate: the rise lies between two samples, so several onsets fit.
 fn a_low_pass_above_half_the_sampling_rate_leaves_no_uncertainty(draws: Draws) {
     println!("seeds 5000 to {}", 5000 + draws.of(20));
     for seed in 5000..5000 + draws.of(20) {
@@ -250,7 +252,7 @@ fn two_times_with_their_uncertainty() {
         let [first, second] = [peak, last].map(|t| t + std * noise.normal());
         let found = two_times(first, second, Some(std), &PulseOptions::default())
             .unwrap_or_else(|e| panic!("seed {seed}: {e}"));
-        // No more can be had from two times: the bound is their own uncertainty carried over.
+        // Two times contain no more information, so the bound is their own propagated uncertainty.
         xi.add(&found.xi, truth, found.xi.std.expect("a std"));
         frequency.add(&found.frequency, f, found.frequency.std.expect("a std"));
         let theta = truth.asin();
@@ -262,7 +264,7 @@ fn two_times_with_their_uncertainty() {
     restitution.judge(Draws::All, "two times, restitution", 1.3);
 }
 
-/// Few draws: no truth lies far outside.
+/// 4 cases of each kind, run with every test.
 mod few {
     use super::Draws;
 
@@ -282,7 +284,7 @@ mod few {
     }
 }
 
-/// All draws: the statistic.
+/// All cases, run with `--ignored`.
 mod all {
     use super::Draws;
 

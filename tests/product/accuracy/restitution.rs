@@ -1,4 +1,4 @@
-//! Restitution: its stated uncertainty against what repeated measurements show, and against a bootstrap.
+//! Restitution: its stated uncertainty against repeated simulated measurements and against a bootstrap.
 
 use super::draws::Draws;
 use super::noise::Noise;
@@ -6,7 +6,7 @@ use vibroimpact::measure::restitution::{Drop, Measured, Restitution, Train, Velo
 
 const CASES: u64 = 1000;
 
-/// Flights that were left out.
+/// Number of flights left out as outliers.
 pub fn outliers(found: &Restitution) -> usize {
     found.findings.iter().filter(|f| f.code == "flight-outlier").count()
 }
@@ -47,8 +47,8 @@ fn drops_are_covered() {
             "restitution, {name}: {CASES} cases, seeds 70000.., 95 % coverage {:.1} %",
             100.0 * coverage
         );
-        // Student's 1.96√(ν/(ν − 2)): 95.7 % at three degrees of freedom to 94.7 % at nine, and 0.7 % for
-        // 1000 cases.
+        // The stated uncertainty includes Student's √(ν/(ν − 2)), so 1.96 of it hold 95.7 % at three degrees
+        // of freedom to 94.7 % at nine. The coverage of 1000 cases scatters by 0.7 %.
         assert!((0.92..=0.98).contains(&coverage), "{name}: {coverage}");
     }
 }
@@ -84,13 +84,13 @@ fn trains_of_bounces_are_covered_whether_impacts_or_clock_scatter() {
             "restitution, train with {name}: {CASES} cases, seeds 90000.., 95 % coverage {:.1} %, {n_out} outliers",
             100.0 * coverage
         );
-        // Six flights do not show that R does not scatter at all: what is allowed for errs to the safe side.
+        // Six flights cannot exclude that R scatters, so the uncertainty is too large where it does not.
         let most = if per_bounce == 0.0 { 1.0 } else { 0.98 };
         assert!((0.92..=most).contains(&coverage), "{name}: {coverage}");
     }
 }
 
-/// Two to four trains of one R, of five to eight flights each, started at different speeds.
+/// Two to four trains with the same R, of five to eight flights each, that start with different velocities.
 fn trains_together_are_covered(draws: Draws) {
     let truth: f64 = 0.6;
     for (name, per_bounce, timing, stated) in [
@@ -130,17 +130,17 @@ fn trains_together_are_covered(draws: Draws) {
             "restitution, trains together with {name}: seeds 115000.., 95 % coverage {:.1} %, {n_out} outliers, {open} without uncertainty",
             100.0 * coverage
         );
-        // Two or three trains that by chance differ as if R did have none.
+        // Two or three trains may by chance differ as if R varied between them: they have no uncertainty.
         assert!(open * 20 < draws.of(CASES), "{name}: {open}");
-        // 1000 cases scatter the coverage by 0.7 %. That R does not scatter at all these flights do not show:
-        // it errs to the safe side, as it does by a per cent where two or three trains, each of an
-        // uncertainty of few flights, are taken together.
+        // The coverage of 1000 cases scatters by 0.7 %. So few flights cannot exclude that R scatters, so
+        // the uncertainty is too large where it does not. Combining two or three trains of few flights also
+        // raises the coverage by a per cent.
         let most = if per_bounce == 0.0 { 1.0 } else { 0.99 };
         assert!(draws.part(0.92..=most).contains(&coverage), "{name}: {coverage}");
     }
 }
 
-/// A train of `n` flights whose R scatters from bounce to bounce, seen with noise of the onsets.
+/// A train of `n` flights: R scatters by `per_bounce` from bounce to bounce, the onsets by `timing` (s).
 pub fn train(noise: &mut Noise, r: f64, n: usize, per_bounce: f64, timing: f64) -> Train {
     let (mut flight, mut at) = (noise.between(0.3, 0.4), 0.0);
     let mut times = vec![timing * noise.normal()];
@@ -153,7 +153,7 @@ pub fn train(noise: &mut Noise, r: f64, n: usize, per_bounce: f64, timing: f64) 
     Train { intervals, onset_std: Some(timing), ..Train::default() }
 }
 
-/// R scatters by 1 % from bounce to bounce, however surely the onsets are timed.
+/// R scatters by 1 % from bounce to bounce; the onsets are uncertain by 1e-7 to 1e-4 s.
 fn scatter_of_bounces_is_covered_whatever_is_stated_of_the_onsets(draws: Draws) {
     let truth: f64 = 0.62;
     for timing in [1e-7, 1e-6, 1e-5, 1e-4] {
@@ -173,7 +173,8 @@ fn scatter_of_bounces_is_covered_whatever_is_stated_of_the_onsets(draws: Draws) 
                 inside += usize::from(score.abs() < draws.reach());
                 squares += score * score;
             }
-            // One train always has an uncertainty; five may by chance differ as if R did.
+            // One train always has an uncertainty; five trains may by chance differ as if R varied between
+            // them.
             assert!(
                 open * 20 <= if trains > 1 { draws.of(CASES) } else { 0 },
                 "{timing}, {trains} of {flights}: {open}"
@@ -185,8 +186,8 @@ fn scatter_of_bounces_is_covered_whatever_is_stated_of_the_onsets(draws: Draws) 
                 100.0 * coverage,
                 (squares / stated as f64).sqrt()
             );
-            // As above; between trains a scatter is allowed for that is not there, which errs to the safe
-            // side.
+            // As above. With several trains the uncertainty allows for a scatter between them that is absent
+            // here, so it is too large.
             let most = if trains > 1 { 0.995 } else { 0.985 };
             assert!(
                 draws.part(0.92..=most).contains(&coverage),
@@ -196,7 +197,7 @@ fn scatter_of_bounces_is_covered_whatever_is_stated_of_the_onsets(draws: Draws) 
     }
 }
 
-/// R differs by 1 % from train to train: their number counts, not that of the flights.
+/// R differs by 1 % from train to train: the number of trains counts, not the number of flights.
 fn scatter_between_trains_is_covered_or_refused(draws: Draws) {
     let truth: f64 = 0.62;
     for (per_bounce, trains) in
@@ -224,8 +225,8 @@ fn scatter_between_trains_is_covered_or_refused(draws: Draws) {
             "restitution, {trains} trains that differ by 1 %, bounces by {per_bounce}: seeds 140000.., 95 % coverage {:.1} % of {stated}",
             100.0 * inside as f64 / stated as f64
         );
-        // Fewer than three trains that clearly differ have no uncertainty: by 1 % where timing scatters by
-        // 1e-5 all but a few per cent of them.
+        // Two trains that differ significantly have no uncertainty. These differ by 1 % while the timing
+        // adds 1e-5, so nearly all of them have none.
         if draws == Draws::Few {
             assert!(inside as u64 == stated && (trains < 3 || open == 0), "{trains}: {inside} of {stated}");
         } else if trains < 3 {
@@ -252,8 +253,8 @@ fn propagation_agrees_with_a_bootstrap() {
     let mean = values.iter().sum::<f64>() / 2000.0;
     let bootstrap = (values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / 1999.0).sqrt();
     println!("restitution of 40 drops: propagated {stated:.6}, bootstrap {bootstrap:.6}, seed 4321");
-    // The bootstrap is √(39/40) of the standard deviation of the mean, Student's √(39/37) more than it; 2000
-    // drawings scatter by 1/√4000 = 1.6 %: four of these.
+    // The bootstrap gives √(39/40) of the standard deviation of the mean, the stated value is √(39/37) of it
+    // (Student). 2000 draws scatter by 1/√4000 = 1.6 %; four times that is allowed.
     let expected = (37f64 / 40.0).sqrt();
     assert!((bootstrap / stated - expected).abs() < 0.065);
     let tool = restitution(&Measured {
@@ -267,7 +268,7 @@ fn propagation_agrees_with_a_bootstrap() {
 
 #[test]
 fn velocities_are_covered_by_every_method() {
-    // Momentum is kept: v₁⁺ and v₂⁺ follow from R.
+    // Velocities after the impact, from conservation of momentum and R.
     let (truth, m1, m2, v1, v2, std) = (0.6, 0.14, 0.28, 7.5, -0.5, 0.05);
     let common = (m1 * v1 + m2 * v2) / (m1 + m2);
     let part = truth * (v1 - v2) / (m1 + m2);
@@ -301,7 +302,7 @@ fn velocities_are_covered_by_every_method() {
     }
 }
 
-/// Few draws: no truth lies far outside.
+/// 4 cases of each kind, run with every test.
 mod few {
     use super::Draws;
 
@@ -321,7 +322,7 @@ mod few {
     }
 }
 
-/// All draws: the statistic.
+/// All cases, run with `--ignored`.
 mod all {
     use super::Draws;
 

@@ -10,7 +10,8 @@ use vibroimpact::units::Unit;
 
 const CASES: u64 = 200;
 
-/// A ring of a natural frequency in Hz and a damping ratio in noise, sampled at a rate in Hz.
+/// Decaying ringing in noise: natural frequency in Hz, damping ratio, standard deviation of the noise in V
+/// (impacts are about 1 V high), sampling rate in Hz.
 struct Ring {
     frequency: f64,
     damping: f64,
@@ -19,7 +20,7 @@ struct Ring {
 }
 
 impl Ring {
-    /// From 0.01 to 0.2 of critical damping and 0.3 to 3 % of noise, evenly in their logarithms.
+    /// Damping ratio from 0.01 to 0.2 and noise from 0.3 to 3 %, both uniform in the logarithm.
     fn random(noise: &mut Noise, frequency: (f64, f64), rate: f64) -> Ring {
         Ring {
             frequency: noise.between(frequency.0, frequency.1),
@@ -29,7 +30,7 @@ impl Ring {
         }
     }
 
-    /// Time in s in which it decays by e.
+    /// Time constant of the decay in s (the envelope falls to 1/e).
     fn decay(&self) -> f64 {
         1.0 / (TAU * self.frequency * self.damping)
     }
@@ -39,7 +40,7 @@ impl Ring {
         let mut values: Vec<f64> = (0..n).map(|_| self.noise * noise.normal()).collect();
         for (t, h) in times.iter().zip(heights) {
             let first = (t * self.rate).ceil() as usize;
-            // After 12 decay times 6e-6 of the height is left.
+            // After 12 time constants 6e-6 of the height is left.
             let last = first + (12.0 * self.decay() * self.rate) as usize;
             for (i, v) in values.iter_mut().enumerate().take(last).skip(first) {
                 let x = i as f64 / self.rate - t;
@@ -50,13 +51,13 @@ impl Ring {
         Trace { meta: Meta::new("ring", Unit::parse("V").unwrap()), axis, values }
     }
 
-    /// Whether each of `found` stands within one and a half cycles of the ring behind its impact.
+    /// Whether each detected time lies within 1.5 ringing periods of its true impact.
     fn fits(&self, found: &[f64], times: &[f64]) -> bool {
         found.iter().zip(times).all(|(a, b)| (a - b).abs() < 1.5 / self.frequency)
     }
 }
 
-/// Whether a finding says that the number of impacts is doubtful.
+/// Whether a finding reports that the number of impacts is doubtful.
 fn doubted(found: &Impacts) -> bool {
     let doubts = ["count-depends-on-ringing", "impacts-lost-in-noise"];
     found.missed > 0 || found.findings.iter().any(|f| doubts.contains(&f.code.as_ref()))
@@ -75,7 +76,8 @@ fn ringing_impacts_are_counted_once(draws: Draws) {
         let found = impacts(&trace, &options);
         let good = found.as_ref().is_ok_and(|f| f.n == times.len() && ring.fits(&f.times, &times));
         let doubt = found.as_ref().map_or(true, doubted);
-        // A ring that decays by less than e⁴ from impact to impact has no pauses.
+        // Ringing that decays by less than e⁴ between impacts (1/30 s) leaves no pause. Only trains with
+        // pauses count for the limit of 98 %.
         let apart = ring.decay() < 0.25 / 30.0;
         assert!(good || doubt, "seed {seed}: {:?}", found.map(|f| (f.n, f.findings)));
         clear += usize::from(apart);
@@ -109,10 +111,11 @@ fn ringing_bounces_are_counted_once(draws: Draws) {
         let trace = ring.trace(&mut noise, &times, &heights, times[6] + 0.1);
         let options =
             ImpactsOptions { keep_hum: true, threshold: Some(Train::THRESHOLD), ..ImpactsOptions::default() };
-        // The height is stated, as a drop has it: of three sounds alone the first may be none of the bounces.
+        // The drop height is given: without it, three sounds do not show whether the first of them is a
+        // bounce.
         let full = 2.0 * (2.0 * height / GRAVITY).sqrt();
         let found = Train::of(&trace, &options, Some(full)).map(|(_, found)| found);
-        // Bounces that are lost are the last.
+        // Only the last bounces may be missed, so the detected times are compared with the first true ones.
         let good = found.as_ref().is_ok_and(|f| f.times.len() <= times.len() && ring.fits(&f.times, &times));
         let doubt =
             found.as_ref().map_or(true, |f| f.findings.iter().any(|f| f.code == "count-depends-on-ringing"));
@@ -130,7 +133,7 @@ fn ringing_bounces_are_counted_once(draws: Draws) {
     assert!(f64::from(silent) <= 0.01 * cases as f64, "{silent}");
 }
 
-/// Few draws: no truth lies far outside.
+/// 4 cases, run with every test.
 mod few {
     use super::Draws;
 
@@ -145,7 +148,7 @@ mod few {
     }
 }
 
-/// All draws: the statistic.
+/// 200 cases, run with `--ignored`.
 mod all {
     use super::Draws;
 

@@ -1,5 +1,5 @@
-//! Coverage of all that a pulse prints beside ξ and frequency: stiffness, damping, velocity from a force, and
-//! the parameters of the contacts of Hertz and of Hunt and Crossley, integrated here.
+//! Coverage of all results of a pulse besides ξ and frequency: stiffness, damping, velocity from a force,
+//! and the parameters of Hertz and Hunt–Crossley contacts, which are integrated here.
 
 use super::draws::Draws;
 use super::noise::Noise;
@@ -13,7 +13,7 @@ use vibroimpact::units::Unit;
 
 const CASES: u64 = 300;
 
-/// What is beside ξ, frequency and velocity; each error in units of its own uncertainty.
+/// Adds stiffness, damping, initial velocity and onset; each error counts in units of its own uncertainty.
 fn add(scores: &mut BTreeMap<&'static str, Score>, found: &PulseResult, case: &Case, mass: f64) {
     let omega = TAU * case.frequency;
     let velocity = found.initial_velocity.as_ref().expect("an acceleration or a force and a mass");
@@ -35,7 +35,7 @@ fn judge(draws: Draws, what: &str, scores: &BTreeMap<&'static str, Score>) {
     }
 }
 
-/// The record as a force on a mass.
+/// The record as a force in N on a mass in kg.
 fn force(values: &[f64], dt: f64, mass: f64) -> Trace {
     let meta = Meta::new("force", Unit::parse("N").expect("a unit"));
     Trace { meta, ..trace(values.iter().map(|v| mass * v).collect(), dt) }
@@ -64,7 +64,8 @@ fn what_follows_from_a_pulse_behind_a_low_pass(draws: Draws) {
     for seed in 4000..4000 + draws.of(CASES) {
         let mut noise = Noise::new(seed);
         let (case, mass) = (Case::within(&mut noise, (0.08, 0.35)), noise.between(0.05, 5.0));
-        // Corners that leave the jump to be seen; lower ones are judged with their bounds in `pulse`.
+        // Corners at which the jump of the force stays visible; lower ones are tested with their bounds in
+        // `pulse`.
         let (corner, order) = (case.frequency * noise.between(3.0, 6.0), 1 + (seed % 3) as usize);
         let clean = case.filtered(&case.parameters(), corner, order);
         let values: Vec<f64> = clean.iter().map(|v| v + case.sigma * noise.normal()).collect();
@@ -77,8 +78,8 @@ fn what_follows_from_a_pulse_behind_a_low_pass(draws: Draws) {
     judge(draws, "pulse with a mass behind a low-pass", &scores);
 }
 
-/// −z″ of z″ = −z^{3/2}(1 + α z′), z(0) = 0, z′(0) = 1, at every step up to where z is 0 again, by Runge and
-/// Kutta; its end, and −z′ there.
+/// Integrates z″ = −z^{3/2}(1 + α z′) with z(0) = 0 and z′(0) = 1 by Runge–Kutta, up to the next z = 0.
+/// Returns −z″ at every step, the time of the end, and −z′ there, which is the restitution.
 fn losses(alpha: f64, step: f64) -> (Vec<f64>, f64, f64) {
     let force = |z: f64, v: f64| z.max(0.0).powf(1.5) * (1.0 + alpha * v);
     let (mut z, mut v) = (0.0, 1.0);
@@ -100,7 +101,8 @@ fn losses(alpha: f64, step: f64) -> (Vec<f64>, f64, f64) {
     }
 }
 
-/// The parameters of the contact that a rival is, losses α of 0 for that of Hertz.
+/// Tests the parameters of a rival model: 1 is the contact of Hertz (α = 0), 2 that of Hunt and Crossley
+/// with losses α between `alphas`.
 fn rival(model: usize, from: u64, alphas: (f64, f64), draws: Draws) {
     const STEP: f64 = 1.0 / 512.0;
     let mut scores: BTreeMap<&str, Score> = BTreeMap::new();
@@ -155,7 +157,7 @@ fn the_contact_of_hunt_and_crossley(draws: Draws) {
     rival(2, 7000, (0.05, 1.0), draws);
 }
 
-/// Few draws: no truth lies far outside.
+/// 4 cases of each kind, run with every test.
 mod few {
     use super::Draws;
 
@@ -180,7 +182,7 @@ mod few {
     }
 }
 
-/// All draws: the statistic.
+/// All cases, run with `--ignored`.
 mod all {
     use super::Draws;
 

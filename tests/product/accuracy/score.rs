@@ -1,4 +1,4 @@
-//! What is counted over many cases.
+//! Statistics of errors over many cases.
 
 use super::draws::{Draws, none_far};
 use vibroimpact::measure::Estimate;
@@ -10,19 +10,19 @@ pub struct Score {
     sum: f64,
     covered: usize,
     n: usize,
-    /// Estimates without an uncertainty.
+    /// Number of estimates without an uncertainty.
     unstated: usize,
-    /// The largest error in its own standard uncertainties.
+    /// Largest error in its own standard uncertainties.
     worst: f64,
 }
 
 impl Score {
-    /// Adds a case of which nothing but its own uncertainty is asked.
+    /// Adds a case without a bound: its error counts in units of its own standard uncertainty.
     pub fn own(&mut self, estimate: &Estimate, truth: f64) {
         self.add(estimate, truth, estimate.std.unwrap_or(1.0));
     }
 
-    /// Adds a case whose bound is this standard deviation.
+    /// Adds a case whose Cramér–Rao bound is this standard deviation.
     pub fn add(&mut self, estimate: &Estimate, truth: f64, bound: f64) {
         let Some(std) = estimate.std else {
             self.unstated += 1;
@@ -39,9 +39,9 @@ impl Score {
         self.n += 1;
     }
 
-    /// Prints what was reached; fails beyond `ratio` of the bound, a bias of 0.1 of it (three times what
-    /// chance gives, where that is more), a coverage outside 92…98 %, or where more than two in a hundred
-    /// state no uncertainty.
+    /// Prints the statistics. Fails if the RMS error exceeds `ratio` bounds, the bias 0.1 bounds (or 3/√n,
+    /// three standard deviations of a mean, if that is more), if the coverage lies outside 92 to 98 %, or if
+    /// more than 2 % of the cases state no uncertainty.
     pub fn judge(&self, draws: Draws, what: &str, ratio: f64) {
         let n = self.n as f64;
         let (reached, bias, coverage) =
@@ -60,7 +60,7 @@ impl Score {
         assert!((92.0..=98.0).contains(&coverage), "{what}: coverage {coverage} %");
     }
 
-    /// As [`Score::covers`], with two cases in a hundred that may state no uncertainty.
+    /// As [`Score::covers`], but 2 % of the cases may state no uncertainty.
     pub fn mostly(&self, draws: Draws, what: &str) {
         let coverage = 100.0 * self.covered as f64 / self.n as f64;
         println!(
@@ -75,7 +75,7 @@ impl Score {
         assert!((92.0..=98.0).contains(&coverage), "{what}: coverage {coverage} %");
     }
 
-    /// Of a few cases most state an uncertainty, and none is far outside of it.
+    /// Of a few cases most state an uncertainty, and no error exceeds five of them.
     fn few(&self, what: &str) {
         assert!(
             self.unstated < self.n,
@@ -86,7 +86,7 @@ impl Score {
         none_far(what, self.worst);
     }
 
-    /// Prints the coverage; fails where it lies outside 92…98 %, or an uncertainty is not stated.
+    /// Prints the coverage. Fails if it lies outside 92 to 98 %, or if a case states no uncertainty.
     pub fn covers(&self, draws: Draws, what: &str) {
         let coverage = 100.0 * self.covered as f64 / self.n as f64;
         println!("{what}: {} cases, coverage {coverage:.1} %", self.n);
@@ -98,9 +98,9 @@ impl Score {
     }
 }
 
-/// Standard deviations of unbiased estimates of the parameters `p` from values with independent noise of this
-/// standard deviation: the diagonal of the inverse of Fisher's information, whose slopes are central
-/// differences.
+/// Cramér–Rao bounds, as standard deviations, of the parameters `p` from values with independent noise of
+/// these standard deviations: the diagonal of the inverse Fisher information. Slopes are central
+/// differences of `steps`.
 pub fn bounds(p: &[f64], steps: &[f64], noise: &[f64], model: impl Fn(&[f64]) -> Vec<f64>) -> Vec<f64> {
     let k = p.len();
     let slopes: Vec<Vec<f64>> = (0..k)
@@ -114,7 +114,7 @@ pub fn bounds(p: &[f64], steps: &[f64], noise: &[f64], model: impl Fn(&[f64]) ->
             above.iter().zip(below).zip(noise).map(|((a, b), s)| (a - b) / (2.0 * steps[i] * s)).collect()
         })
         .collect();
-    // Scaled to a unit diagonal, so that units do not spoil the elimination.
+    // Scaled to a unit diagonal, so that different units do not spoil the elimination.
     let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
     let size: Vec<f64> = slopes.iter().map(|s| dot(s, s).sqrt()).collect();
     let mut m: Vec<Vec<f64>> = (0..k)

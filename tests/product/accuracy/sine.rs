@@ -11,16 +11,15 @@ const CASES: u64 = 1000;
 const SEED: u64 = 0x51e;
 const RATE: f64 = 1024.0;
 
-/// Root mean square and mean of errors in standard deviations of the bound, and the share of 95 % intervals
-/// with the truth.
+/// Root mean square and mean of the errors in units of the bound, and coverage of the 95 % intervals.
 struct Reached {
     ratio: f64,
     bias: f64,
     coverage: f64,
 }
 
-/// Frequency and amplitude over random cases at this signal-to-noise ratio in dB; records without a visible
-/// line count apart.
+/// Statistics of frequency and amplitude over random cases at this signal-to-noise ratio in dB, and the
+/// number of records without a visible line.
 fn reached(decibel: f64, draws: Draws) -> ([Reached; 2], usize) {
     let mut random = Noise::new(SEED);
     let eta = 10f64.powf(decibel / 10.0);
@@ -29,8 +28,8 @@ fn reached(decibel: f64, draws: Draws) -> ([Reached; 2], usize) {
     let mut refused = 0;
     for _ in 0..draws.of(CASES) {
         let n = random.between(200.0, 600.0) as usize;
-        // Not nearer to zero and half the rate than four lines, where the sine's own image takes part in the
-        // bound.
+        // At least four lines from 0 Hz and from half the sampling rate: nearer, the mirror image of the
+        // sine changes the bound.
         let f = random.between(4.0, n as f64 / 2.0 - 4.0) * RATE / n as f64;
         let (amplitude, phase) = (random.between(0.5, 2.0), random.between(0.0, TAU));
         let sigma = amplitude / (2.0 * eta).sqrt();
@@ -77,11 +76,11 @@ fn frequency_and_amplitude_reach_the_bound(draws: Draws) {
                 100.0 * r.coverage
             );
         }
-        // Below 20 dB the figures are stated, not required: at −10 dB noise begins to choose the line.
+        // Below 20 dB the figures are only printed: at −10 dB some noise lines exceed the line of the sine.
         if decibel >= 20.0 {
             assert_eq!(refused, 0);
             for r in &figures {
-                // The figures of 1000 cases scatter by 0.022, 0.032 and 0.007.
+                // Over 1000 cases ratio, bias and coverage scatter by 0.022, 0.032 and 0.007.
                 let near = r.ratio < 1.1 && r.bias.abs() < 0.1;
                 assert!(near || draws == Draws::Few, "{decibel} dB: {} {}", r.ratio, r.bias);
                 assert!(draws.part(0.92..=0.98).contains(&r.coverage), "{decibel} dB: {}", r.coverage);
@@ -137,13 +136,13 @@ fn two_sines_are_parted_with_uncertainties_that_cover() {
     println!(
         "two sines 2 to 10 lines apart: coverage {covered:?} of {count}, {fewer} of {PAIRS} pairs not parted"
     );
-    // A share of 800 scatters by 0.008.
+    // The coverage of 800 sines scatters by 0.008.
     assert!(covered.iter().all(|c| (0.92..=0.98).contains(c)), "{covered:?}");
     assert!(fewer * 100 <= PAIRS, "{fewer}");
 }
 
-/// One sine at 3 to 8 Hz in y(i) = 0.95 y(i − 1) + e(i), whose density there is up to 39 times that of white
-/// noise.
+/// One sine at 3 to 8 Hz in noise y(i) = 0.95 y(i − 1) + e(i). The density of this noise is there up to 39
+/// times that of white noise of the same variance.
 fn coloured_noise_is_counted_where_the_sine_is(draws: Draws) {
     let records = draws.of(600) as usize;
     let seed = 0xc0_104e;
@@ -152,7 +151,7 @@ fn coloured_noise_is_counted_where_the_sine_is(draws: Draws) {
     for _ in 0..records {
         let n = random.between(2000.0, 4000.0) as usize;
         let (f, amplitude, phase) = (random.between(3.0, 8.0), 1.0, random.between(0.0, TAU));
-        // Amplitude over the standard deviation of the noise is 2: the line always stands out.
+        // The amplitude is twice the standard deviation of the noise, so the line always stands out.
         let sigma = 0.5 * (1.0f64 - 0.95 * 0.95).sqrt();
         let mut y = 0.5 * random.normal();
         let values = (0..n)
@@ -182,15 +181,16 @@ fn coloured_noise_is_counted_where_the_sine_is(draws: Draws) {
     println!(
         "seed {seed:#x}: sine in noise of 0.95: coverage {covered:?}, {stated:?} stated, {said} of {records} say so"
     );
-    // Against the noise around it one of 10⁴ lines looks like a sine, where noise is steep some more.
+    // One of 10⁴ noise lines looks like a second sine, some more where the density is steep: then no
+    // uncertainty is stated, in at most 2 % of the records.
     assert!(stated.iter().all(|n| *n >= records * 98 / 100), "{stated:?}");
-    // A share of 600 scatters by 0.009. The density is that of a process whose coefficient is good to a tenth
-    // of 1 − 0.95.
+    // The coverage of 600 cases scatters by 0.009. The density is that of a process whose coefficient is
+    // known to a tenth of 1 − 0.95.
     assert!(covered.iter().flatten().all(|c| draws.part(0.92..=0.98).contains(c)), "{covered:?}");
     assert!(said == records, "{said}");
 }
 
-/// Few draws: no truth lies far outside.
+/// 4 cases of each kind, run with every test.
 mod few {
     use super::Draws;
 
@@ -205,7 +205,7 @@ mod few {
     }
 }
 
-/// All draws: the statistic.
+/// All cases, run with `--ignored`.
 mod all {
     use super::Draws;
 

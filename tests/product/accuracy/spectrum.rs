@@ -1,4 +1,4 @@
-//! The scatter of averaged spectra, and displacements by integration in time.
+//! Scatter of averaged spectra, and displacements by integration in the time domain.
 
 use super::noise::Noise;
 use num_complex::Complex64;
@@ -22,7 +22,8 @@ fn trace(unit: &str, rate: f64, values: Vec<f64>) -> Trace {
 /// Share of lines of white noise whose 95 % interval holds the true level.
 fn coverage(averages: usize, scaling: Scaling, random: &mut Noise) -> f64 {
     let (mut inside, mut lines, rate) = (0usize, 0usize, 1000.0);
-    // Variance 1: a density of 2/rate; with Hann 1.5 lines wide, its power in a line is 2·1.5/N.
+    // White noise of variance 1 has a density of 2/rate. Hann is 1.5 lines wide, so a line has the power
+    // 2·1.5/N.
     let power: f64 = 2.0 * 1.5 / LENGTH as f64;
     let truth = match scaling {
         Scaling::Psd => 2.0 / rate,
@@ -39,7 +40,7 @@ fn coverage(averages: usize, scaling: Scaling, random: &mut Noise) -> f64 {
         let found = welch.average(&mut Traces::from_memory(vec![record]).unwrap(), false, |_| ()).unwrap();
         let values = averaged(&found, 0, &meta, Window::Hann, scaling).unwrap().values.magnitudes();
         let part = scatter(&found, scaling);
-        // Removing the mean takes from the lines beside 0 Hz; the one at half the rate has half the level.
+        // Removing the mean lowers the lines beside 0 Hz, and the line at half the rate has half the level.
         for k in 3..LENGTH / 2 {
             inside += usize::from((values[k] - truth).abs() < 1.96 * part[k] * values[k]);
             lines += 1;
@@ -56,9 +57,9 @@ fn the_scatter_of_lines_holds_the_truth() {
         for scaling in [Scaling::Power, Scaling::Psd, Scaling::Peak, Scaling::Rms] {
             let found = coverage(averages, scaling, &mut random);
             println!("{averages} averages, {scaling:?}: {:.1} %", 100.0 * found);
-            // A sum of squares is no normal number: its gamma distribution gives 92.4 % for powers of 19
-            // segments and 94.5 % of 95, amplitudes lie between; two thirds of 6000 lines scatter
-            // by 0.4 %.
+            // A sum of squares is not normal: its gamma distribution gives 92.4 % for powers of 19 segments
+            // and 94.5 % for 95; amplitudes lie between. Of 6000 lines two thirds are independent: the
+            // coverage scatters by 0.4 %.
             assert!((0.912..=0.98).contains(&found), "{averages} {scaling:?}: {found}");
         }
     }
@@ -75,7 +76,7 @@ fn displacements_are_right_within_the_stated_band() {
     let [low, high] = in_time(&flat, &how).unwrap().band;
     let mut worst = 0.0f64;
     for case in 0..200 {
-        // Evenly over the decades of the band.
+        // Uniform in the logarithm over the band.
         let f = low * (high / low).powf(random.uniform());
         let omega = TAU * f;
         let (phase, amplitude) = (TAU * random.uniform(), 1e-3 * omega);

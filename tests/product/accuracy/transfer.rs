@@ -1,4 +1,4 @@
-//! The band of a frequency response function.
+//! Confidence band of a frequency response function.
 
 use super::noise::Noise;
 use vibroimpact::record::Traces;
@@ -12,8 +12,9 @@ const SEED: u64 = 0xf2f;
 const LENGTH: usize = 64;
 const GAIN: f64 = 2.0;
 
-/// Shares of lines whose 95 % interval of magnitude and of phase holds the truth. Noise of `noise` times the
-/// signal's power, where the estimator expects it: in the response, in the excitation, or in both.
+/// Coverage of the 95 % intervals of magnitude and of phase, and number of lines. Noise of `noise` times
+/// the power of the signal is added where the estimator expects it: to the response (H1), the excitation
+/// (H2) or both (Hv).
 fn coverage(
     estimator: Estimator,
     (averages, overlap, noise): (usize, f64, f64),
@@ -40,8 +41,8 @@ fn coverage(
         let welch = Welch { segments, window: Window::Hann, detrend: true };
         let found =
             transfer(&welch.average(&mut traces, true, |_| ()).unwrap(), 1, &metas, estimator).unwrap();
-        // Lines next to each other are not independent under a window, but each counts; the outermost are
-        // half real.
+        // Neighbouring lines are correlated by the window, but each counts. The outermost lines are left
+        // out, since they are partly real.
         for k in (3..LENGTH / 2 - 3).filter(|k| found.magnitude_std[*k].is_finite()) {
             let h = found.frf.values[k];
             magnitude += usize::from((h.norm() - GAIN).abs() < 1.96 * found.magnitude_std[k]);
@@ -70,7 +71,7 @@ fn the_band_holds_the_truth() {
             100.0 * magnitude,
             100.0 * phase
         );
-        // Of 5200 lines, two thirds independent, a share of 95 % scatters by 0.4 %.
+        // Of 5200 lines two thirds are independent: a coverage of 95 % scatters by 0.4 %.
         assert!((0.92..=0.98).contains(&magnitude) && (0.92..=0.98).contains(&phase));
     }
 }

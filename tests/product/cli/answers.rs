@@ -1,4 +1,4 @@
-//! What commands answer: the keys that other programs read, and the numbers behind them.
+//! Answers of the commands: the keys that other programs read, and their values.
 
 use super::rig::{amplitude, frequencies, sweep};
 use super::{json, text, vibro};
@@ -49,7 +49,7 @@ fn info_says_what_was_passed_over_and_how_text_was_read() {
         *notes,
         serde_json::json!(["SPS390 TRACE", "Operator: X", "encoding: UTF-16", "decimal mark: comma"])
     );
-    // What holds for both channels is said once.
+    // A note that holds for both channels appears once.
     let units = value["warnings"].as_array().unwrap().iter().filter(|w| w.to_string().contains("No unit"));
     assert_eq!(units.count(), 1, "{}", value["warnings"]);
     let output = vibro(&["info", text(&path)]);
@@ -59,7 +59,7 @@ fn info_says_what_was_passed_over_and_how_text_was_read() {
         "{table}"
     );
     assert!(table.contains("trace, unit not known") && !table.contains("[]"), "{table}");
-    // 0.1 + 0.2 is no number that a person wants to see.
+    // A value of 0.30000000000000004 is shown with six digits.
     fs::write(&path, "unit: mm\nrate: 3 Hz\n0.30000000000000004\n0.1\n").unwrap();
     let table = String::from_utf8(vibro(&["info", text(&path)]).stdout).unwrap();
     assert!(table.contains("3 Hz, 0.666667 s, 0.0001 to 0.0003 m, largest at 0 s"), "{table}");
@@ -73,7 +73,7 @@ fn excitation_response_and_waterfall_of_a_list() {
     let value = json(&["excitation", list]);
     for (point, f) in value["points"].as_array().unwrap().iter().zip(frequencies()) {
         keys(point, &["file", "frequency"]);
-        // 1e-12 stands under a line of 0.1.
+        // The background of 1e-12 is small beside a line of 0.1.
         assert!((point["frequency"].as_f64().unwrap() - f).abs() < 1e-9);
     }
     let value = json(&["response", list, "--unit", "m/s", "--integrate", "1", "--band", "3"]);
@@ -111,7 +111,7 @@ fn legacy_reads_on_the_line() {
     let folder = tempfile::tempdir().unwrap();
     let list = sweep(folder.path(), &frequencies());
     let value = json(&["response", text(&list), "--legacy", "--unit", "m/s"]);
-    // 4.03 Hz lies between lines of 0.1 Hz.
+    // 4.03 Hz lies between lines, which are 0.1 Hz apart; the answer is the nearest line.
     assert_eq!(value["points"][0]["excitation"].as_f64(), Some(4.0));
     let value = json(&["waterfall", text(&list), "--legacy"]);
     assert!(value["magnitude"][0][0].is_number());
@@ -193,12 +193,12 @@ fn run_and_compare_do_the_example_campaign() {
         "nothing beside the files that are named, but what is kept for the next run"
     );
     assert!(first.contains_key("report.html") && first.contains_key("results.json"));
-    // A second run writes the same bytes, and the inputs are as they were.
+    // A second run writes the same bytes, and the inputs are unchanged.
     json(&["run", text(&campaign), "--out", text(&out)]);
     assert!(first == contents(&out));
     assert!(before == contents(&example));
 
-    // The thesis' picture: grazing near 5.6 Hz both ways, clapping near 10.6 Hz only going up.
+    // As in the thesis: grazing near 5.6 Hz in both directions, clapping near 10.6 Hz only on the way up.
     let found = |name: &str, kind: &str| -> Option<f64> {
         let responses = value["results"]["responses"].as_array().unwrap();
         let response = responses.iter().find(|r| r["name"] == name).unwrap();
@@ -215,7 +215,8 @@ fn run_and_compare_do_the_example_campaign() {
             assert_eq!(clapping, None, "{name}");
         }
     }
-    // The passive mass is the larger one at the antiresonance of the excited one.
+    // Above the crossing at the antiresonance of the excited mass, the passive mass has the larger
+    // amplitude.
     let crossings = value["results"]["crossings"].as_array().unwrap();
     assert!(crossings.iter().any(|c| c["direction"] == "up" && c["larger_above"] == 2), "{crossings:?}");
 
@@ -248,7 +249,7 @@ fn what_the_rig_of_a_campaign_leaves_out_is_said_first() {
     }
 }
 
-/// The example's truth, point by point: column `x1` or `x2` of one direction.
+/// The example's truth in one direction, point by point: frequency in Hz, and `x1` or `x2` in m.
 fn truth(direction: &str, mass: usize) -> Vec<(f64, f64)> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/two_mass_rig/TRUTH.csv");
     let text = fs::read_to_string(path).unwrap();
@@ -270,15 +271,15 @@ fn the_example_is_measured_as_it_was() {
             let truth = truth(direction, mass);
             assert_eq!(points.len(), truth.len());
             for (point, (frequency, amplitude)) in points.iter().zip(truth) {
-                // A hundredth of a line of 0.05 Hz.
+                // A hundredth of the line spacing of 0.05 Hz.
                 assert!((point["excitation"].as_f64().unwrap() - frequency).abs() < 5e-4);
                 let (value, std) = (
                     point["amplitude"]["value"].as_f64().unwrap(),
                     point["amplitude"]["std"].as_f64().unwrap(),
                 );
-                // Four standard deviations of noise; 0.2 % where side lines of irregular motion reach in; and
-                // where the mass rests, a magnitude of noise alone lies within four of its
-                // standard deviations above zero.
+                // Four standard deviations of the noise, plus 0.2 % for side lines of irregular motion.
+                // Where the mass rests, the magnitude of the noise alone lies within four of its standard
+                // deviations above zero.
                 let allowed = 4.0 * std + 0.002 * amplitude;
                 assert!(
                     (value - amplitude).abs() < allowed,

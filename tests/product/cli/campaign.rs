@@ -1,4 +1,4 @@
-//! What commands do, asked for in a campaign.
+//! Analyses requested in a campaign give the answers of the commands.
 
 use super::{complaint, json, text, vibro};
 use serde_json::Value;
@@ -9,7 +9,7 @@ use std::fs;
 use std::path::Path;
 use vibroimpact::math::Noise;
 
-/// Runs a campaign of this text in a folder; gives exit code and results.
+/// Runs a campaign of this text in a folder. Returns the exit code and the JSON object.
 fn run(folder: &Path, campaign: &str) -> (i32, Value) {
     let path = folder.join("campaign.toml");
     fs::write(&path, campaign).unwrap();
@@ -20,11 +20,12 @@ fn run(folder: &Path, campaign: &str) -> (i32, Value) {
     (code, value)
 }
 
-/// Force (noise) and the velocity of an oscillator of 60 Hz and ζ = 0.02 that it drives, 1024 Hz.
+/// Writes `bench.csv` at 1024 Hz, with a random force in N and the velocity in m/s of the oscillator that
+/// it drives (1 kg, 60 Hz, ζ = 0.02), and `tones.csv`, a voltage with two tones.
 fn bench(folder: &Path) {
     let (mut noise, mut table) = (Noise::new(7), String::from("time [s],force [N],velocity [m/s]\n"));
     let (w, zeta, dt) = (TAU * 60.0, 0.02, 1.0 / 1024.0);
-    // x' = v, v' = f − 2ζω v − ω² x with a force that is constant over sixteen steps of a sample.
+    // x' = v, v' = f − 2ζω v − ω² x with a force that is constant over the sixteen steps of a sample.
     let (mut x, mut v) = (0.0, 0.0);
     for i in 0..30_000 {
         let force = noise.between(-0.5, 0.5);
@@ -43,7 +44,7 @@ fn bench(folder: &Path) {
     fs::write(folder.join("tones.csv"), table).unwrap();
 }
 
-/// JSON of which no object has a key twice.
+/// JSON in which no object has a key twice.
 struct Unique;
 
 impl<'de> serde::Deserialize<'de> for Unique {
@@ -126,7 +127,7 @@ fn spectra_and_functions_from_two_channels() {
     );
     let results = &answer["results"];
     assert_eq!(code, 0, "{answer}");
-    // 50 Hz of 2 V and 55 Hz of 1 V over steps of rounding to 1e-6 V, which scatter by 3e-7.
+    // 50 Hz of 2 V and 55 Hz of 1 V, rounded to 1e-6 V, which has a standard deviation of 3e-7 V.
     for (tone, (f, a)) in
         results["spectra"][2]["tones"].as_array().unwrap().iter().zip([(50.0, 2.0), (55.0, 1.0)])
     {
@@ -135,8 +136,8 @@ fn spectra_and_functions_from_two_channels() {
             (of("frequency", "value") - f).abs() < 1e-6 && (of("amplitude", "value") - a).abs() < 1e-6,
             "{tone}"
         );
-        // Times are printed in whole milliseconds: both ends of 2000 samples are known to half of one, with
-        // all errors equally likely.
+        // Times are printed in whole milliseconds. Either end of the 2000 samples is known to 0.5 ms, so the
+        // duration to 1 ms (uniform distribution).
         let of_digits = f * 1e-3 / (3f64.sqrt() * 1.999);
         assert!((of("frequency", "std") / of_digits - 1.0).abs() < 1e-3, "{tone}");
         assert!(of("phase", "std") < 1e-6, "{tone}");
@@ -161,7 +162,7 @@ fn spectra_and_functions_from_two_channels() {
     }
     let mode = &results["frf"][0]["modes"][0];
     assert!((mode["frequency"]["value"].as_f64().unwrap() - 60.0).abs() < 0.5, "{mode}");
-    // 9.6 lines of 0.25 Hz in the bandwidth: leakage, which would widen it by 1.5 %, is in the fit.
+    // The bandwidth has 9.6 lines of 0.25 Hz. Leakage, which would widen it by 1.5 %, is part of the fit.
     let (zeta, std) = (mode["zeta"]["value"].as_f64().unwrap(), mode["zeta"]["std"].as_f64().unwrap());
     assert!((zeta - 0.02).abs() < 4.0 * std && std < 0.1 * 0.02, "{mode}");
     for file in [
@@ -197,7 +198,7 @@ fn keys_that_contradict_each_other_point_at_the_file() {
         let path = folder.path().join("campaign.toml");
         fs::write(&path, keys).unwrap();
         let found = complaint(&["run", text(&path)], 2);
-        // The key at fault is the last.
+        // The last key is the wrong one.
         let line = format!("line {}", keys.lines().count());
         assert!(found.contains(words) && found.contains(&line), "{keys}\n{found}");
     }
@@ -272,7 +273,7 @@ fn drops_and_pulses_of_numbers_alone() {
 #[test]
 fn keys_of_contacts_are_checked_before_anything_is_measured() {
     let folder = tempfile::tempdir().unwrap();
-    // No file exists: a complaint about a key must come before one about a file.
+    // No file exists: the error message about a key must come before one about a file.
     for (keys, line, words) in [
         ("[[pulse]]\ntime_to_peak = 6e-6\nduration = 18e-6\nrate = 1e6", "line 4", "rate without a file"),
         ("[[pulse]]\ntime_to_peak = 6e-6\nduration = 18e-6\nunit = \"m\"", "line 4", "unit without a file"),
@@ -327,7 +328,7 @@ fn a_record_that_is_impossible_leaves_the_rest_alone() {
         answer["warnings"].as_array().unwrap().iter().any(|w| w.as_str().unwrap().contains(word))
     };
     assert!(said(&answer, "square: Left out"), "{answer}");
-    // Nothing at all: the report is written with the reason, and the exit code says so.
+    // No record can be analysed: the report is written with the reason, and the exit code is 1.
     let (code, answer) = run(folder.path(), drill);
     assert_eq!(code, 1);
     assert!(said(&answer, "square: Left out") && said(&answer, "nothing was computed"), "{answer}");
@@ -335,7 +336,7 @@ fn a_record_that_is_impossible_leaves_the_rest_alone() {
     assert!(report.contains("square: Left out"));
 }
 
-/// Long options of a command, as keys.
+/// Long options of a command, written as keys.
 fn options(command: &str) -> BTreeSet<String> {
     let help = String::from_utf8(vibro(&[command, "--help"]).stdout).unwrap();
     let names = help
@@ -344,19 +345,19 @@ fn options(command: &str) -> BTreeSet<String> {
     names.map(|n| n.split([' ', '=', ',']).next().unwrap().replace('-', "_")).collect()
 }
 
-/// Keys of a section, from the complaint about one that does not exist.
+/// Keys of a section, from the error message about an unknown key.
 fn keys(folder: &Path, section: &str) -> BTreeSet<String> {
     let path = folder.join("campaign.toml");
     known(&path, &format!("[[{section}]]\nxqzxqzxqzxqz = 1\n")).into_iter().collect()
 }
 
-/// Names of the tables and keys of a campaign, those of records first.
+/// Names of the tables and keys of a campaign, kinds of records first.
 pub fn sections() -> Vec<String> {
     let folder = tempfile::tempdir().unwrap();
     known(&folder.path().join("campaign.toml"), "xqzxqzxqzxqz = 1\n")
 }
 
-/// What the complaint about an unknown key says is known there.
+/// The known keys that the error message about an unknown key lists.
 fn known(path: &Path, campaign: &str) -> Vec<String> {
     fs::write(path, campaign).unwrap();
     let found = complaint(&["run", text(path)], 2);
@@ -368,7 +369,7 @@ fn known(path: &Path, campaign: &str) -> Vec<String> {
 #[test]
 fn every_option_of_a_command_is_a_key_of_its_section() {
     let folder = tempfile::tempdir().unwrap();
-    // Of the terminal, or of single files that a campaign writes in any case.
+    // Options of the terminal, and options for single files that a campaign always writes.
     let general = ["style", "json", "max_memory", "help", "out", "replace", "legacy", "each_cycle"];
     let pairs = [
         ("spectrum", "spectrum"),
@@ -379,7 +380,7 @@ fn every_option_of_a_command_is_a_key_of_its_section() {
         ("decay", "decay"),
         ("pulse", "pulse"),
     ];
-    // A sweep lies in several files, and several commands show it.
+    // A sweep consists of several files and belongs to several commands.
     let of_records = sections().into_iter().take_while(|section| section != "name");
     let forgotten = |section: &String| section != "sweep" && pairs.iter().all(|(_, of)| of != section);
     assert_eq!(of_records.filter(forgotten).collect::<Vec<_>>(), Vec::<String>::new());

@@ -1,9 +1,9 @@
-//! `vibro model choose`: keys, refusals that are answers, files, complaints.
+//! `vibro model choose`: keys, answers without a choice, files, error messages.
 
 use super::{complaint, json, text};
 use serde_json::Value;
 
-/// The thesis' rig at ν 2.1, ν = 2πf/√(k₁/m₁).
+/// The thesis' rig at ν = 2.1, where ν = 2πf/√(k₁/m₁).
 const SCENE_B: [&str; 8] =
     ["model", "choose", "--force", "0.5", "--frequency", "10.983764", "--observable", "impact-speed"];
 

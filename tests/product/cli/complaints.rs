@@ -1,4 +1,5 @@
-//! Every failure names the place, what was found, what was expected and what to try; nothing is half-written.
+//! Every error message names the place, what was found, what was expected and what to try; no file is
+//! half-written.
 
 use super::rig::{frequencies, spectrum, sweep};
 use super::{complaint, json, text, vibro};
@@ -21,7 +22,7 @@ fn unreadable_files() {
     has(&complaint(&["info", text(&at("empty.txt", b""))], 2), &["empty.txt", "empty", "try:"]);
     has(&complaint(&["info", text(folder.path())], 2), &["folder", "try:"]);
     has(&complaint(&["info", text(&folder.path().join("absent.txt"))], 2), &["absent.txt", "no such file"]);
-    // A name that holds the word FILE stays as it is.
+    // A file name that contains the word FILE is printed unchanged.
     let log = at("LOGFILE.csv", b"operator: me\nnothing here\n");
     has(&complaint(&["response", text(&log)], 2), &[&format!("try: vibro info {}", text(&log))]);
     let noise: Vec<u8> = (0..4000u32).map(|i| (i.wrapping_mul(2_654_435_761) >> 13) as u8).collect();
@@ -111,7 +112,7 @@ fn all_missing_files_are_named_at_once() {
     fs::remove_file(folder.path().join("FUP0004.DAT")).unwrap();
     fs::remove_file(folder.path().join("VUP0007.DAT")).unwrap();
     let found = complaint(&["response", text(&list)], 2);
-    // Three numbers stand above twelve force files and twelve response files.
+    // In the list, three numbers precede twelve force files and twelve response files.
     let lines = ["FUP0004.DAT (line 7)", "VUP0007.DAT (line 22)"];
     has(&found, &["LIST.TXT, line 7: 2 of 24 files are missing", lines[0], lines[1], "try:"]);
 }
@@ -188,7 +189,7 @@ fn endings_that_stand_for_no_format_are_told() {
     }
 }
 
-/// Nobody may write here, whoever runs the tests.
+/// No user can write to /proc/self.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_folder_that_cannot_be_written_is_named_and_no_other_file() {
@@ -249,7 +250,7 @@ fn odd_sweeps_are_answered_with_a_warning() {
     doubled[5] = doubled[4];
     warned(&doubled, "sweep-steps-repeated");
     warned(&[5.03], "sweep-too-few-points");
-    // A map of repeated excitations has one row each.
+    // Repeated excitations have one row each in the map.
     let list = sweep(folder.path(), &doubled);
     let out = folder.path().join("out");
     json(&["waterfall", text(&list), "--unit", "m/s", "--out", text(&out)]);
@@ -292,7 +293,7 @@ fn mistakes_in_a_campaign_point_at_their_line() {
     has(&complaint(&["run", text(&path)], 2), &["m1 is -1 kg"]);
     with("[[sweep]]\nname = \"a\"\nlist = \"../L.TXT\"\n");
     has(&complaint(&["run", text(&path)], 2), &["outside", "line 3"]);
-    // Nothing was made for runs that failed.
+    // Failed runs leave no files.
     let left: Vec<_> = fs::read_dir(folder.path()).unwrap().map(|e| e.unwrap().file_name()).collect();
     assert!(left.iter().all(|n| n == "campaign.toml"), "{left:?}");
     with("name = \"nothing asked\"\n");
@@ -314,7 +315,7 @@ fn a_rig_and_a_campaign_are_told_apart() {
         let found = complaint(&["model", command, text(&campaign), "--frequency", "5"], 2);
         has(&found, &["campaign.toml: [rig]: this is a campaign, not a rig", "try:", "`vibro run "]);
     }
-    // A key in the wrong place is still told as one.
+    // An unknown key is still reported as one.
     fs::write(&campaign, "gap = 1e-3\n[[frf]]\nfile = \"a.uff\"\n").unwrap();
     has(&complaint(&["run", text(&campaign)], 2), &["line 1", "unknown key `gap`"]);
 }
@@ -403,7 +404,7 @@ fn failures_are_objects_where_json_was_asked_for() {
     assert_eq!(value["errors"].as_array().unwrap().len(), 1);
 }
 
-/// Gives the response files of a sweep another text, made from their values.
+/// Replaces response files of a sweep by a text made from their values.
 fn rewrite(
     folder: &std::path::Path,
     which: std::ops::RangeInclusive<usize>,
@@ -422,7 +423,7 @@ fn a_list_that_contradicts_the_frequency_column_of_its_files() {
     let folder = tempfile::tempdir().unwrap();
     let list = sweep(folder.path(), &frequencies());
     let plain = json(&["response", text(&list), "--unit", "m/s"]);
-    // The same lines with their own frequencies, to 20 Hz in steps of 0.1 Hz.
+    // The same lines with a frequency column, from 0 to 20 Hz in steps of 0.1 Hz.
     let column = |values: &[f64]| {
         let rows = values.iter().enumerate().map(|(k, v)| format!("{:.1},{v:e}", k as f64 * 0.1));
         format!("Frequency [Hz],v [m/s]\n{}\n", rows.collect::<Vec<_>>().join("\n"))
@@ -447,7 +448,7 @@ fn decibels_are_refused() {
     });
     let found = complaint(&["response", text(&list)], 2);
     has(&found, &["VUP0002.DAT", "are these decibels?", "Line 0 (0 Hz)", "linear amplitudes"]);
-    // Levels above the reference are no less levels.
+    // A header that states decibels is enough, even where no level is negative.
     for header in ["Unit: dB", "Y axis: dB re 1e-9 m/s", "Level (dB)"] {
         sweep(folder.path(), &frequencies());
         rewrite(folder.path(), 2..=2, |_| format!("{header}\n{}", "60.5\n".repeat(201)));
@@ -504,20 +505,20 @@ fn a_file_that_a_list_names_and_that_is_missing() {
     let folder = tempfile::tempdir().unwrap();
     let list = sweep(folder.path(), &frequencies());
     fs::remove_file(folder.path().join("VUP0002.DAT")).unwrap();
-    // Three numbers, twelve force names, and the second of the response names.
+    // Line 17 is the second response file, after three numbers and twelve force files.
     has(
         &complaint(&["response", text(&list)], 2),
         &["LIST.TXT, line 17", "1 of 24 files is missing", "VUP0002.DAT"],
     );
 }
 
-/// What is told to be tried, of a complaint.
+/// The hint in an error message, after `try:`.
 fn hint(complaint: &str) -> &str {
     let hint = complaint.split("try: ").nth(1).unwrap_or_else(|| panic!("no hint: {complaint}"));
     hint.lines().next().unwrap()
 }
 
-/// Words as a shell parts them.
+/// Splits a line into words as a shell does.
 fn words(typed: &str) -> Vec<String> {
     let parts = typed.split('"').enumerate().flat_map(|(k, part)| -> Vec<&str> {
         if k % 2 == 1 { vec![part] } else { part.split_whitespace().collect() }
@@ -614,10 +615,10 @@ fn what_a_campaign_is_told_to_write_works() {
         let output = vibro(&["check", text(&path)]);
         let said = String::from_utf8_lossy(&output.stderr);
         let line = format!("campaign.toml, line {}", table.lines().count() + 1);
-        // A table without its file is told at its head.
+        // A table without its file is reported at its first line.
         assert!(!said.contains(&line) || right == "[[frf]]", "{said}");
     }
-    // What no value of this kind is meant by has none.
+    // A value without a likely meaning has no hint.
     for (table, wrong) in [("[rig]\n", "gap = true"), (frf, "band = [1]"), (frf, "channel = 1.5")] {
         fs::write(&path, format!("{table}{wrong}\n")).unwrap();
         let said = complaint(&["check", text(&path)], 2);

@@ -21,7 +21,8 @@ fn two_times() {
     assert!((answer["xi"]["value"].as_f64().unwrap() - 0.20668).abs() < 0.5e-5, "{answer}");
     assert!(answer["xi"]["std"].as_f64().unwrap() > 0.0 && answer["initial_velocity"].is_null());
     assert!(answer["stiffness"]["unit"] == "N/m" && answer["fits"].as_array().unwrap().is_empty());
-    // The low-pass of 30 kHz alone has its first zero at 1/(√2·30 kHz), 23.6 µs.
+    // The impulse response of the low-pass of 30 kHz alone lasts longer: its first zero is at 1/(√2·30 kHz)
+    // = 23.6 µs.
     let behind =
         ["pulse", "--time-to-peak", "6.25e-6", "--duration", "18e-6", "--low-pass", "30000", "--order", "2"];
     let answer = json(&behind);
@@ -39,7 +40,7 @@ fn two_times() {
 fn a_record_with_its_figure() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("bit.csv");
-    // x = e^{-ht} sin(Ωt)/Ω with ξ 0.2 and 10 kHz, 3 m/s: minus its second derivative, until that vanishes.
+    // Deceleration of x = e^{-ht} sin(Ωt)/Ω with ξ = 0.2 and 10 kHz, from 3 m/s until it vanishes.
     let (xi, omega) = (0.2_f64, TAU * 10e3);
     let (h, turn) = (xi * omega, omega * f64::sqrt(1.0 - xi * xi));
     let end = (2.0 * h * turn).atan2(h * h - turn * turn) / turn;
@@ -104,12 +105,12 @@ fn a_record_that_allows_no_answer_does_not_end_a_campaign() {
         assert!(said.contains(&format!("{name}: Left out: ")), "{name}: {said}");
     }
     fs::write(&campaign, entries).unwrap();
-    // The report is written; the exit code says that there is no answer in it.
+    // The report is written; the exit code shows that it contains no result.
     let output = vibro(&["run", text(&campaign), "--json"]);
     assert_eq!(output.status.code(), Some(1));
     let none: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
     assert!(none["warnings"].to_string().contains("No file allows an answer: nothing was computed."));
-    // What cannot be read still ends it.
+    // A file that cannot be read still ends the run.
     fs::write(at("flat.csv"), "no numbers here\n").unwrap();
     complaint(&["run", text(&campaign)], 2);
 }

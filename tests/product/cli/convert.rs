@@ -1,4 +1,4 @@
-//! `vibro convert` with filters, integration and differentiation in time.
+//! `vibro convert` with filters, integration and differentiation in the time domain.
 
 use super::{complaint, json, text};
 use std::f64::consts::TAU;
@@ -11,8 +11,8 @@ use vibroimpact::record::Trace;
 const RATE: f64 = 2000.0;
 const OMEGA: f64 = TAU * 20.0;
 
-/// 4 s of a velocity of 20 Hz and 1 mm amplitude of displacement, with a mean of half its amplitude and, at
-/// 200 Hz, a tenth of it, beside a pulse.
+/// 4 s of a velocity at 20 Hz with a displacement amplitude of 1 mm, plus a tenth of it at 200 Hz and a
+/// mean of half of it; a second channel `pulse`.
 fn bench(folder: &Path) -> PathBuf {
     let mut rows = String::from("time [s],velocity [m/s],pulse [V]\n");
     for i in 0..8000 {
@@ -49,13 +49,13 @@ fn velocity_to_displacement_and_acceleration() {
     let input = bench(folder.path());
     let (x, said) = converted(&input, &["--integrate", "1", "--fmin", "5", "--excitation", "20"]);
     assert_eq!(x.meta.unit.symbol(), "m");
-    // The band from 9.7 to 78 Hz is stated to 1 %.
+    // The stated band, 9.7 to 78 Hz, is accurate to 1 %.
     assert!((amplitude(&x, 1.0) / 1e-3 - 1.0).abs() < 0.01, "{}", amplitude(&x, 1.0));
     for sentence in ["integrated once", "order 4, corner 5 Hz", "within 1 % from 9.", "Drift left: "] {
         assert!(said.contains(sentence), "{sentence}: {said}");
     }
-    // What is said to be left of the excitation is left of it: the high-pass settles within the 3/5 s that
-    // are said, to 1e-4.
+    // The stated gain at the excitation frequency is the actual one. The high-pass settles to 1e-4 within
+    // 3/5 s.
     for (corner, band) in [("5", " Hz high-pass"), ("12", "outside the band")] {
         let (x, said) = converted(&input, &["--integrate", "1", "--fmin", corner, "--excitation", "20"]);
         let (before, after) = said.split_once("trapezoidal rule leave ").unwrap();
@@ -69,8 +69,8 @@ fn velocity_to_displacement_and_acceleration() {
     let (a, said) = converted(&input, &["--integrate", "-1"]);
     assert_eq!(a.meta.unit.symbol(), "m/s²");
     for (multiple, part) in [(1.0, 1.0), (10.0, 1.0)] {
-        // The tenth of the velocity at ten times the frequency is as large an acceleration; 200 Hz lie within
-        // the 235 Hz stated.
+        // A tenth of the velocity at ten times the frequency has the same acceleration; 200 Hz is below the
+        // stated limit of 235 Hz.
         let found = amplitude(&a, multiple) / (1e-3 * OMEGA * OMEGA);
         assert!((found / part - 1.0).abs() < 0.01, "{multiple}: {found}");
     }
@@ -85,7 +85,8 @@ fn filters_pass_twice() {
     let input = bench(folder.path());
     let velocity = 1e-3 * OMEGA;
     let (low, said) = converted(&input, &["--low-pass", "20"]);
-    // Half at the corner; at ten times the corner, 1/(1 + 10⁸) of a tenth.
+    // The filter passes forwards and backwards: half at the corner, 1/(1 + 10⁸) of the tenth at ten times
+    // the corner.
     assert!((amplitude(&low, 1.0) / velocity - 0.5).abs() < 1e-3, "{}", amplitude(&low, 1.0));
     assert!(amplitude(&low, 10.0) < 1e-6 * velocity);
     assert!(said.contains("low-pass of order 4, corner 20 Hz, forwards and backwards"), "{said}");
@@ -126,7 +127,7 @@ fn exponential_smoothing_is_late_by_its_time_constant() {
     fs::write(&input, rows).unwrap();
     let (slow, said) = converted(&input, &["--smoothing", "0.01"]);
     let late = 0.75 - slow.values[1500];
-    // A ramp comes (1 − α)/α samples late, which is the time constant but for half a sample.
+    // A ramp is delayed by (1 − α)/α samples, which is the time constant to within half a sample.
     assert!((late - 0.01).abs() < 0.5 / RATE, "{late}");
     assert!(said.contains("exponential smoothing") && said.contains("15.915494 Hz"), "{said}");
     let both = ["convert", text(&input), "x.csv", "--smoothing", "0.01", "--low-pass", "5"];

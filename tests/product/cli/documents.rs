@@ -1,11 +1,11 @@
-//! The examples of docs/commands.md run, in their order, in a folder that has the repository's examples.
+//! The commands shown in the documents run, in their order, in a folder that has the repository's examples.
 
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::process::Command;
 
-/// Section and command of each line of the blocks of `sh` that begins with `vibro` or a tool of the shell;
-/// lines that end in a backslash go on.
+/// Section and command of each line in `sh` blocks that begins with `vibro` or a shell tool. A line that
+/// ends in a backslash continues on the next.
 fn commands(text: &str) -> Vec<(String, String)> {
     let (mut section, mut shell, mut found) = (String::new(), false, Vec::new());
     let joined = text.replace("\\\n", " ");
@@ -21,13 +21,13 @@ fn commands(text: &str) -> Vec<(String, String)> {
     found
 }
 
-/// Sections whose commands run elsewhere: the record of the first is made by a program of twenty seconds
-/// (`tests/product/drill.rs`); the second measures every method, a minute in a build for development
-/// (`tests/product/failure_map.rs`, `tests/product/cli/precision.rs`).
+/// Sections whose commands are tested elsewhere. The record of `vibro drill` takes twenty seconds to make
+/// (`tests/product/drill.rs`). `vibro precision` measures every method, which takes a minute in a debug
+/// build (`tests/product/failure_map.rs`, `tests/product/cli/precision.rs`).
 #[cfg(unix)]
 const ELSEWHERE: [&str; 2] = ["vibro drill", "vibro precision"];
 
-/// Runs a line of the shell in a folder, with `vibro` on its path.
+/// Runs a shell command in a folder, with `vibro` on its path.
 #[cfg(unix)]
 fn shell(line: &str, folder: &Path) -> std::process::Output {
     let program = Path::new(env!("CARGO_BIN_EXE_vibro")).parent().unwrap();
@@ -36,8 +36,8 @@ fn shell(line: &str, folder: &Path) -> std::process::Output {
     command.args(["-c", line]).current_dir(folder).env("PATH", path).output().expect("a shell")
 }
 
-/// Runs the commands of a document in their order, in a folder that has the repository's examples; gives the
-/// number of each section's.
+/// Runs the commands of a document in their order, in a folder that has the repository's examples. Returns
+/// the number of commands of each section.
 #[cfg(unix)]
 fn run(document: &str) -> BTreeMap<String, usize> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
@@ -61,7 +61,7 @@ fn run(document: &str) -> BTreeMap<String, usize> {
 
 const TUTORIAL: &str = "docs/tutorial.md";
 
-/// What the tutorial shows of a run is what it prints.
+/// Checks that the run prints every line of output that the tutorial shows.
 fn shown(text: &str, line: &str, output: &std::process::Output) {
     let printed = String::from_utf8_lossy(&output.stderr);
     let blocks = text.split("```text\n").skip(1).filter_map(|block| block.split("```").next());
@@ -93,8 +93,8 @@ fn the_tutorial_and_the_recipes_run() {
     assert_eq!(run("docs/recipes.md").len(), 9);
 }
 
-/// The commands of the tables of the thesis name options and values that are taken, and files that are here.
-/// Behind all options `--help` keeps them from running, which would take half a minute.
+/// The commands in the tables of the thesis have valid options and values, and their files exist. A final
+/// `--help` keeps them from running, which would take half a minute.
 #[cfg(unix)]
 #[test]
 fn the_commands_of_the_thesis_are_taken() {
@@ -107,7 +107,7 @@ fn the_commands_of_the_thesis_are_taken() {
         let output = shell(&format!("{line} --help"), root);
         assert!(output.status.success(), "{line}\n{}", String::from_utf8_lossy(&output.stderr));
         let files = line.split([' ', '#']).filter(|word| word.starts_with("examples/"));
-        // `vibro demo hammer_drill` makes its recordings.
+        // `vibro demo hammer_drill` generates its recordings.
         for file in files.filter(|file| !file.starts_with("examples/hammer_drill")) {
             assert!(root.join(file).is_file(), "{line}: {file}");
         }
@@ -156,7 +156,7 @@ fn documents_for_reading_are_short_and_in_the_book() {
     let text = |name: &str| std::fs::read_to_string(root.join(name)).unwrap();
     assert!(text("README.md").lines().count() < 120);
     let summary = text("docs/SUMMARY.md");
-    // Reference and records of measurements are looked up, not read.
+    // Pages for reference and pages of measured results may be longer.
     let reference = [
         "campaign.md",
         "commands.md",
@@ -189,22 +189,23 @@ fn the_example_bench_gives_back_the_truth() {
     let value = |estimate: &serde_json::Value| {
         (estimate["value"].as_f64().unwrap(), estimate["std"].as_f64().unwrap_or(f64::NAN))
     };
-    // The true values of TRUTH.csv.
+    // True values of TRUTH.csv.
     let mode = &results["frf"][0]["modes"][0];
     let (f, f_std) = value(&mode["frequency"]);
     assert!((f - 60.0).abs() < 4.0 * f_std && f_std < 0.5, "{mode}");
-    // The damping of a peak of 2.4 Hz at lines of 1 Hz: leakage, which would widen it by up to 23 %, is in
-    // the fit, and said.
+    // The peak is 2.4 Hz wide, and lines are 1 Hz apart. Leakage, which would widen the peak by up to 23 %,
+    // is part of the fit and is reported.
     let (zeta, zeta_std) = value(&mode["zeta"]);
     assert!((zeta - 0.02).abs() < 4.0 * zeta_std && zeta_std < 0.25 * 0.02, "{mode}");
     assert!(answer["results"].to_string().contains("modal-leakage-fitted"), "{}", answer["results"]["frf"]);
     let spring = |f: f64| 0.125 * (std::f64::consts::TAU * f).powi(2);
     let (k, k_std) = value(&mode["stiffness"]);
     assert!((k - spring(60.0)).abs() < 4.0 * k_std && k_std < 0.02 * k, "{mode}");
-    // A = 1/m of a single mass.
+    // The modal constant of a single mass is A = 1/m.
     let (constant, constant_std) = value(&mode["modal_constant"]);
     assert!((0.125 * constant - 1.0).abs() < 4.0 * 0.125 * constant_std, "{mode}");
-    // The contact through both amplifiers: uniform noise of ±3 m/s², a standard deviation of √3.
+    // The contact recorded with both amplifiers; uniform noise of ±3 m/s² has a standard deviation of √3
+    // m/s².
     for pulse in &results["pulses"].as_array().unwrap()[..2] {
         for (key, truth) in [("xi", 0.2), ("frequency", 500.0), ("stiffness", spring(500.0))] {
             let (found, std) = value(&pulse[key]);

@@ -1,4 +1,4 @@
-//! Tables of a campaign that cannot be: each loses only itself, and a check names all.
+//! Faulty tables of a campaign: a run leaves out only the faulty table, and a check names all of them.
 
 use super::init::write;
 use super::stepped::write_steps;
@@ -10,7 +10,7 @@ use std::fs;
 use std::path::Path;
 use vibroimpact::math::Noise;
 
-/// A folder with a free decay and a campaign of this text.
+/// Writes a free decay and a campaign of this text into a folder.
 fn campaign(root: &Path, tables: &str) {
     write(&root.join("ok.csv"), "displacement [mm]", 2000.0, 3.0, &mut |t| {
         (-0.02 * TAU * 37.0 * t).exp() * (TAU * 37.0 * t).sin()
@@ -43,7 +43,7 @@ fn a_table_with_an_impossible_value_or_without_its_file_loses_only_itself() {
         assert!(warnings.contains(line) || said.starts_with("no sweep"), "{table}: {warnings}");
         let found = complaint(&["check", text(root.path())], 2);
         assert!(found.contains(said) && found.contains(line), "{table}: {found}");
-        // Alone it gives no answer, and the error is that of the run.
+        // If it is the only table, the run fails with its error.
         campaign(root.path(), table);
         let found = complaint(&["run", text(root.path())], 2);
         assert!(found.contains(said), "{table}: {found}");
@@ -116,14 +116,14 @@ fn a_file_in_two_tables_is_a_caution() {
     let expected = [("two".to_owned(), 1.0), ("again".to_owned(), 2.0)];
     assert_eq!(twice(&json(&["check", text(root.path())])), expected);
     assert_eq!(twice(&json(&["run", text(root.path())])["results"]), expected);
-    // Another channel, another part of a record and another kind of answer are no repetition.
+    // Another channel, another part of a record or another analysis is no repetition.
     let other =
         format!("{decay}span = [0, 1]\n{}[[spectrum]]\nfile = \"ok.csv\"\n", decay.replace("one", "two"));
     campaign(root.path(), &other);
     assert!(twice(&json(&["check", text(root.path())])).is_empty());
 }
 
-/// A lone step of a sweep has power in one line only.
+/// A single step of a sweep has power in one line only.
 #[test]
 fn a_function_of_a_lone_sine_is_refused() {
     let root = tempfile::tempdir().unwrap();
@@ -132,7 +132,7 @@ fn a_function_of_a_lone_sine_is_refused() {
     let found = complaint(&["modal", text(&file), "--reference", "Force"], 1);
     assert!(found.contains("Force is a sine of 26.000 Hz alone"), "{found}");
     assert!(found.contains("vibro response") && found.contains("vibro spectrum"), "{found}");
-    // What is to be typed works.
+    // The suggested command works.
     let answer = json(&["spectrum", text(&file), "--channel", "Accel", "--tones", "1"]);
     assert!((answer["tones"][0]["frequency"]["value"].as_f64().unwrap() - 26.0).abs() < 1e-3, "{answer}");
     let table = "[[frf]]\nname = \"lone\"\nfile = \"sine.csv\"\nreference = \"Force\"\n[[decay]]\nfile = \"ok.csv\"\n";
@@ -150,14 +150,14 @@ fn a_campaign_file_of_another_program_is_not_touched() {
         let found = complaint(&["init", text(root.path())], 2);
         assert!(found.contains("no campaign of vibro") && found.contains("try: mv "), "{found}");
         assert_eq!(fs::read_to_string(root.path().join("campaign.toml")).unwrap(), text_of_other);
-        // What is to be typed works.
+        // The suggested command works.
         let (from, to) = (root.path().join("campaign.toml"), root.path().join("campaign.other.toml"));
         fs::rename(from, to).unwrap();
         json(&["init", text(root.path())]);
     }
 }
 
-/// Force and response in files of their own give the function of both in one file, bit for bit.
+/// Force and response in separate files give the same function as in one file, bit for bit.
 #[test]
 fn a_reference_may_lie_in_a_file_of_its_own() {
     let root = tempfile::tempdir().unwrap();
@@ -203,13 +203,13 @@ fn a_reference_may_lie_in_a_file_of_its_own() {
     assert_eq!(json(&["run", text(root.path())])["results"]["frf"][0]["modes"], expected);
     fs::write(at("campaign.toml"), table("gone.csv#force")).unwrap();
     assert!(complaint(&["check", text(root.path())], 2).contains("gone.csv does not exist"));
-    // Another length is no pair.
+    // A reference of another length is refused.
     fs::write(at("force.csv"), force.lines().take(4000).collect::<Vec<_>>().join("\n")).unwrap();
     let said = complaint(&["modal", text(&at("velocity.csv")), "--reference", &beside], 2);
     assert!(said.contains("reference in") && said.contains("samples"), "{said}");
 }
 
-/// Both masses of a rig are measured under the force that is recorded once for each step.
+/// Both masses are measured under the same force, which is recorded once for each step.
 #[test]
 fn a_force_may_be_that_of_two_sweeps() {
     let example = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/two_mass_rig/campaign.toml");

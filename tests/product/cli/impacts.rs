@@ -1,4 +1,4 @@
-//! `vibro impacts` and `vibro restitution`: keys, numbers, refusals.
+//! `vibro impacts` and `vibro restitution`: keys, values, error messages.
 
 use super::{complaint, json, vibro};
 use serde_json::Value;
@@ -90,7 +90,7 @@ fn restitution_of_numbers_and_of_records() {
     assert!((r.as_f64().unwrap() - 0.2112).abs() < 4.0 * u.as_f64().unwrap(), "{found}");
     let train = json(&["restitution", &example("BOUNCE.CSV"), "--height", "0.57", "--height-std", "0.001"]);
     assert_eq!((train["by"].as_array().unwrap().len(), train["agree"].as_bool()), (2, Some(true)));
-    // No number is preferred, so there is no answer: the JSON says what each method gave.
+    // The methods disagree and none is preferred, so there is no answer; the JSON gives the result of each.
     let torn = vibro(&[
         "restitution",
         "--json",
@@ -106,7 +106,7 @@ fn restitution_of_numbers_and_of_records() {
     assert_eq!(torn.status.code(), Some(1));
     let torn: Value = serde_json::from_slice(&torn.stdout).unwrap();
     assert!(torn["agree"] == false && torn["restitution"]["value"].is_null(), "{torn}");
-    // (0.14·7.5 − 0.28·4)/0.14 = −0.5, and (4 + 0.5)/7.5 = 0.6.
+    // Momentum: (0.14·7.5 − 0.28·4)/0.14 = −0.5 m/s after the impact, so R = (4 + 0.5)/7.5 = 0.6.
     let struck = json(&["restitution", "--before", "7.5,0", "--after2", "4", "--masses", "0.14,0.28"]);
     assert!((struck["restitution"]["value"].as_f64().unwrap() - 0.6).abs() < 1e-12, "{struck}");
 }
@@ -123,7 +123,7 @@ fn restitution_refuses_what_cannot_be() {
 #[test]
 fn impacts_are_matched_to_a_shape_that_is_known() {
     let folder = tempfile::tempdir().unwrap();
-    // Pulses of 0.3 ms standard deviation at odd times, 10 kHz; their shape at 50 kHz.
+    // Gaussian pulses of 0.3 ms standard deviation between samples of 10 kHz; their known shape has 50 kHz.
     let pulse = |t: f64| (-0.5 * (t / 3e-4).powi(2)).exp();
     let times: Vec<f64> = (0..12).map(|k| 0.05 + 0.100_037 * f64::from(k)).collect();
     let mut noise = Noise::new(5);
@@ -143,12 +143,13 @@ fn impacts_are_matched_to_a_shape_that_is_known() {
     std::fs::write(&known, shape).unwrap();
     let found = json(&["impacts", file.to_str().unwrap(), "--shape", known.to_str().unwrap()]);
     assert!(found["interval"]["method"].as_str().unwrap().contains("known shape"), "{found}");
-    // The first flank passes half of its height √(2 ln 2) standard deviations before the top.
+    // The rising flank passes half its height √(2 ln 2) standard deviations before the peak.
     let early = 3e-4 * (2.0 * 2f64.ln()).sqrt();
     let ours: Vec<f64> = found["times"].as_array().unwrap().iter().map(|t| t.as_f64().unwrap()).collect();
     assert_eq!(ours.len(), times.len());
     for (a, b) in ours.iter().zip(&times) {
-        // Noise of 2e-3/√12 over Σ(slope)² = √π/(2·3) a sample: 1.1e-3 samples; five of these.
+        // Noise of 2e-3/√12 of the height, and Σ(slope)² = √π/(2·3) a sample: 1.1e-3 samples; five times
+        // that is allowed.
         assert!((a - (b - early)).abs() < 6e-7, "{a} {}", b - early);
     }
     let constant = folder.path().join("constant.csv");

@@ -11,7 +11,7 @@ use std::path::Path;
 use std::process::Command;
 use vibroimpact::math::Noise;
 
-/// A file of one channel beside the time.
+/// Writes a file with the time and one channel.
 pub fn write(path: &Path, head: &str, rate: f64, seconds: f64, value: &mut dyn FnMut(f64) -> f64) {
     let mut text = format!("time [s],{head}\n");
     for i in 0..(rate * seconds) as usize {
@@ -21,12 +21,12 @@ pub fn write(path: &Path, head: &str, rate: f64, seconds: f64, value: &mut dyn F
     fs::write(path, text).unwrap();
 }
 
-/// A burst of ringing that begins at 0.
+/// A burst of ringing at 2900 Hz that begins at t = 0.
 pub fn burst(t: f64) -> f64 {
     if t < 0.0 { 0.0 } else { (-t / 0.003).exp() * (TAU * 2900.0 * t).sin() }
 }
 
-/// One record of each kind that a person may have in a folder; each row of the answer: file, section.
+/// Writes recordings of most kinds. Returns file and section of each expected table, in their order.
 fn folder(root: &Path) -> [(&'static str, &'static str); 7] {
     steps(root);
     fs::remove_file(root.join("campaign.toml")).unwrap();
@@ -66,7 +66,7 @@ fn folder(root: &Path) -> [(&'static str, &'static str); 7] {
     ]
 }
 
-/// The files of its folder that a run says no table names.
+/// Files of the folder that a run reports as named by no table.
 fn not_named(campaign: &Path) -> String {
     let run = json(&["run", text(campaign)]);
     let findings = run["results"]["findings"].as_array().unwrap();
@@ -97,7 +97,7 @@ fn each_record_of_a_folder_gets_the_table_of_its_kind() {
     };
     assert_eq!([keys("guessed", "force"), keys("guessed", "response"), keys("missing", "height")], [1, 1, 1]);
     assert_eq!(answer["left"][0][0], "notes.txt");
-    // It runs as it stands, and what it says stays.
+    // The campaign runs unchanged, and a second `init` does not change it.
     let found = json(&["check", text(&campaign)]);
     assert_eq!(found["files"].as_array().unwrap().len(), 12 + 4);
     let run = json(&["run", text(&campaign)]);
@@ -105,7 +105,7 @@ fn each_record_of_a_folder_gets_the_table_of_its_kind() {
     assert!(json(&["init", text(root.path())])["found"].as_array().unwrap().is_empty());
     assert_eq!(fs::read_to_string(&campaign).unwrap(), written);
     assert!(!run.to_string().contains("files-not-named"));
-    // A recording that comes later is named, and gets a table behind the others.
+    // A recording that is added later is reported, and `init` appends a table for it.
     fs::copy(root.path().join("release.csv"), root.path().join("later.csv")).unwrap();
     assert_eq!(not_named(&campaign), "later.csv");
     json(&["init", text(root.path())]);
@@ -119,7 +119,7 @@ fn each_record_of_a_folder_gets_the_table_of_its_kind() {
     assert_eq!(decays(&later), 1 + decays(&run));
 }
 
-/// Two drops in one record: the bounces of one are not told from those of the other.
+/// Two drops in one record: the bounces of one cannot be told from those of the other.
 #[test]
 fn drops_whose_bounces_are_not_told_yet_are_drops_with_what_to_try() {
     let root = tempfile::tempdir().unwrap();
@@ -142,7 +142,7 @@ fn drops_whose_bounces_are_not_told_yet_are_drops_with_what_to_try() {
     let written = fs::read_to_string(root.path().join("campaign.toml")).unwrap();
     let (_, refused) = written.split_once("two trains of bounces").expect("why it is left out");
     assert!(refused.contains("`span = [") && refused.contains("#[[drop]]"), "{written}");
-    // A run names the keys of the refusal.
+    // A check prints the keys that would help.
     let said = String::from_utf8(vibro(&["check", text(root.path())]).stderr).unwrap();
     assert!(said.contains("two.csv is not measured yet: ") && said.contains("`span = ["), "{said}");
 }
@@ -153,7 +153,7 @@ fn a_folder_runs_without_a_campaign_and_nothing_is_written_beside_its_files() {
     folder(root.path());
     let before: Vec<_> = fs::read_dir(root.path()).unwrap().map(|e| e.unwrap().file_name()).collect();
     for _ in 0..2 {
-        // The second run passes over the results of the first.
+        // The second run ignores the results of the first.
         let output = vibro(&["run", text(root.path())]);
         let said = String::from_utf8_lossy(&output.stderr).into_owned();
         assert_eq!(output.status.code(), Some(0), "{said}");
@@ -168,8 +168,7 @@ fn a_folder_runs_without_a_campaign_and_nothing_is_written_beside_its_files() {
         serde_json::from_slice(&fs::read(root.path().join("results/results.json")).unwrap()).unwrap();
     let interval = &results["impacts"][0]["interval"];
     let [value, std] = ["value", "std"].map(|key| interval[key].as_f64().unwrap());
-    // Samples are 0.1 ms apart, and a fourth of that is the most by which a mean of 33 intervals of 1/11 s
-    // can be off.
+    // Samples are 0.1 ms apart; the mean of 33 intervals of 1/11 s is off by at most a quarter of that.
     assert!((value - 1.0 / 11.0).abs() < 2.5e-5 && std < 1e-4, "{interval}");
 }
 
@@ -185,7 +184,7 @@ fn a_sweep_is_named_by_its_files_a_pattern_or_a_folder() {
     assert_eq!(named["points"].as_array().unwrap().len(), 12);
     assert_eq!(named["points"], pattern["points"]);
     assert_eq!(named["points"], of_folder["points"]);
-    // A single trace is no sweep, and nor are traces without a force.
+    // A single trace is no sweep, and traces without a force are none.
     let alone = root.path().join("alone.csv");
     write(&alone, "sound [V]", 1000.0, 1.0, &mut f64::sin);
     let said = complaint(&["response", text(&alone), text(&alone)], 2);
@@ -207,7 +206,7 @@ fn a_folder_without_recordings_is_named_and_a_rate_can_be_stated() {
     assert!(written.contains("rate = 1000") && written.contains("unit = \"m/s²\""), "{written}");
 }
 
-/// 1 s, a pause of 0.3 s, 1.5 s.
+/// 1 s of samples, a gap of 0.3 s, then 1.5 s of samples.
 #[test]
 fn of_a_record_with_lost_samples_the_longest_even_stretch_is_proposed() {
     let dir = tempfile::tempdir().unwrap();
@@ -224,7 +223,7 @@ fn of_a_record_with_lost_samples_the_longest_even_stretch_is_proposed() {
     let spectrum = &answer["results"]["spectra"][0];
     let values: Vec<f64> = spectrum["value"].as_array().unwrap().iter().filter_map(Value::as_f64).collect();
     let largest = (0..values.len()).max_by(|a, b| values[*a].total_cmp(&values[*b])).unwrap();
-    // Lines of 1.5 s are 0.67 Hz apart.
+    // A record of 1.5 s has lines 0.67 Hz apart.
     assert!((spectrum["frequency"][largest].as_f64().unwrap() - 20.0).abs() < 0.67, "{largest}");
 }
 
@@ -253,8 +252,8 @@ fn an_example_is_written_with_its_recordings_and_runs() {
     assert_eq!(listed["demos"].as_array().unwrap().len(), 4);
     let answer = json(&["demo", "bench", "--out", text(&folder)]);
     assert_eq!(answer["results"]["decays"][0]["modes"].as_array().unwrap().len(), 1);
-    // The recordings are those of the repository; a second time nothing is written anew, and a changed file
-    // is left.
+    // The recordings equal those of the repository. A second call writes nothing, and a changed file is not
+    // replaced.
     let own = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/bench");
     for name in ["BENCH.CSV", "PULSE.CSV", "FILTERED.CSV", "DECAY.CSV", "TRUTH.csv", "campaign.toml"] {
         assert_eq!(fs::read(folder.join(name)).unwrap(), fs::read(own.join(name)).unwrap(), "{name}");
@@ -285,7 +284,7 @@ fn a_folder_that_is_watched_runs_again_when_a_file_lands() {
         Some(results["pulses"].as_array().map_or(0, Vec::len))
     };
     let wait = |wanted: usize| {
-        // A machine under load needs some seconds.
+        // A loaded machine needs some seconds.
         (0..300).any(|_| {
             std::thread::sleep(std::time::Duration::from_millis(100));
             pulses() == Some(wanted)
@@ -300,7 +299,7 @@ fn a_folder_that_is_watched_runs_again_when_a_file_lands() {
     assert!(first && second, "{first} {second}");
 }
 
-/// Two accelerometers of one name, one step clipped, and a name that would end a comment.
+/// Two accelerometers of the same name, one clipped step, and a file name that would end a comment.
 #[cfg(unix)]
 #[test]
 fn odd_names_and_one_bad_step_still_give_a_campaign_that_runs() {
@@ -349,8 +348,8 @@ fn a_check_names_channels_that_are_not_there_and_tables_that_are_comments() {
     );
 }
 
-/// From within the folder, with names that are parts of others, and beside a series of drops whose height is
-/// known.
+/// `init` inside the folder, with file names that are parts of others, and a series of drops whose height
+/// is known.
 #[test]
 fn what_comes_later_joins_its_series_and_is_not_taken_for_another_file() {
     let root = tempfile::tempdir().unwrap();
@@ -382,7 +381,7 @@ fn what_comes_later_joins_its_series_and_is_not_taken_for_another_file() {
     assert_eq!(not_named(&path), "");
     fs::copy(root.path().join("fall3.csv"), root.path().join("fall4.csv")).unwrap();
     fs::copy(root.path().join("release.csv"), root.path().join("lease.csv")).unwrap();
-    // A pattern takes it in; tables of one file each do not.
+    // A table with a pattern includes the new file; tables of one file each do not.
     assert_eq!(not_named(&path), "lease.csv");
     let pattern = "[[drop]]\nname = \"fall\"\nfile = \"fall*.csv\"\nheight = 0.57\nheight_std = 0.001\n";
     let each = ["1", "2", "3"].map(|k| pattern.replace('*', k)).concat();
@@ -398,7 +397,7 @@ fn what_comes_later_joins_its_series_and_is_not_taken_for_another_file() {
         "{added}"
     );
     assert!(added.contains("file = \"lease.csv\"") && added.matches("[[").count() == 2, "{added}");
-    // A table that cannot stand behind the others is not written.
+    // If no table can be appended to the file, it is not changed.
     fs::write(&path, "decay = [{ file = \"release.csv\" }]\n").unwrap();
     assert_eq!(here(&["init", "."]).0, Some(2));
     assert_eq!(fs::read_to_string(&path).unwrap(), "decay = [{ file = \"release.csv\" }]\n");

@@ -1,4 +1,4 @@
-//! What a second run computes, and what it keeps.
+//! Which answers a second run computes, and which it keeps.
 
 use super::{json, text, vibro};
 use std::collections::BTreeMap;
@@ -7,7 +7,8 @@ use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Records of every kind but drills, as a campaign has them.
+/// Copies the recordings of two examples and writes a sweep. Returns a campaign with every kind of record
+/// but drills.
 pub fn records(folder: &Path) -> String {
     let examples = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples");
     let mut campaign = String::from("name = \"all\"\n");
@@ -54,7 +55,7 @@ fn a_second_run_computes_what_changed_and_gives_what_a_first_would() {
     let (out, anew) = (root.path().join("results"), root.path().join("anew"));
     let path = root.path().join("campaign.toml");
     let campaign = records(root.path());
-    // How many answers were kept, where the results are those of a run that keeps none.
+    // Number of kept answers; the results must equal those of a run that keeps none.
     let kept = |campaign: &str| {
         fs::write(&path, campaign).unwrap();
         let output = vibro(&["run", text(&path)]);
@@ -69,25 +70,25 @@ fn a_second_run_computes_what_changed_and_gives_what_a_first_would() {
     let all = kept(&campaign);
     // Sweep, modes, spectrum, function, decay, three pulses, impacts, three series of drops.
     assert_eq!(all, 12);
-    // A key of one table, and its place in the file.
+    // A changed key costs the answer of its table; a table that only moves within the file costs none.
     let segment = campaign.replacen("segment = 1024", "segment = 2048", 1);
     assert_eq!(kept(&segment), all - 1);
     assert_eq!(kept(&format!("# remarks\n\n{segment}")), all);
-    // A key of the head: sweeps, what names one, and series of drops rest on it.
+    // A key of `[compute]` affects sweeps, tables that name a sweep, and series of drops.
     assert_eq!(kept(&format!("{segment}\n[compute]\nfmax = 30\n")), all - 5);
     assert_eq!(kept(&campaign), all - 6);
-    // A recording.
+    // A changed recording.
     let pulse = fs::read_to_string(root.path().join("PULSE.CSV")).unwrap();
     fs::write(root.path().join("PULSE.CSV"), pulse.trim_end().rsplit_once('\n').unwrap().0).unwrap();
     assert_eq!(kept(&campaign), all - 1);
-    // A step of the sweep: its response and its modes.
+    // A changed step of the sweep affects its response and its modes.
     let step = fs::read_to_string(root.path().join("step2.csv")).unwrap();
     fs::write(root.path().join("step2.csv"), step.replace(",3.0", ",3.1")).unwrap();
     assert_eq!(kept(&campaign), all - 2);
-    // Its name alone: it stands in the history of the results.
+    // A renamed step: file names are part of the history of the results.
     fs::rename(root.path().join("step5.csv"), root.path().join("step6.csv")).unwrap();
     assert_eq!(kept(&campaign), all - 2);
-    // What was kept is damaged, in part or as a whole.
+    // Damaged kept answers are not used, whether damaged in part or as a whole.
     let file = out.join(".vibro.kept");
     let bytes = fs::read(&file).unwrap();
     fs::write(&file, &bytes[..bytes.len() / 2]).unwrap();

@@ -1,4 +1,4 @@
-//! A folder of many recordings: what `vibro init` proposes of them, and at what cost.
+//! A folder of many recordings: what `vibro init` proposes, and how long it takes.
 
 use super::{json, text};
 use std::f64::consts::TAU;
@@ -9,8 +9,8 @@ use std::process::Command;
 use std::time::{Duration, Instant};
 use vibroimpact::math::Noise;
 
-/// A folder `rig` of files of force and velocity under noise, 300 rows each: functions that a name does not
-/// tell apart.
+/// Writes a folder `rig` of files with force and velocity, 300 rows each, driven by noise. Their names do
+/// not show that they are functions.
 fn functions(root: &Path, files: usize) -> PathBuf {
     let (folder, mut noise) = (root.join("rig"), Noise::new(8));
     fs::create_dir(&folder).unwrap();
@@ -41,7 +41,7 @@ fn a_long_series_of_functions_is_one_table_in_bounded_work() {
         let mut init = Command::new(env!("CARGO_BIN_EXE_vibro"));
         let output = init.args(["init", text(&folder)]).env("RAYON_NUM_THREADS", cores).output().unwrap();
         assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
-        // Eight of the files take about 4 s in a build for development, all of them minutes.
+        // Eight of the files take about 4 s in a debug build; all of them would take minutes.
         assert!(begun.elapsed() < Duration::from_secs(20), "{:?}", begun.elapsed());
         proposed.push(fs::read_to_string(&campaign).unwrap());
         fs::remove_file(&campaign).unwrap();
@@ -56,8 +56,8 @@ fn a_long_series_of_functions_is_one_table_in_bounded_work() {
     assert_eq!(json(&["check", text(&folder)])["files"].as_array().unwrap().len(), 250);
 }
 
-/// Pulses up to the seventh file, sines from there on: each file has a table of its kind, in the order of the
-/// numbers.
+/// Pulses up to the seventh file, sines in the rest: each file gets a table of its kind, in numerical
+/// order.
 #[test]
 fn where_files_of_a_series_are_of_several_kinds_each_gets_its_own() {
     let root = tempfile::tempdir().unwrap();

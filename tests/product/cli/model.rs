@@ -1,4 +1,4 @@
-//! `vibro model orbit` and `response`: keys, settings, files, complaints.
+//! `vibro model orbit` and `response`: keys, settings, files, error messages.
 
 use super::{complaint, json, text};
 

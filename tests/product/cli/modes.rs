@@ -8,7 +8,7 @@ use vibroimpact::record::{Axis, Meta, Record, Scaling, Spectrum, Values};
 use vibroimpact::units::Unit;
 use vibroimpact::write::{Precision, Storage, Target};
 
-/// An accelerance of a mode at 80.3 Hz with ζ 0.01 and A = 2/kg, by its formula.
+/// Accelerance of a mode at 80.3 Hz with ζ = 0.01 and A = 2/kg, computed by its formula.
 fn accelerance() -> String {
     let mut rows =
         String::from("frequency [Hz],accelerance real [(m/s²)/N],accelerance imaginary [(m/s²)/N]\n");
@@ -30,7 +30,7 @@ fn modes_of_a_file() {
     let out = folder.path().join("figures");
     let answer = json(&["modal", text(&path), "--complex", "--mass", "0.125", "--out", text(&out)]);
     let mode = &answer["modes"][0];
-    // Printed to nine digits.
+    // Values are printed with nine digits.
     assert!((mode["frequency"]["value"].as_f64().unwrap() - 80.3).abs() < 1e-5, "{answer}");
     assert!((mode["zeta"]["value"].as_f64().unwrap() - 0.01).abs() < 1e-6, "{answer}");
     assert!((mode["modal_constant"]["value"].as_f64().unwrap() - 2.0).abs() < 1e-3, "{answer}");
@@ -46,7 +46,8 @@ fn modes_of_a_file() {
     complaint(&["modal", text(&path), "--complex", "--band", "120"], 2);
 }
 
-/// A ratio of two voltages is fitted as A/(ωᵣ² − ω² + 2iζωᵣω): A is the ratio times (rad/s)².
+/// A ratio of two voltages is fitted as A/(ωᵣ² − ω² + 2iζωᵣω), so A has the unit of the ratio times
+/// (rad/s)².
 #[test]
 fn the_modal_constant_of_a_ratio_is_no_inverse_mass() {
     let folder = tempfile::tempdir().unwrap();
@@ -62,13 +63,13 @@ fn the_modal_constant_of_a_ratio_is_no_inverse_mass() {
     fs::write(&path, rows).unwrap();
     let answer = json(&["modal", text(&path), "--complex"]);
     let found = &answer["modes"][0]["modal_constant"];
-    // Printed to nine digits.
+    // Values are printed with nine digits.
     assert!((found["value"].as_f64().unwrap() / constant - 1.0).abs() < 1e-5, "{answer}");
     assert_eq!(found["unit"], "1/s²");
 }
 
-/// Lines without frequencies have no answer in Hz, and a spectrum of one signal has no modal constants: what
-/// the message says to state helps.
+/// Lines without frequencies give no result in Hz, and the spectrum of one signal gives no modal constant.
+/// The options that the error message names help.
 #[test]
 fn lines_that_are_no_function_are_refused_until_it_is_stated() {
     let folder = tempfile::tempdir().unwrap();
@@ -87,7 +88,7 @@ fn lines_that_are_no_function_are_refused_until_it_is_stated() {
 
     let refused = complaint(&["modal", text(&numbered)], 1);
     assert!(refused.contains("(--base-band)") && refused.contains("frequencies"), "{refused}");
-    // The last line stands at 199.5 Hz; numbers of nine digits.
+    // The last line lies at 199.5 Hz; values have nine digits.
     assert!(
         (frequency(&["modal", text(&numbered), "--base-band", "199.5", "--unit", "(m/s²)/N"]) - 80.3).abs()
             < 1e-5

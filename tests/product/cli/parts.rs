@@ -47,7 +47,7 @@ fn workbook(path: &Path, sheets: &[(&str, f64)]) {
     book.save(path).unwrap();
 }
 
-/// An archive and a workbook of two records each, by path and frequency in Hz.
+/// Writes an archive and a workbook of two records each. Returns path and frequency in Hz of each record.
 fn folder(root: &Path) -> [(&'static str, f64); 4] {
     archive(&root.join("walk.zip"), &[("first.csv", 23.0), ("sub/second.csv", 41.0)]);
     workbook(&root.join("book.xlsx"), &[("Left hand", 57.0), ("Right hand", 89.0)]);
@@ -59,7 +59,7 @@ fn folder(root: &Path) -> [(&'static str, f64); 4] {
     ]
 }
 
-/// The strongest tone of each spectrum lies within a line of width 1/T of the frequency that was put in.
+/// The strongest tone of each spectrum lies within 1/T, one line, of the true frequency.
 fn holds_tones(spectra: &Value, expected: &[f64]) {
     let found: Vec<f64> = spectra
         .as_array()
@@ -83,18 +83,19 @@ fn a_campaign_measures_parts_of_archives_and_workbooks() {
     json(&["check", text(&path)]);
     let answer = json(&["run", text(&path)]);
     holds_tones(&answer["results"]["spectra"], &parts.map(|(_, frequency)| frequency));
-    // An input is the file that can be checked.
+    // The list of inputs names the archive and the workbook, whose checksums can be checked.
     let inputs = fs::read_to_string(root.path().join("results/inputs.sha256")).unwrap();
     for file in ["  walk.zip\n", "  book.xlsx\n"] {
         assert_eq!(inputs.matches(file).count(), 1, "{inputs}");
     }
-    // Another content is measured anew.
+    // Changed content is analysed again.
     archive(&root.path().join("walk.zip"), &[("first.csv", 31.0), ("sub/second.csv", 41.0)]);
     let again = json(&["run", text(&path)]);
     holds_tones(&again["results"]["spectra"], &[31.0, 41.0, 57.0, 89.0]);
 }
 
-/// A folder for results that ends like a file is refused with a name that works, and is not made.
+/// A folder of results whose name ends like a file name is refused with a name that works, and is not
+/// created.
 #[test]
 fn results_go_to_no_folder_named_like_a_file() {
     let root = tempfile::tempdir().unwrap();
@@ -108,7 +109,7 @@ fn results_go_to_no_folder_named_like_a_file() {
     }
     let plain = root.path().join("new");
     assert!(vibro(&["spectrum", text(&part), "--out", text(&plain)]).status.success() && plain.is_dir());
-    // A folder that is there may have any name.
+    // An existing folder may have any name.
     fs::rename(&plain, root.path().join("old.v2.csv")).unwrap();
     let out = root.path().join("old.v2.csv");
     assert!(vibro(&["spectrum", text(&part), "--out", text(&out)]).status.success());
@@ -136,7 +137,7 @@ fn a_part_that_is_not_there_is_said_with_those_that_are() {
 fn init_writes_a_table_of_each_part_and_the_campaign_runs() {
     let root = tempfile::tempdir().unwrap();
     let parts = folder(root.path());
-    // Records of one name in two archives.
+    // Records of the same name in two archives.
     archive(&root.path().join("later.zip"), &[("first.csv", 103.0), ("second.csv", 127.0)]);
     json(&["init", text(root.path())]);
     let path = root.path().join("campaign.toml");
@@ -152,7 +153,7 @@ fn init_writes_a_table_of_each_part_and_the_campaign_runs() {
     json(&["check", text(&path)]);
     let answer = json(&["run", text(&path)]);
     assert_eq!(answer["results"]["spectra"].as_array().unwrap().len(), 6);
-    // All parts are named: nothing of the folder is left.
+    // The campaign names all parts, so none is reported as not named.
     let said = String::from_utf8(vibro(&["run", text(&path)]).stderr).unwrap();
     assert!(!said.contains("walk.zip"), "{said}");
 }
@@ -177,7 +178,7 @@ fn a_reference_may_be_a_part() {
         (root.path().join("walk.zip/sub/second.csv"), root.path().join("walk.zip/first.csv"));
     let reference = format!("{}#1", text(&reference));
     let said = vibro(&["modal", text(&file), "--reference", &reference]);
-    // Both files were read: what is refused is the reference of one sine.
+    // Both files were read: the error is about the reference, which is one sine.
     assert!(String::from_utf8_lossy(&said.stderr).contains("sine"), "{said:?}");
 }
 

@@ -1,35 +1,36 @@
 //! `vibro model orbit --impacts --cycles` and `vibro model continue`: keys, values against closed forms,
-//! complaints.
+//! error messages.
 
 use super::{complaint, json, text, vibro};
 use num_complex::Complex64;
 use serde_json::Value;
 use std::f64::consts::TAU;
 
-/// Mass, stiffness and damper of both masses of the thesis' rig, and its gap.
+/// Mass in kg, stiffness in N/m and damper in N s/m of both masses of the thesis' rig, and its gap in m.
 const MASSES: [[f64; 3]; 2] = [[0.125, 135.0, 0.1], [0.094, 128.0, 0.1]];
 const GAP: f64 = 1e-3;
 
-/// Impulse over approach speed, M(1 + R).
+/// Impulse over approach velocity in kg: M(1 + R) with the reduced mass M.
 fn exchange(restitution: f64) -> f64 {
     let [m1, m2] = MASSES.map(|m| m[0]);
     m1 * m2 / (m1 + m2) * (1.0 + restitution)
 }
 
-/// 1/(k − mω² + icω) of a mass.
+/// Receptance 1/(k − mω² + icω) of a mass in m/N.
 fn receptance(mass: usize, omega: f64) -> Complex64 {
     let [m, k, c] = MASSES[mass];
     Complex64::new(k - m * omega * omega, c * omega).inv()
 }
 
-/// ω in rad/s at ν = ω/Ω₁.
+/// ω in rad/s at the frequency ratio ν = ω/Ω₁.
 fn omega(nu: f64) -> f64 {
     nu * (MASSES[0][1] / MASSES[0][0]).sqrt()
 }
 
-/// What the closed form leaves of an impulse once in `cycles` cycles of F₀ cos ωt: (C² + (P/ω)²)J² + 2ΔCJ +
-/// Δ² − A² by the sum of the sizes of its terms. Of the periodic Green's function χ(t) = e^{−bt}[sin λt + B
-/// sin λ(T−t)]/(mλ(1 + B² − 2B cos λT)), B = e^{−bT}: C is the sum of both χ(0), P that of 1/(M(1+R)) and
+/// Relative residual of the closed form for an impulse J once in `cycles` cycles of F₀ cos ωt: (C² +
+/// (P/ω)²)J² + 2ΔCJ + Δ² − A², divided by the sum of the magnitudes of its terms. Δ is the gap, A the
+/// amplitude of mass 1 without impacts. The periodic Green's function is χ(t) = e^{−bt}[sin λt + B sin
+/// λ(T−t)]/(mλ(1 + B² − 2B cos λT)) with B = e^{−bT}: C is the sum of both χ(0), P that of 1/(M(1+R)) and
 /// both χ̇(T⁻) (Babitsky 1998).
 fn left(force: f64, frequency: f64, gap: f64, restitution: f64, impulse: f64, cycles: f64) -> f64 {
     let (omega, period) = (TAU * frequency, cycles / frequency);
@@ -61,7 +62,7 @@ fn multipliers(orbit: &Value) -> Vec<Complex64> {
     list(orbit, "multipliers").iter().map(z).collect()
 }
 
-/// `vibro model …` with words between spaces.
+/// Runs `vibro model …` with arguments separated by spaces.
 fn model(typed: &str) -> Value {
     json(&["model"].into_iter().chain(typed.split(' ')).collect::<Vec<_>>())
 }
@@ -70,7 +71,7 @@ fn refused(typed: &str, code: i32) -> String {
     complaint(&["model"].into_iter().chain(typed.split(' ')).collect::<Vec<_>>(), code)
 }
 
-/// The scene of docs/commands.md in which one impact a cycle has flipped.
+/// The scene of docs/commands.md in which the motion of one impact a cycle has doubled its period (flip).
 const TWICE: &str = "--frequency 6.3 --force 0.9 --set restitution=0.9 --impacts 2 --cycles 2";
 
 #[test]
@@ -94,8 +95,8 @@ fn motions_of_several_impacts_have_their_keys_and_keep_the_laws_of_their_impacts
         }
         let beats = list(orbit, "impacts");
         assert_eq!((beats.len(), &orbit["cycles"]), (2, &Value::from(2)));
-        // Newton's last step is below 1e-10 and squares: what is left are roundings, enlarged by the motion's
-        // sensitivity (tens).
+        // Newton's last step is below 1e-10 and converges quadratically. What remains are roundings,
+        // amplified by the motion's sensitivity (some tens).
         let close = |a: f64, b: f64| assert!((a - b).abs() < 1e-11 * b.abs(), "{a} {b} in {orbit}");
         for beat in beats {
             close(number(beat, "impulse"), exchange(restitution) * number(beat, "approach_velocity"));
@@ -103,13 +104,13 @@ fn motions_of_several_impacts_have_their_keys_and_keep_the_laws_of_their_impacts
         let sum = |key: &str| beats.iter().map(|b| number(b, key)).sum::<f64>();
         close(sum("interval"), cycles / frequency);
         close(number(orbit, "impulse"), sum("impulse"));
-        // The volume of the state space shrinks by R² at each impact, by the dampers between: det = R^{2p}
-        // exp(−2(b₁+b₂)T).
+        // Each of p impacts shrinks the volume of the state space by R², and the dampers shrink it between
+        // impacts: det = R^{2p} exp(−2(b₁+b₂)T).
         let decay: f64 = MASSES.iter().map(|[m, _, c]| c / (2.0 * m)).sum();
         let det: Complex64 = multipliers(orbit).iter().product();
         close(det.re, restitution.powi(4) * (-2.0 * decay * cycles / frequency).exp());
         assert!(det.im.abs() < 1e-11);
-        // Blows of the impulses J at the phases φ have the line (2/T)ΣJe^{−iφ} at the frequency of the force.
+        // Impacts of impulse J at the phases φ have the line (2/T)ΣJe^{−iφ} at the frequency of the force.
         let omega = TAU * frequency;
         let blows: Complex64 = beats
             .iter()
@@ -127,19 +128,19 @@ fn motions_of_several_impacts_have_their_keys_and_keep_the_laws_of_their_impacts
 
 #[test]
 fn one_impact_in_several_cycles_is_the_closed_form() {
-    // Without impacts mass 1 moves farther than the gap (A > Δ): the product of both roots is negative.
+    // Without impacts mass 1 moves farther than the gap (A > Δ), so the product of both roots is negative.
     for cycles in [1, 2, 3] {
         let found = model(&format!("orbit --frequency 11 --force 0.5 --cycles {cycles}"));
         let impulses: Vec<f64> = list(&found, "orbits").iter().map(|o| number(o, "impulse")).collect();
         assert!(impulses.len() == 2 && impulses[0] > 0.0 && impulses[1] < 0.0, "{impulses:?}");
         for impulse in impulses {
             let left = left(0.5, 11.0, GAP, 0.7, impulse, f64::from(cycles));
-            // Some fifty roundings.
+            // Some fifty rounding errors.
             assert!(left.abs() < 1e-14, "{left} at {impulse} N s");
         }
     }
-    // The thesis' rig at ν 2.1, 0.5 N, R 0.7: the other root as published for it, all digits of a double; its
-    // sensitivity is below 100.
+    // The thesis' rig at ν = 2.1, 0.5 N and R = 0.7: the published value of the second root, with all digits
+    // of a double. Its sensitivity is below 100.
     let found = model(&format!("orbit --force 0.5 --frequency {}", omega(2.1) / TAU));
     let impulse = number(&list(&found, "orbits")[1], "impulse");
     assert!((impulse / -0.008_944_428_353_726_736 - 1.0).abs() < 1e-13, "{impulse}");
@@ -166,7 +167,7 @@ fn a_branch_has_its_keys_and_each_point_is_the_closed_form() {
                 let (force, frequency) = (of("force", 0.5), of("frequency", 11.0));
                 let (gap, restitution) = (of("gap", GAP), of("restitution", 0.7));
                 let left = left(force, frequency, gap, restitution, number(point, "impulse"), 1.0);
-                // As the branch's Newton: its last step is below 1e-10 and squares.
+                // Newton's last step on the branch is below 1e-10 and converges quadratically.
                 assert!(left.abs() < 1e-12, "{over} {value}: {left}");
             }
             let ends = list(branch, "ends");
@@ -175,7 +176,7 @@ fn a_branch_has_its_keys_and_each_point_is_the_closed_form() {
             for mark in list(branch, "marks") {
                 let after = mark["after"].as_u64().unwrap() as usize;
                 assert!(after + 1 < points.len() && mark["kind"].is_string(), "{mark}");
-                // It lies between its neighbours on the branch, so within their steps of both.
+                // A mark lies between its neighbours on the branch, so within their steps of both.
                 let at = |v: &Value| number(v, "value");
                 let (a, b, m) = (at(&points[after]), at(&points[after + 1]), at(&mark["orbit"]));
                 let step = (a - b).abs() + 0.05 * m.abs();
@@ -187,15 +188,15 @@ fn a_branch_has_its_keys_and_each_point_is_the_closed_form() {
 
 #[test]
 fn a_branch_passes_the_peak_of_the_thesis_and_grazes_where_the_linear_motion_does() {
-    // Golden values of the rig at 0.5 N and R 0.7: the impact speed is largest at ν 2.00992 with 0.46903 m/s,
-    // and the amplitude without impacts falls below the gap at ν 2.168715614919.
+    // Reference values of the rig at 0.5 N and R = 0.7: the approach velocity has its maximum of 0.46903 m/s
+    // at ν = 2.00992, and the amplitude without impacts falls below the gap at ν = 2.168715614919.
     let found = model("continue --force 0.5 --frequency 11 --from 8 --to 14 --step 0.01");
     let all: Vec<&Value> = list(&found, "branches").iter().collect();
     let points = all.iter().flat_map(|b| list(b, "points"));
     let speed = |p: &Value| number(&p["impacts"][0], "approach_velocity");
     let fastest = points.max_by(|a, b| speed(a).total_cmp(&speed(b))).unwrap();
-    // At the peak the speed falls with the square of the way along the branch: by less than 1e-3 in steps of
-    // 0.01.
+    // Near the maximum the velocity falls with the square of the distance along the branch: by less than
+    // 1e-3 at steps of 0.01.
     assert!((speed(fastest) / 0.46903 - 1.0).abs() < 1e-3, "{fastest}");
     assert!((TAU * number(fastest, "value") / omega(2.00992) - 1.0).abs() < 5e-3, "{fastest}");
     let grazing: Vec<f64> = all
@@ -204,8 +205,8 @@ fn a_branch_passes_the_peak_of_the_thesis_and_grazes_where_the_linear_motion_doe
         .filter(|m| m["kind"] == "grazing")
         .map(|m| TAU * number(&m["orbit"], "value") / omega(2.168_715_614_919) - 1.0)
         .collect();
-    // The frequency of a touch is located by bisection to 1e-11 of a step; an impulse near 0 is known by the
-    // root of that.
+    // The frequency of grazing is found by bisection to 1e-11 of a step. An impulse near 0 is known to the
+    // square root of that.
     assert!(grazing.iter().any(|off| off.abs() < 1e-6), "{grazing:?}");
 }
 
@@ -227,8 +228,8 @@ fn motions_of_two_cycles_are_drawn_beside_the_flips_of_one() {
             })
             .collect()
     };
-    // Twice the period begins and ends where a multiplier of one impact a cycle is −1. The turn is flat: a
-    // difference of 1e-2 between both halves of the motion moves its frequency by the square of that.
+    // Motions of twice the period begin and end where a multiplier of one impact a cycle is −1. There a
+    // difference of 1e-2 between both halves of the motion changes the frequency by the square of it, 1e-4.
     let (twice, once) = (values("branches"), values("one_impact"));
     assert!(!twice.is_empty());
     for flip in &twice {
@@ -244,7 +245,7 @@ fn motions_of_two_cycles_are_drawn_beside_the_flips_of_one() {
 
 #[test]
 fn a_search_that_finds_nothing_says_so() {
-    // The force moves mass 1 by F₀|L₁| = 0.02 mm: the masses do not meet over a gap of 1 mm.
+    // The force moves mass 1 by F₀|L₁| = 0.02 mm, so the masses do not meet over a gap of 1 mm.
     let found = model("orbit --force 0.001 --frequency 6.3 --impacts 2 --cycles 3");
     assert!(list(&found, "orbits").is_empty() && found["no_impact"]["possible"] == true);
     assert_eq!(found["findings"][0]["code"], "no-orbit-found");
@@ -270,7 +271,7 @@ fn impossible_counts_say_which_and_what_to_type() {
             assert!(said.contains(found) && said.contains(hint), "{command} {typed}: {said}");
         }
     }
-    // The closed form takes any number of cycles but none.
+    // The closed form takes any number of cycles except 0.
     let said = refused("orbit --force 0.9 --frequency 6.3 --cycles 0", 2);
     assert!(
         said.contains("0 cycles in a period; expected 1 or more") && said.contains("try: 1 (--cycles)"),
@@ -346,7 +347,7 @@ fn a_start_without_motion_or_force_is_refused() {
             "no motion with 1 impact in 1 cycle at frequency 11 Hz",
             "`vibro model response`",
         ),
-        // Seven impacts in a cycle would need a gap a small part of this.
+        // Seven impacts in a cycle would need a much smaller gap.
         (
             "--force 0.5 --frequency 11 --impacts 7 --from 8 --to 14",
             1,

@@ -1,4 +1,4 @@
-//! `vibro precision` on what an earlier run measured: fronts, lines of other programs, charts.
+//! `vibro precision` on the results of an earlier run: fronts, results of other programs, charts.
 
 use serde_json::json;
 
@@ -37,7 +37,7 @@ fn an_earlier_run_is_drawn_with_the_lines_of_other_programs() {
         "--out",
         &path("out"),
     ]);
-    // On the front: the fastest that answers and the most accurate; a failure is on none, however fast.
+    // The front has the fastest method with an answer and the most accurate one. A failure is never on it.
     let front: Vec<(&str, &str)> = answer["scenes"][0]["methods"]
         .as_array()
         .unwrap()
@@ -49,14 +49,14 @@ fn an_earlier_run_is_drawn_with_the_lines_of_other_programs() {
     let warnings = answer["warnings"][0].as_str().unwrap();
     assert!(warnings.contains("1 line of the scene \"another\""), "{warnings}");
     let chart = std::fs::read_to_string(path("out/precision_scene_c.svg")).unwrap();
-    // What failed is named: "events" has failed alone, the other program once out of twice.
+    // Failed methods are named: `events` failed in its only run, the other program in one of two.
     assert!(chart.contains("above: failed"));
     let named =
         [">events: failed<", ">Peer 1.0<", ">Peer 1.0: failed<"].map(|name| chart.matches(name).count());
     assert_eq!((named, chart.matches(">events<").count()), ([1, 1, 1], 0));
     let table = std::fs::read_to_string(path("out/precision.csv")).unwrap();
     assert_eq!(table.lines().filter(|l| l.contains("it stalls")).count(), 2, "{table}");
-    // Numbers that cannot be are no measurement.
+    // Impossible numbers are refused.
     for (key, value) in [("time_ns", -5.0), ("error", -1.0)] {
         let mut edited: serde_json::Value =
             serde_json::from_str(&std::fs::read_to_string(path("earlier.json")).unwrap()).unwrap();
@@ -68,7 +68,7 @@ fn an_earlier_run_is_drawn_with_the_lines_of_other_programs() {
     for wrong in ["earlier.json", "out"] {
         super::complaint(&["precision", "--from", &path("earlier.json"), "--add", &path(wrong)], 2);
     }
-    // The text says what the errors are, and names a number of another program that cannot be.
+    // The text names the unit of the errors, and an impossible number of another program is named.
     let text = super::vibro(&["precision", "--from", &path("earlier.json")]);
     assert!(String::from_utf8(text.stdout).unwrap().contains("\nError: error in s\n"));
     let impossible = json!([{ "scene": "scene C", "method": "Peer 1.0", "error": -1.0, "time_ns": 1e3 }]);
@@ -78,7 +78,7 @@ fn an_earlier_run_is_drawn_with_the_lines_of_other_programs() {
     assert!(said.contains("Peer 1.0") && said.contains("error is -1; expected a number above 0"), "{said}");
 }
 
-/// Scenes without methods and a map of one cell in a file.
+/// Results of an earlier run: two scenes without methods, and a failure map of one cell.
 fn earlier(family: &str) -> serde_json::Value {
     let scene = |name: &str| json!({ "name": name, "family": family, "says": "", "error_of": "error in s", "truth": "", "bound": null, "methods": [] });
     let cell = json!({
@@ -107,7 +107,7 @@ fn failures_of_an_earlier_run_are_drawn_again() {
         assert!(table.contains("all times agree"), "{table}");
         std::fs::remove_dir_all(out).unwrap();
     }
-    // What the file does not hold is not drawn in silence.
+    // Parts that the file does not contain are reported.
     let said = super::complaint(&["precision", "--from", &path("earlier.json"), "--family", "estimators"], 2);
     assert!(said.contains("no scenes of this kind"), "{said}");
     std::fs::write(path("scenes.json"), json!({ "scenes": held["scenes"] }).to_string()).unwrap();
@@ -115,7 +115,8 @@ fn failures_of_an_earlier_run_are_drawn_again() {
     assert!(said.contains("no failures of this kind") && said.contains("try: "), "{said}");
 }
 
-/// The example of docs/precision.md is one, and has every key that its table lists; so is that of `--help`.
+/// The example in docs/precision.md is valid and has every key that its table lists; the example in
+/// `--help` is valid.
 #[test]
 fn the_lines_of_other_programs_are_as_described() {
     let folder = tempfile::tempdir().unwrap();
@@ -144,7 +145,7 @@ fn the_lines_of_other_programs_are_as_described() {
     assert!(lines.iter().all(|line| line.as_object().unwrap().keys().all(|k| keys.contains(&k.as_str()))));
 }
 
-/// The whole of it, small: scenes and borders of the estimators, their charts, tables and keys.
+/// The whole command in its quick form: scenes and limits of the estimators, their charts, tables and keys.
 #[test]
 #[ignore = "the whole command: cargo test --release -- --ignored"]
 fn estimators_are_measured_and_drawn() {
@@ -171,7 +172,7 @@ fn estimators_are_measured_and_drawn() {
             assert_eq!(method["error"].is_null(), failed);
             assert!(method["time_ns"].as_f64().unwrap() > 0.0 && (!failed || method["why"].is_string()));
         }
-        // On each chart something is best, and this library has an answer.
+        // Each chart has a front, and this library has an answer.
         let methods = scene["methods"].as_array().unwrap();
         assert!(methods.iter().any(|m| m["front"] == true));
         assert!(methods.iter().any(|m| m["ours"] == true && m["failed"] == false));
@@ -182,7 +183,8 @@ fn estimators_are_measured_and_drawn() {
         assert!(outcomes.contains(&cell["outcome"].as_str().unwrap()) && cell["family"] == "estimators");
         assert!(["method", "border", "scene", "why"].iter().all(|key| cell[key].is_string()));
     }
-    // One chart a scene and one map a quantity, each twice, and two tables; names that every system takes.
+    // One chart per scene and one map per quantity, each in two formats, and two tables. File names are
+    // valid on every system.
     let files = answer["files"].as_array().unwrap();
     assert_eq!(files.len(), 2 * (9 + 5) + 2);
     let names: Vec<String> = std::fs::read_dir(&out)

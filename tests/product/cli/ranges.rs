@@ -1,4 +1,4 @@
-//! Whatever number is typed, a command ends soon, with an answer or a reason.
+//! Whatever number is typed, a command ends within seconds, with an answer or a reason.
 
 use super::{complaint, text, vibro};
 use std::fmt::Write as _;
@@ -7,7 +7,7 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
-/// A decay at 40 Hz with blows of a hammer beside it, twice, at 1 kHz.
+/// A decay at 40 Hz after a hammer blow, twice, at 1 kHz.
 fn record(folder: &Path) -> String {
     let mut rows = "time [s],force [N],velocity [m/s]\n".to_owned();
     for i in 0..4000 {
@@ -41,7 +41,7 @@ fn a_band_without_end_is_refused_by_the_command_and_by_a_campaign() {
     assert_eq!(vibro(&["check", text(&campaign)]).status.code(), Some(0));
 }
 
-/// Options of a command that take numbers, with how their values are written.
+/// Options of a command that take numbers, with the placeholders of their values.
 fn numbers(command: &[&str]) -> Vec<(String, String)> {
     let help = vibro(&[command, &["--help"]].concat());
     let help = String::from_utf8(help.stdout).unwrap();
@@ -55,7 +55,7 @@ fn numbers(command: &[&str]) -> Vec<(String, String)> {
     options.collect()
 }
 
-/// How `number` is typed where `kind` is asked for.
+/// The ways to type `number` for a value of this kind.
 fn typed(kind: &str, number: &str) -> Vec<String> {
     match kind {
         "LO:HI" => vec![format!("0:{number}"), format!("{number}:20")],
@@ -103,7 +103,7 @@ fn every_number_of_every_command_ends_soon_with_an_answer_or_a_reason() {
         assert!(!options.is_empty(), "{base:?}");
         for (option, kind) in options {
             for value in values.iter().flat_map(|value| typed(&kind, value)) {
-                // What the base says of the option goes.
+                // The option and its value are first removed from the base command.
                 let said = base.iter().position(|word| *word == option);
                 let kept =
                     base.iter().enumerate().filter(|(i, _)| said.is_none_or(|at| *i != at && *i != at + 1));

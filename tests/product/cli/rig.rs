@@ -1,4 +1,4 @@
-//! A small sweep made by hand: clean Hann lines of a sine at each excitation frequency.
+//! A small synthetic sweep: lines of a sine with a Hann window at each excitation frequency, without noise.
 
 use std::fmt::Write as _;
 use std::fs;
@@ -9,13 +9,13 @@ use vibroimpact::signal::window::line_shape;
 pub const LINES: usize = 200;
 pub const BASE_BAND: f64 = 20.0;
 
-/// Amplitude of the made-up response in m: a resonance at 5.6 Hz.
+/// Amplitude of the synthetic response in m: a resonance at 5.6 Hz.
 pub fn amplitude(f: f64) -> f64 {
     let r = f / 5.6;
     1e-3 / (1.0 - r * r).hypot(0.1 * r)
 }
 
-/// A spectrum of one sine, one value a line.
+/// Spectrum of one sine at `frequency` in Hz, one value a line.
 pub fn spectrum(frequency: f64, amplitude: f64) -> String {
     let mut text = String::new();
     for k in 0..=LINES {
@@ -26,7 +26,8 @@ pub fn spectrum(frequency: f64, amplitude: f64) -> String {
     text
 }
 
-/// Writes force (0.1 N) and velocity spectra at these frequencies and their list file; gives its path.
+/// Writes force spectra (0.1 N), velocity spectra and the list file of these frequencies in Hz. Returns the
+/// path of the list.
 pub fn sweep(folder: &Path, frequencies: &[f64]) -> PathBuf {
     let mut names = String::new();
     for (letter, response) in [('F', false), ('V', true)] {
@@ -42,7 +43,7 @@ pub fn sweep(folder: &Path, frequencies: &[f64]) -> PathBuf {
     list
 }
 
-/// Frequencies between the lines, rising.
+/// Rising frequencies in Hz that lie between the lines.
 pub fn frequencies() -> Vec<f64> {
     (0..12).map(|i| 4.03 + 0.273 * f64::from(i)).collect()
 }

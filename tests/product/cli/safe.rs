@@ -1,5 +1,4 @@
-//! Nothing of a person's is lost: what is replaced, what is looked at, and what a killed or failing run
-//! leaves.
+//! User files are never lost: replacing results, searching folders, killed and failing runs.
 
 use super::kept::{contents, records};
 use super::{complaint, json, text, vibro};
@@ -10,7 +9,7 @@ use std::time::{Duration, Instant};
 use tempfile::TempDir;
 use vibroimpact::math::Noise;
 
-/// Commands that write into a folder, behind a recording of an example where they read one.
+/// Commands that write into a folder, each with the example recording that it reads (empty: none).
 const COMMANDS: [(&str, &[&str]); 19] = [
     ("bench/BENCH.CSV", &["spectrum", "--channel", "velocity", "--segment", "1024"]),
     ("bench/BENCH.CSV", &["spectrum", "--channel", "velocity", "--reference", "force", "--segment", "1024"]),
@@ -80,14 +79,14 @@ fn line<'a>(command: &[&'a str], file: Option<&'a Path>, more: &[&'a str]) -> Ve
         .collect()
 }
 
-/// Names of files that a command writes.
+/// Names of the files that a command wrote, without its hidden ones.
 fn written(folder: &Path) -> Vec<String> {
     let names = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap());
     names.filter(|name| !name.starts_with(".vibro")).collect()
 }
 
-/// A recording that has the name of a file which the command would write beside it, and a file of a person's
-/// that has it: both stay, and the command says so before it looks at its input.
+/// No result replaces a user's file or the input recording. A user's file is reported before the input is
+/// read, which is empty here.
 #[test]
 fn no_command_replaces_what_a_person_has() {
     let mut tried = 0;
@@ -97,7 +96,7 @@ fn no_command_replaces_what_a_person_has() {
         let file = Some(recording).filter(|name| !name.is_empty()).map(example);
         let output = vibro(&line(command, file.as_deref(), &["--out", text(&clean)]));
         if ["response", "waterfall"].contains(&command[0]) {
-            // A lone step is no sweep; its file names are those of the test below.
+            // One recording is no sweep, so these two commands fail; the next test covers them.
             assert!(!output.status.success());
             continue;
         }
@@ -125,13 +124,13 @@ fn no_command_replaces_what_a_person_has() {
             fs::remove_file(&path).unwrap();
             tried += 2;
         }
-        // What vibro wrote itself it writes again.
+        // Results of an earlier run are replaced without `--replace`.
         json(&line(command, file.as_deref(), &["--out", text(&clean)]));
     }
     assert!(tried > 100, "{tried}");
 }
 
-/// The steps of a sweep of the campaign below, as a pattern.
+/// The input of a sweep is a file pattern: the steps that `records` writes.
 #[test]
 fn a_sweep_and_a_conversion_replace_nothing() {
     let root = tempfile::tempdir().unwrap();
@@ -157,8 +156,7 @@ fn a_sweep_and_a_conversion_replace_nothing() {
     json(&["convert", text(&from), text(&to), "--single"]);
 }
 
-/// What a person has in the folder of results, under each name that a campaign with records of most kinds
-/// writes.
+/// A user's file under each result name of a campaign with most kinds of record: none is replaced.
 #[test]
 fn no_campaign_replaces_what_a_person_has() {
     let root = tempfile::tempdir().unwrap();
@@ -168,10 +166,10 @@ fn no_campaign_replaces_what_a_person_has() {
     json(&["run", text(&path), "--out", text(&clean)]);
     let names: Vec<String> = contents(&clean).keys().map(|name| text(name).to_owned()).collect();
     assert!(names.len() > 40, "{names:?}");
-    // Of all names the results stand beside the recordings.
+    // With `out = "."` the results go into the folder of the recordings.
     let campaign = format!("out = \".\"\n{}", records(root.path()));
     fs::write(&path, campaign).unwrap();
-    // A name that is read, too: the answer must not depend on it, so that nothing is computed.
+    // A user's file with each name in turn: the run refuses it, and nothing is computed.
     for name in &names {
         let mine = root.path().join(name);
         assert!(!mine.exists(), "{name}");
@@ -181,13 +179,13 @@ fn no_campaign_replaces_what_a_person_has() {
         assert_eq!(fs::read(&mine).unwrap(), b"a person's", "{name}");
         fs::remove_file(&mine).unwrap();
     }
-    // Nothing was written by any of them.
+    // None of these runs wrote a result.
     assert!(!root.path().join("results.json").exists());
     let said = complaint(&["run", text(&path), "--out", text(&root.path().join("BENCH.CSV"))], 2);
     assert!(!said.contains("panicked"));
 }
 
-/// A table whose recording has the name of what it would write.
+/// A recording that has the name of its own table's result is not replaced.
 #[test]
 fn a_recording_of_a_results_own_name_stays() {
     for (recording, section, name) in [
@@ -243,12 +241,13 @@ fn one_bad_file_loses_only_itself() {
     assert!(answer["results"]["decays"][0]["modes"][0]["frequency"]["value"].is_number());
     let said = answer["warnings"].to_string();
     assert!(said.contains("PULSE.CSV") && said.contains("Left out"), "{said}");
-    // Where nothing is answered it is an error.
+    // If no table can be analysed, the run fails.
     fs::write(&path, "[[pulse]]\nfile = \"PULSE.CSV\"\n").unwrap();
     assert!(complaint(&["run", text(&path)], 2).contains("PULSE.CSV"));
 }
 
-/// A result that a campaign reads is an input, though what it says is known from an earlier run.
+/// A result that the campaign now reads is an input: it is not replaced, even if its answer is kept from an
+/// earlier run.
 #[test]
 fn a_result_that_is_read_stays() {
     let (root, path) = bench();
@@ -264,8 +263,7 @@ fn a_result_that_is_read_stays() {
     }
 }
 
-/// Starts a command, waits until it has said a line so many times or for a while, and gives how often it did
-/// in the end.
+/// Runs `vibro run --watch` for the time `wait`, kills it, and returns how often it printed `watching`.
 fn watched(folder: &Path, wait: Duration) -> usize {
     let said = tempfile::tempdir().unwrap();
     let out = said.path().join("said");
@@ -285,7 +283,7 @@ fn watched(folder: &Path, wait: Duration) -> usize {
 fn results_in_the_folder_that_is_watched_are_no_change() {
     let (root, path) = bench();
     fs::write(&path, "out = \".\"\n[[decay]]\nfile = \"DECAY.CSV\"\n").unwrap();
-    // It looks at the folder every half second.
+    // The folder is polled every 0.5 s; 8 polls must not start a second run.
     assert_eq!(watched(root.path(), Duration::from_secs(4)), 1);
 }
 
@@ -345,7 +343,7 @@ mod on_unix {
         assert_eq!(fs::read(&file).unwrap(), before);
     }
 
-    /// A file without permission, a pipe and a folder in the place of a record lose only themselves.
+    /// A pipe or a folder in place of a recording loses only its own table.
     #[test]
     fn records_that_cannot_be_read_lose_only_themselves() {
         let (root, path) = bench();
@@ -375,11 +373,11 @@ mod on_unix {
             assert!(said.contains("outside") && said.contains("allow-outside"), "{said}");
             json(&["run", text(&path), "--allow-outside"]);
         }
-        // The file of a campaign is a pipe.
+        // The campaign file is a pipe: it is refused.
         fs::remove_file(&path).unwrap();
         assert!(Command::new("mkfifo").arg(&path).status().unwrap().success());
         assert!(complaint(&["run", text(root.path())], 2).contains("not a regular file"));
-        // It is a link to a file elsewhere, which nothing is added to.
+        // The campaign file is a link to a file outside the folder: `init` does not append to it.
         fs::remove_file(&path).unwrap();
         fs::write(other.path().join("c.toml"), "[[decay]]\nfile = \"DECAY.CSV\"\n").unwrap();
         symlink(other.path().join("c.toml"), &path).unwrap();
@@ -390,7 +388,7 @@ mod on_unix {
         );
     }
 
-    /// A disk without room, as a limit on the size of files.
+    /// A full disk, simulated by a file size limit of 0 (`ulimit -f 0`).
     #[test]
     fn a_campaign_is_written_whole_or_not_at_all() {
         let (root, path) = bench();
@@ -415,8 +413,8 @@ mod on_unix {
         assert!(text.starts_with("# mine\n[[decay]]\nfile = \"DECAY.CSV\"\n") && text.contains("PULSE.CSV"));
     }
 
-    /// Two campaigns write into one folder in turn, and are killed: every second time while files get their
-    /// names.
+    /// Two campaigns write into one folder in turn and are killed: half of the kills while files are renamed
+    /// into place (`INCOMPLETE.txt` exists), half at a random time.
     fn kills(times: u64) {
         let root = tempfile::tempdir().unwrap();
         let records = records(root.path());
@@ -496,7 +494,7 @@ mod on_unix {
     }
 }
 
-/// The inputs of an attack, as others made them.
+/// Inputs made to attack the program, kept in `../shared/found`.
 #[test]
 fn found_inputs_of_an_attack_do_no_harm() {
     let Some(found) = crate::others_files::folder("../found") else { return };
@@ -514,7 +512,8 @@ fn found_inputs_of_an_attack_do_no_harm() {
     let before = fs::read(&file).unwrap();
     complaint(&["spectrum", text(&file), "--channel", "2", "--out", text(file.parent().unwrap())], 2);
     assert_eq!(fs::read(&file).unwrap(), before);
-    // Its results are those of a version that kept no manifest, so they are not replaced.
+    // The results in this folder have no manifest, so they count as user files: one watch round, nothing
+    // replaced.
     assert_eq!(watched(&at("watch_out_dot"), Duration::from_secs(3)), 1);
     let mark = at("incomplete_symlink/results/INCOMPLETE.txt");
     let target = fs::read_link(&mark).unwrap();

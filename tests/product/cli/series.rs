@@ -1,4 +1,4 @@
-//! Files that belong together whatever their names are: steps of a sweep, drops of one body.
+//! Files that belong together whatever their names: steps of a sweep, drops of one body.
 
 use super::init::{burst, write};
 use super::stepped::write_steps;
@@ -8,7 +8,7 @@ use std::fs;
 use std::path::Path;
 use vibroimpact::math::Noise;
 
-/// Steps under names as they are typed at a bench: decimals, blanks, marks of a repetition, endings in
+/// File names of steps as typed at a bench: decimals, blanks, marks of a repetition, extensions in
 /// capitals.
 const ODD: [(&str, f64); 13] = [
     ("sine_14hz.csv", 14.0),
@@ -34,8 +34,8 @@ fn excitations(answer: &Value) -> Vec<f64> {
     answer["points"].as_array().unwrap().iter().map(|p| p["excitation"].as_f64().unwrap()).collect()
 }
 
-/// The frequencies are those written, in this order: 6 s of a force with a noise of a thousandth tell them to
-/// 10 µHz.
+/// Checks the excitation frequencies in Hz and their order. A force of 6 s with noise of 0.1 % gives each
+/// to 10 µHz.
 fn are(found: &[f64], expected: &[f64]) {
     assert_eq!(found.len(), expected.len(), "{found:?}");
     assert!(found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-3), "{found:?}");
@@ -54,7 +54,7 @@ fn proposed(folder: &Path) -> String {
 fn steps_are_told_by_what_is_in_them() {
     let root = tempfile::tempdir().unwrap();
     write_steps(root.path(), &named(&ODD), 6.0);
-    // A step that was stopped early has the columns and the rate, but not the length.
+    // A step that was stopped early has the same columns and sampling rate but is shorter.
     write_steps(root.path(), &named(&[("cut.csv", 26.0)]), 4.0);
     let answer = json(&["response", text(root.path())]);
     are(&excitations(&answer), &ODD.map(|(_, f)| f));
@@ -63,7 +63,7 @@ fn steps_are_told_by_what_is_in_them() {
     assert!(files.contains("sine_33hz (repeat).csv") && again["numbers"]["n"] == 1.0, "{again}");
     let more = finding(&answer, "sweep-more-steps").expect("the short step is named");
     assert_eq!((&more["numbers"]["files"], &more["numbers"]["n"]), (&"cut.csv".into(), &1.0.into()));
-    // By a pattern, what it does not mean is named.
+    // Further steps that the pattern does not match are named.
     let some = json(&["response", text(&root.path().join("sine_*hz.csv"))]);
     are(&excitations(&some), &[14.0, 17.5, 20.0, 22.5, 27.0, 33.0, 36.0, 40.0]);
     assert_eq!(finding(&some, "sweep-more-steps").unwrap()["numbers"]["n"], 6.0);
@@ -73,7 +73,7 @@ fn steps_are_told_by_what_is_in_them() {
     are(&excitations(&run["results"]["responses"][0]), &ODD.map(|(_, f)| f));
 }
 
-/// A series that goes through the frequencies of another is a sweep of its own, and so is one of another
+/// A series over the same frequencies as another is a separate sweep; so is a series of the other
 /// direction.
 #[test]
 fn sweeps_that_names_tell_apart_stay_apart() {
@@ -87,7 +87,8 @@ fn sweeps_that_names_tell_apart_stay_apart() {
     let campaign = proposed(root.path());
     assert_eq!(campaign.matches("[[sweep]]").count(), 2, "{campaign}");
     assert!(campaign.contains("\"low_*.csv\"") && campaign.contains("\"high_*.csv\""), "{campaign}");
-    // Frequencies between those of the other are more steps of one sweep, but for names of directions.
+    // Frequencies between those of another series are further steps of one sweep, unless the names state
+    // directions.
     let between = |name: &str| series(name).into_iter().map(|(n, f)| (n, f + 2.0)).collect::<Vec<_>>();
     for (names, sweeps) in [(["a_", "b_"], 1), (["up_", "down_"], 2)] {
         let root = tempfile::tempdir().unwrap();
@@ -107,13 +108,13 @@ fn steps_whose_names_give_no_order_are_sorted_by_frequency() {
     let answer = json(&["response", text(&pattern)]);
     are(&excitations(&answer), &[20.0, 25.0, 30.0, 35.0, 40.0]);
     assert!(finding(&answer, "sweep-sorted").is_some() && finding(&answer, "sweep-out-of-order").is_none());
-    // Up and down again is an order.
+    // An upward sweep followed by a downward sweep is in order.
     let turned = [("p1.csv", 20.0), ("p2.csv", 30.0), ("p3.csv", 40.0), ("p4.csv", 35.0), ("p5.csv", 25.0)];
     write_steps(root.path(), &named(&turned), 6.0);
     are(&excitations(&json(&["response", text(&pattern)])), &turned.map(|(_, f)| f));
 }
 
-/// Falls of one body, one of them under a name of its own; a record of the room beside them is none.
+/// Drops of one body, one under a name of its own. A recording of the room beside them is no drop.
 #[test]
 fn drops_are_one_series_whatever_their_names() {
     let root = tempfile::tempdir().unwrap();
@@ -128,7 +129,7 @@ fn drops_are_one_series_whatever_their_names() {
     let notes = "Monday.\nAll drops: height 0.57 m.\nMicrophone: sensitivity 10.3 mV/Pa\n";
     fs::write(root.path().join("notes.txt"), notes).unwrap();
     let campaign = proposed(root.path());
-    // What notes state is shown beside the open key, or above all tables, and is not used.
+    // What notes state is shown beside the open key or above all tables, but is not used.
     let beside = |line: &str| {
         line.contains("height =") && line.contains("notes.txt, line 2: All drops: height 0.57 m.")
     };
@@ -140,7 +141,7 @@ fn drops_are_one_series_whatever_their_names() {
         .collect();
     assert!(names.len() == 4 && names.iter().all(|line| line.contains("\"drop\"")), "{campaign}");
     assert!(campaign.contains("file = \"again.csv\"") && !campaign.contains("\"drop\"\nfile = \"room.csv\""));
-    // Filled in, the campaign has one restitution of four drops.
+    // When the open keys are filled in, the campaign gives one restitution of four drops.
     let filled = campaign.lines().map(|line| match line.trim_start_matches('#') {
         row if row.starts_with("height =") => "height = 0.57".to_owned(),
         row if row.starts_with("height_std =") => "height_std = 0.001".to_owned(),

@@ -62,7 +62,7 @@ fn masses_that_never_part_are_told_from_masses_that_never_meet() {
         assert_eq!(answer["regime"], "no impact");
         answer["warnings"].to_string().contains("never part")
     };
-    // Pressed together by a metre of spring, and a gap that 0.5 N does not close.
+    // Springs that press the masses together by a metre, and a gap of 1 m that 0.5 N does not close.
     assert!(said("-1") && !said("1"));
 }
 
@@ -92,8 +92,8 @@ fn contacts_that_give_way_are_followed() {
     let stiff = ["--set", "contact.stiffness=1e9", "--settle", "300", "--cycles", "70"];
     let answer = json(&with(&[&["--model", "kelvin-voigt"], &stiff[..]].concat()));
     assert_eq!(answer["regime"], serde_json::json!({"impacts": 1, "cycles": 1}), "{}", answer["warnings"]);
-    // The time in contact falls as 1/√k, and with it what it changes: a fifth of the impulse at 1e6 N/m, a
-    // hundred and fiftieth at 1e9.
+    // The contact time falls as 1/√k, and so does its effect: a fifth of the impulse at 1e6 N/m, 1/150 at
+    // 1e9 N/m.
     let hard = json(&with(&["--settle", "300"]));
     let last =
         |answer: &Value| answer["impacts"].as_array().unwrap().last().unwrap()["impulse"].as_f64().unwrap();
@@ -153,7 +153,7 @@ fn impossible_requests_are_refused() {
     assert!(said.contains("frequency is 0 Hz"), "{said}");
     let said = complaint(&["model", "simulate"], 2);
     assert!(said.contains("nothing drives the rig"), "{said}");
-    // A gap of −1 m and a restitution of 1 are a rig: an answer in bounded time.
+    // A gap of −1 m and a restitution of 1 are possible: the answer comes in bounded time.
     json(&with(&["--set", "gap=-1", "--cycles", "5", "--settle", "5"]));
     json(&with(&["--set", "gap=0", "--set", "restitution=1"]));
 }

@@ -1,4 +1,4 @@
-//! `vibro spectrum`: keys, numbers and complaints.
+//! `vibro spectrum`: keys, values, error messages.
 
 use super::{complaint, json, text, vibro};
 use std::f64::consts::TAU;
@@ -7,7 +7,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use vibroimpact::math::Noise;
 
-/// Force (noise) and velocity (its copy two samples later, doubled) with a sine of 64 Hz; 1024 Hz.
+/// Writes a random force in N and a velocity at 1024 Hz. The velocity is twice the force, two samples later
+/// and in mm/s, plus a sine of 5 mm/s at 64 Hz.
 fn bench(folder: &Path) -> PathBuf {
     let mut noise = Noise::new(1);
     let force: Vec<f64> = (0..20_000).map(|_| noise.between(-0.5, 0.5)).collect();
@@ -36,11 +37,11 @@ fn lines_of_a_channel() {
     assert!((value["enbw"].as_f64().unwrap() - 1.5).abs() < 1e-12);
     let (f, v) = (numbers(&value, "frequency"), numbers(&value, "value"));
     assert_eq!((f.len(), f[64]), (513, 64.0));
-    // 5 mm/s over noise of 2·0.29 mm/s·√(2·1.5/1024)·√2 a line.
+    // 5 mm/s in noise of 2·0.29 mm/s·√(2·1.5/1024)·√2 per line.
     assert!((v[64] / 5e-3 - 1.0).abs() < 0.02, "{}", v[64]);
     let once = json(&["spectrum", text(&path), "--channel", "2", "--segment", "1024", "--integrate", "1"]);
     assert_eq!(once["unit"], "m");
-    // Two lines and above; the first is named.
+    // The lines from the second on; the first is named as left out.
     assert_eq!(numbers(&once, "frequency")[0], 2.0);
     assert!((numbers(&once, "value")[62] / (v[64] / (TAU * 64.0)) - 1.0).abs() < 1e-9);
     assert_eq!(once["findings"][0]["code"], "lines-below-cutoff");
@@ -71,7 +72,7 @@ fn response_to_a_reference_with_files_that_are_read_again() {
     let (f, h, phase) = (numbers(&value, "frequency"), numbers(&value, "value"), numbers(&value, "phase"));
     let std = numbers(&value, "value_std");
     assert_eq!((numbers(&value, "coherence").len(), numbers(&value, "phase_std").len()), (f.len(), f.len()));
-    // Away from the sine of 64 Hz: a gain of 2 mm/s over 1 N, two samples late.
+    // Away from the sine at 64 Hz the gain is 2 mm/s per newton, with a delay of two samples.
     for k in 30..100 {
         assert!((h[k] - 2e-3).abs() < 6.0 * std[k] + 2e-5, "{} Hz: {} ± {}", f[k], h[k], std[k]);
         let late = -360.0 * f[k] * 2.0 / 1024.0;
@@ -155,10 +156,10 @@ fn a_mean_is_a_line_or_null() {
     for more in [&["--detrend", "none"][..], &["--method", "fft"]] {
         let (detrend, value, _) = ask(more);
         assert_eq!(detrend, "none");
-        // The sine is 100 lines away under a Hann window: (0.3)·10⁻⁶ of it leaks there.
+        // The sine is 100 lines away: with a Hann window about 0.3·10⁻⁶ of it leaks there.
         assert!((value.as_f64().unwrap() - 5.0).abs() < 1e-5, "{value}");
     }
-    // Files leave the line out.
+    // Files do not contain this line.
     let out = folder.path().join("out");
     json(&["spectrum", text(&path), "--segment", "1024", "--out", text(&out)]);
     let read = json(&["info", text(&out.join("spectrum.csv"))]);
@@ -179,7 +180,7 @@ fn lines_without_excitation_are_null_and_not_in_files() {
     let value =
         json(&["spectrum", text(&path), "--reference", "force", "--segment", "128", "--out", text(&out)]);
     for (i, h) in value["value"].as_array().unwrap().iter().enumerate() {
-        // A sine on a line has three under a Hann window.
+        // With a Hann window, a sine on a line excites three lines.
         let excited = [10, 30].iter().any(|k| (i + 1).abs_diff(*k) <= 1);
         assert_eq!(h.as_f64().is_some_and(|h| (h - 3.0).abs() < 1e-9), excited, "line {}: {h}", i + 1);
         assert_eq!(h.is_null(), !excited);
@@ -214,10 +215,10 @@ fn a_hammer_names_the_windows_applied() {
         );
         (value["window"].as_str().unwrap().to_owned(), value["enbw"].as_f64().unwrap())
     };
-    // Records as long as the next blow allows: 2500 samples lie behind the last one.
+    // Segments as long as the next blow allows: 2500 samples follow the last blow.
     let free = json(&hammer[..5]);
     assert_eq!((free["averages"].as_u64(), free["value"].as_array().unwrap().len()), (Some(3), 1024));
-    // Segments that know nothing of blows are refused, and what is advised is what was asked above.
+    // Segments regardless of blows are refused, and the suggested option is the one used above.
     assert!(
         complaint(&hammer[..4], 1).contains("comes in blows")
             && complaint(&hammer[..4], 1).contains("--hammer")
@@ -225,13 +226,13 @@ fn a_hammer_names_the_windows_applied() {
     assert_eq!(ask(&[]), ("rectangular".to_owned(), 1.0));
     assert_eq!(ask(&["--force-window", "0.05"]), ("force".to_owned(), 1.0));
     let (window, enbw) = ask(&["--left-at-end", "0.01"]);
-    // One for a fiftieth of the record, then down to 0.01.
+    // Weight 1 for 2 % of the record, then an exponential decay to 0.01.
     let weights = (0..1000).map(|i| 0.01f64.powf(f64::from((i - 20).max(0)) / 980.0));
     let (sum, squares) = weights.fold((0.0, 0.0), |(s, q), w| (s + w, q + w * w));
     assert_eq!(window, "exponential");
     assert!((enbw / (1000.0 * squares / (sum * sum)) - 1.0).abs() < 1e-12, "{enbw}");
-    // The response decays by 0.003 a sample at 0.3 rad a sample; the window's own decay is written, read, and
-    // taken off.
+    // The response decays by 0.003 a sample at 0.3 rad a sample, so ζ = 0.01. The decay of the window is
+    // written to the file, read back and subtracted.
     let out = folder.path().join("out");
     let options = ["--estimator", "h1", "--left-at-end", "0.01", "--out", text(&out)];
     json(&[&hammer[..], &options].concat());
@@ -242,11 +243,11 @@ fn a_hammer_names_the_windows_applied() {
     for file in files {
         let value = json(&["modal", text(&file), "--band", "40:58", "--channel", "1"]);
         let zeta = value["modes"][0]["zeta"]["value"].as_f64().unwrap();
-        // What the end of a record leaves is 0.01 e⁻³ of the response; with the window's decay ζ would be
+        // At the end of a record 0.01 e⁻³ of the response is left. With the decay of the window ζ would be
         // 0.026.
         assert!((zeta / 0.01 - 1.0).abs() < 0.05, "{file:?}: {value}");
         assert!(value["findings"].to_string().contains("modal-window-decay"), "{value}");
-        // The file says that it came from blows, not from a lasting excitation.
+        // The file states that the function comes from blows, not from continuous excitation.
         assert!(!value["findings"].to_string().contains("modal-leakage"), "{value}");
     }
     for (option, value) in [
@@ -279,14 +280,15 @@ fn lines_carry_their_scatter() {
         let value = json(&[&["spectrum", text(&path), "--channel", "1"], more].concat());
         (numbers(&value, "value"), numbers(&value, "value_std"))
     };
-    // 19980 samples in 19 segments that share nothing: 1/√19, and half of it for amplitudes.
+    // 19980 samples give 19 segments without overlap: a relative scatter of 1/√19, and half of it for
+    // amplitudes.
     let apart = ["--segment", "1024", "--overlap", "0"];
     let (value, std) = ask(&[&apart[..], &["--scaling", "psd"]].concat());
     assert!((std[100] / value[100] * 19f64.sqrt() - 1.0).abs() < 1e-12);
     assert!((std[512] / value[512] * 9.5f64.sqrt() - 1.0).abs() < 1e-12);
     let (value, std) = ask(&apart);
     assert!((std[100] / value[100] * 19f64.sqrt() - 0.5).abs() < 1e-12);
-    // One transform does not know its scatter.
+    // A single transform gives no scatter.
     let (value, std) = ask(&["--method", "fft"]);
     assert!(value.len() == std.len() && std.iter().all(|s| s.is_nan()));
 }
@@ -299,10 +301,10 @@ fn blows_left_out_are_named_and_records_too_short_are_said() {
     let mut table = String::from("time [s],force [N],velocity [m/s]\n");
     for i in 0..9000 {
         let since = f64::from((i - 500) % 3000);
-        // The second blow hits twice.
+        // The second blow is a double hit.
         let hit = [30.0, 100.0, 30.0].get(since as usize).filter(|_| i >= 500).copied().unwrap_or(0.0);
         let again = if i == 3700 { 60.0 } else { 0.0 };
-        // The exact response to the three samples of force, in (m/s)/N s.
+        // Exact response to the three samples of force, in (m/s)/(N s).
         let free = |n: f64| if n < 0.0 { 0.0 } else { (-decay * n).exp() * (turn * n).cos() };
         let velocity = if i < 500 {
             0.0
@@ -326,7 +328,7 @@ fn blows_left_out_are_named_and_records_too_short_are_said() {
     ]);
     let said = found["warnings"].to_string();
     assert!(said.contains("Left out of 3 blows: 1 double hit. `blows` lists all."), "{said}");
-    // e^(−0.003·784) = 9.5 % are left.
+    // e^(−0.003·784) = 9.5 % of the response remains.
     assert!(said.contains("remains when the record of a blow ends"), "{said}");
     for name in ["frf.csv", "frf.uff"] {
         let file = out.join(name);
@@ -335,7 +337,8 @@ fn blows_left_out_are_named_and_records_too_short_are_said() {
         let z = |key: &str, truth: f64| {
             (mode[key]["value"].as_f64().unwrap() - truth) / mode[key]["std"].as_f64().unwrap()
         };
-        // Velocity cos over an impulse: 2·Re of the residue 1/2 a sample of 1/1024 s, so A = 1024.
+        // The velocity cos per impulse is twice the real part of a residue of 1/2. A sample lasts 1/1024 s,
+        // so A = 1024.
         let own = turn.hypot(decay) * 1024.0 / TAU;
         for (key, truth) in
             [("modal_constant", 1024.0), ("zeta", decay / turn.hypot(decay)), ("frequency", own)]
@@ -343,7 +346,7 @@ fn blows_left_out_are_named_and_records_too_short_are_said() {
             assert!(z(key, truth).abs() < 2.5, "{name}, {key}: {} from {truth}: {mode}", z(key, truth));
         }
         assert!(value["findings"].to_string().contains("modal-blow-cut-off"), "{value}");
-        // The unit of the function is not that of the coherence beside it.
+        // `--unit` changes the unit of the function, not that of the coherence beside it.
         let scaled = json(&["modal", text(&file), "--band", "40:58", "--channel", "1", "--unit", "(mm/s)/N"]);
         let ratio = scaled["modes"][0]["modal_constant"]["value"].as_f64().unwrap()
             / mode["modal_constant"]["value"].as_f64().unwrap();
@@ -370,7 +373,7 @@ fn a_channel_that_rests_at_an_end_of_its_range_is_clipped_and_one_of_two_levels_
     assert!(!of(&|i| (100.0 * sine(i)).round()).0);
 }
 
-/// A spectrum as LabVIEW writes it, in dB re 1 g over an axis that it calls a time: noise of about −100 dB,
+/// A spectrum as LabVIEW writes it, in dB re 1 g over an axis labelled as time: noise at about −100 dB and
 /// three lines of 0 to −20 dB.
 fn labview(folder: &Path) -> PathBuf {
     let head = "LabVIEW Measurement\nSeparator\tTab\nX_Columns\tNo\n***End_of_Header***\n\nChannels\t1\n";
@@ -409,13 +412,13 @@ fn peaks_of_a_spectrum_that_a_file_holds() {
     }
     let said = complaint(&[&read[..], &["--segment", "512"]].concat(), 2);
     assert!(said.contains("is a spectrum already"), "{said}");
-    // Without its reference a level is no amplitude.
+    // A level without its reference is no amplitude.
     let said = complaint(&["spectrum", text(&path), "--base-band", "200"], 2);
     assert!(said.contains("dB"), "{said}");
 }
 
-/// Two records of sines on lines of the transform, 16 periods and more of each in a segment: the peaks that
-/// both have stand in one row, the third of the second record alone.
+/// Two records with sines on spectral lines, 16 periods or more per segment. Peaks that both records have
+/// share a row; the third peak exists in the second record only.
 #[test]
 fn spectra_of_several_files_stand_beside_each_other() {
     let folder = tempfile::tempdir().unwrap();
@@ -439,7 +442,7 @@ fn spectra_of_several_files_stand_beside_each_other() {
     let found = json(&[&both[..], &["--out", text(&out)]].concat());
     let spectra = found["spectra"].as_array().unwrap();
     assert_eq!((spectra.len(), spectra[1]["name"].as_str()), (2, Some("rig")));
-    // One file gives the same lines as beside another.
+    // A file gives the same spectrum alone as beside another.
     let alone = json(&["spectrum", text(&rig), "--channel", "handle", "--segment", "1024"]);
     assert_eq!(alone["value"], spectra[1]["value"]);
     let peaks = fs::read_to_string(out.join("spectrum_peaks.csv")).unwrap();
@@ -453,7 +456,8 @@ fn spectra_of_several_files_stand_beside_each_other() {
     assert_eq!(rows.len(), 3, "{peaks}");
     for (row, expected) in rows.iter().zip(expected) {
         for (cell, expected) in row.iter().zip(expected) {
-            // Noise of 0.03 RMS over 512 lines and 15 averages is 0.002 at a line: five times that.
+            // Noise of 0.03 RMS over 512 lines and 15 averages is 0.002 per line; five times that is
+            // allowed.
             let near = cell.zip(expected).is_none_or(|(cell, expected)| (cell - expected).abs() < 0.01);
             assert!(near && cell.is_some() == expected.is_some(), "{peaks}");
         }

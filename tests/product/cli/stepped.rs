@@ -10,7 +10,7 @@ use vibroimpact::math::Noise;
 /// Natural frequency in Hz, damping ratio and modal mass in kg.
 const MODES: [(f64, f64, f64); 2] = [(31.7, 0.021, 1.6), (44.2, 0.012, 2.4)];
 
-/// Receptance at `f` in Hz, real and imaginary part.
+/// Receptance in m/N at `f` in Hz, real and imaginary part.
 fn receptance(f: f64) -> (f64, f64) {
     MODES.iter().fold((0.0, 0.0), |sum, (own, zeta, mass)| {
         let (a, b) = (TAU * TAU * (own * own - f * f), 2.0 * zeta * TAU * TAU * own * f);
@@ -23,8 +23,8 @@ fn frequency(step: usize) -> f64 {
     20.0 + 3.1 * step as f64
 }
 
-/// Files of 12 steps of 6 s: force in N with an offset, acceleration in m/s² with noise of a thousandth and a
-/// transient.
+/// Writes 12 steps of 6 s: force in N with an offset, acceleration in m/s² with a transient; noise of 0.1 %
+/// in both.
 pub fn steps(folder: &Path) {
     let named: Vec<(String, f64)> = (1..=12).map(|k| (format!("step{k}.csv"), frequency(k))).collect();
     write_steps(folder, &named, 6.0);
@@ -32,7 +32,7 @@ pub fn steps(folder: &Path) {
     fs::write(folder.join("campaign.toml"), campaign).unwrap();
 }
 
-/// Files of steps at these frequencies in Hz, of so many seconds.
+/// Writes steps at these frequencies in Hz, of this duration in s, at 600 Hz.
 pub fn write_steps(folder: &Path, named: &[(String, f64)], seconds: f64) {
     let mut noise = Noise::new(1);
     for (name, f) in named {
@@ -63,8 +63,8 @@ fn a_folder_of_steps_gives_receptance_and_modes() {
     for (step, point) in (1..).zip(points) {
         let (re, im) = receptance(frequency(step));
         let (std, phase) = (point["receptance"]["std"].as_f64().unwrap(), &point["phase"]);
-        // Twelve blocks or more, two in three of them independent of the transient: six standard
-        // uncertainties.
+        // At least twelve blocks, two thirds of them free of the transient: six standard uncertainties are
+        // allowed.
         for (part, truth) in [("re", re), ("im", im)] {
             let off = (point["receptance"][part].as_f64().unwrap() - truth).abs();
             assert!(off < 6.0 * std && std < 2e-3 * re.hypot(im), "{step} {part}: {off} {std}");

@@ -36,16 +36,16 @@ fn a_sweep_of_the_force_keeps_its_frequency() {
     ));
     let forces: Vec<f64> =
         answer["up"].as_array().unwrap().iter().map(|p| p["force"].as_f64().unwrap()).collect();
-    // Two roundings of numbers below 1.
+    // Two rounding errors of numbers below 1.
     let off = forces.iter().zip([0.1, 0.3, 0.5]).map(|(f, truth)| (f - truth).abs());
     assert!(forces.len() == 3 && off.fold(0.0, f64::max) < 2.0 * f64::EPSILON, "{forces:?}");
     assert_eq!(answer["up"][2]["frequency"], 10.0);
     assert!(answer["down"].as_array().unwrap().is_empty());
 }
 
-/// A sweep that starts from the end of another continues it. Only the clock differs: instants round to 1e-16
-/// of 20 s, in which the masses move 1e-13 of their amplitude; impacts multiply that by less than
-/// 100 in a step.
+/// A sweep that starts from the final state of another continues it. Only the clock differs: times round to
+/// 1e-16 of 20 s, in which the masses move 1e-13 of their amplitude. Impacts amplify that by less than 100
+/// in a step.
 #[test]
 fn a_sweep_from_the_end_of_another_continues_it() {
     let swept = |range: &str, start: &str| {
@@ -66,7 +66,7 @@ fn a_sweep_from_the_end_of_another_continues_it() {
     }
 }
 
-/// Above the frequency of the masses together they clap, however many steps the sweep has.
+/// Above the natural frequency of the masses moving together they clap, whatever the number of steps.
 #[test]
 fn names_do_not_depend_on_the_number_of_steps() {
     for steps in [60, 150] {
@@ -95,7 +95,7 @@ fn a_map_has_its_keys_and_its_rows() {
     assert_eq!(first["x"].as_array().unwrap().len(), 3);
     assert_eq!(first["regime"].as_array().unwrap().len(), 4);
     assert_eq!(first["spectral_radius"][3].as_array().unwrap().len(), 3);
-    // The names of the columns, and a line a cell.
+    // The header line and one line per cell.
     let whole = fs::read_to_string(folder.path().join("map.csv")).unwrap();
     assert_eq!(whole.lines().count(), 1 + 3 * 4);
 }

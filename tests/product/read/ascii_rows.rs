@@ -1,4 +1,4 @@
-//! Analyser text in every dress instruments give it, and every way it can be broken.
+//! Analyser text in every encoding and layout that instruments write, and damaged in every way.
 
 use super::sentences;
 use vibroimpact::read::{Format, Reader, Recording};
@@ -63,7 +63,7 @@ fn columns_and_separators() {
         "1, 2\n3, 4\n5, 7\n",
         "1.0,2\n3.0,4\n5.0,7\n",
     ] {
-        // The first column rises evenly: an abscissa of step 2.
+        // The first column rises evenly, so it is an abscissa with a step of 2.
         let recording = read(text.as_bytes());
         assert_eq!(recording.records.len(), 1, "{text:?}");
         assert_eq!(recording.records[0].axis().step(), Some(2.0), "{text:?}");
@@ -138,7 +138,7 @@ fn missing_values_are_refused_with_their_lines() {
     assert_eq!(kept_values.len(), 6);
     assert_eq!(kept_values.iter().filter(|v| v.is_nan()).count(), 3);
     assert!(sentences(&kept.all_findings()).iter().any(|d| d.starts_with("3 values are missing")));
-    // Blank lines at the end are no values.
+    // Blank lines at the end are not values.
     assert_eq!(values(&read(b"1\n2\n\n\n")), [1.0, 2.0]);
     let fields = complaint(b"1;2\n3;\n;4\n");
     assert!(fields.contains("line 2"), "{fields}");
@@ -174,14 +174,14 @@ fn a_folder_and_a_missing_file_are_named() {
 
 #[test]
 fn a_declared_count_allocates_nothing() {
-    // Ten thousand million lines are promised and five are there.
+    // The header declares 10¹⁰ lines, the file has five values.
     let recording = read(b"Lines: 10000000000\nBase band: 20 Hz\n1\n2\n3\n4\n5\n");
     assert_eq!(recording.records[0].len(), 5);
 }
 
 #[test]
 fn a_large_file_read_in_pieces_is_the_same() {
-    // Long enough for several pieces, of uneven lines, with a blank line at the end.
+    // Long enough for several pieces: lines of different length, blank lines at the end.
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("long.txt");
     let numbers: Vec<f64> = (0..400_000).map(|i| f64::from(i) * 1.37 - 5e4).collect();
@@ -192,7 +192,7 @@ fn a_large_file_read_in_pieces_is_the_same() {
     let (format, headers, _) = Reader::new().survey(&path).unwrap();
     assert_eq!((format, headers[0].n), (Format::Ascii, numbers.len()));
     assert_eq!(headers[0].max_abs, recording.records[0].extremes().largest().map(|m| m.1));
-    // A word far inside is still found with its line.
+    // A word far inside the file is reported with its line.
     std::fs::write(&path, text.replacen("-49999.94", "oops", 0) + "x\n").unwrap();
     let error = Reader::new().from_path(&path).unwrap_err().to_string();
     assert!(error.contains("line 400003"), "{error}");
@@ -215,17 +215,17 @@ fn line_ends_and_end_marks_of_every_kind() {
     ] {
         assert_eq!(values(&read(text.as_bytes())), [1.5, 2.5, 3.5], "{text:?}");
     }
-    // A lone CR far behind the first bytes.
+    // A lone CR far from the beginning of the file.
     let long = format!("{}8 9\r1 2\n", "5 6\n7 1\n".repeat(10_000));
     let recording = read(long.as_bytes());
     assert_eq!((recording.records.len(), recording.records[0].len()), (2, 20_002));
-    // Inside a text the end mark is an error.
+    // An end mark inside the text is an error.
     assert!(complaint(b"1.5\n\x1a\n2.5\n").contains("line 2"));
 }
 
 #[test]
 fn blank_lines_claim_no_room_for_many_columns() {
-    // 30 000 columns and a million blank lines would be 240 GB.
+    // 30 000 columns times a million blank lines would take 240 GB.
     let row = "1 ".repeat(30_000);
     let text = format!("{row}\n{}{row}\n", "\n".repeat(1_000_000));
     for allow in [false, true] {
@@ -249,7 +249,7 @@ fn words_behind_the_values_are_refused_with_their_line() {
     ] {
         assert!(complaint(text.as_bytes()).contains("line 5"), "{text}");
     }
-    // A hand-over file is no measurement with words behind it, nor is a list.
+    // A hand-over file and a list are not taken for a measurement followed by words.
     for text in [
         "2\n400\n20\n5.0\n5.2\nRUP0001.DATRUP0002.DAT",
         "2\n400\n20\nFUP0001.DAT\nFUP0002.DAT\nRUP0001.DAT\nRUP0002.DAT\n",

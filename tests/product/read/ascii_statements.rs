@@ -1,4 +1,4 @@
-//! What a header or a person states of analyser text: abscissa, unit, names.
+//! What a header or the user states about analyser text: abscissa, unit, names.
 
 use super::ascii_rows::{complaint, read, values};
 use super::sentences;
@@ -42,16 +42,16 @@ fn impossible_statements_are_passed_over() {
 fn what_else_a_header_names_makes_no_spectrum() {
     let band = read(b"Sample rate: 50 kHz\nBandwidth: 20 kHz\nResolution: 16\n1\n2\n3\n");
     assert_eq!(axis(&band), (&AxisKind::Time, Some(1.0 / 50e3)));
-    // Both domains: a time trace, and it is said so.
+    // The header states both domains: the values are a time trace, and a finding reports it.
     let both = read(b"Sampling rate: 100 Hz\nBase band: 20 Hz\n1\n2\n3\n");
     assert_eq!(axis(&both), (&AxisKind::Time, Some(0.01)));
     assert!(says(&both, &["100 Hz", "time trace"]), "{:?}", sentences(&both.all_findings()));
-    // As many values as lines and 0 Hz: a spectrum.
+    // One value more than lines (0 Hz included): the values are a spectrum.
     let lines = read(b"Sampling rate: 51.2 Hz\nBase band: 20 Hz\nLines: 4\n1\n2\n3\n4\n5\n");
     assert_eq!(axis(&lines), (&AxisKind::Frequency, Some(5.0)));
     let named = read(b"Base band: 20 Hz\nTime [s]  Force [N]\n0.0 1\n0.5 2\n1.0 3\n");
     assert_eq!(axis(&named), (&AxisKind::Time, Some(0.5)));
-    // A survey says the same.
+    // A survey gives the same result.
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("x.txt");
     std::fs::write(&path, "Sampling rate: 51.2 Hz\nBase band: 20 Hz\nLines: 4\n1\n2\n3\n4\n5\n").unwrap();
@@ -67,7 +67,7 @@ fn a_clock_is_no_name_of_a_column() {
     assert_eq!(axis(&columns), (&AxisKind::Frequency, Some(10.0)));
     let wide = read(b"Base band: 20 Hz\nTime  14:22:05\n0 5\n10 6\n20 4\n");
     assert_eq!(axis(&wide), (&AxisKind::Frequency, Some(10.0)));
-    // Free text further up names nothing either.
+    // Free text above the last header line names no columns either.
     let above = read(b"freq [Hz] real imag\nsome remark\n1 5 6\n2 7 8\n3 9 1\n");
     assert!(!above.records[0].is_complex());
 }
@@ -113,7 +113,7 @@ fn a_statement_that_a_whole_column_contradicts_is_refused() {
         assert_eq!(error.exit_code(), 2);
         told_rate(text, 2.0);
     }
-    // A lost sample changes the length by a whole step, an unsteady clock does not.
+    // A lost sample changes the length by a whole step; scatter of the clock does not.
     let jitter = "t [s]  v [m/s]\n0.000 1\n0.104 2\n0.200 3\n0.301 4\n";
     told_rate(jitter, 10.0);
     let lost = "t [s]  v [m/s]\n0.0 1\n0.1 2\n0.2 3\n0.4 4\n";
@@ -178,8 +178,8 @@ fn values_too_large_for_si_are_refused() {
 #[test]
 fn the_measured_accelerances() {
     let Some(folder) = others_files::folder("analyser") else { return };
-    // 1001 complex lines of 1 Hz; peaks near 52, 142, 279, 460, 687 and 959 Hz in their maximum over the
-    // three points.
+    // 1001 complex lines, 1 Hz apart. The maximum over the three points has peaks near 52, 142, 279, 460,
+    // 687 and 959 Hz.
     let mut largest = vec![0.0f64; 1001];
     for i in 1..=3 {
         let path = folder.join(format!("accelerance_point_{i}.txt"));

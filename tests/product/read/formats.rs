@@ -1,4 +1,4 @@
-//! Wave files, MAT-files and tables that other programs wrote.
+//! Wave files, MAT-files and tables written by other programs.
 
 use super::sentences;
 use crate::others_files;
@@ -71,7 +71,7 @@ fn mat_what_is_passed_over_is_named() {
     let recording = read("mat/passed_over.mat");
     assert_eq!(recording.records.len(), 1);
     assert_eq!(recording.records[0].axis().kind, AxisKind::Index);
-    // What stands in the struct and in the cell array.
+    // The contents of the struct and of the cell array.
     let notes =
         [("s.a", "1"), ("c{1}", "a"), ("c{2}", "1")].map(|(of, said)| (of.to_owned(), said.to_owned()));
     assert_eq!(recording.records[0].meta().notes, notes);
@@ -98,7 +98,7 @@ fn wav_from_another_program() {
     assert_eq!(float.records[0].axis(), &Axis::time(0.0, 1.0 / 51_200.0, 16));
     assert!(says(&float, "No calibration is known"));
     let bytes = read("wav/uint8.wav");
-    // 0, 16, …, 240 around 128.
+    // Stored values are 0, 16, …, 240 around 128.
     assert_eq!(values(&bytes, "channel 1")[..2], [-1.0, -0.875]);
 }
 
@@ -115,7 +115,7 @@ fn wav_that_declares_more_than_it_holds() {
     );
 }
 
-/// Eight rows of a quarter times the row, once a millisecond.
+/// Eight values of a quarter of the row number times `scale`.
 fn quarters(scale: f64) -> Vec<f64> {
     (0..8).map(|k| f64::from(k) * 0.25 * scale).collect()
 }
@@ -132,7 +132,7 @@ fn csv_in_every_encoding_and_line_end() {
         assert_eq!(recording.format, Format::Csv, "{name}");
         let found = values(&recording, column);
         for (a, b) in found.iter().zip(quarters(scale)) {
-            // One product, which may be rounded before or after.
+            // The product may be rounded before or after the conversion.
             assert!((a - b).abs() <= f64::EPSILON * b.abs(), "{name}: {a} {b}");
         }
         assert_eq!(found.len(), 8);
@@ -154,7 +154,7 @@ fn csv_in_every_encoding_and_line_end() {
 fn csv_times_with_too_few_digits() {
     let recording = read("csv/times_with_too_few_digits.tsv");
     let step = recording.records[0].axis().step().unwrap();
-    // Both ends are rounded by half a millisecond at most.
+    // Both ends are rounded by at most half a millisecond.
     assert!((step - 1.0 / 1024.0).abs() <= 1e-3 / 99.0, "{step}");
     assert!(says(&recording, "too few digits"), "{:?}", sentences(&recording.all_findings()));
 }
@@ -196,7 +196,7 @@ fn csv_quoted_names_and_numbers() {
     assert_eq!(values(&recording, "v"), expected);
 }
 
-/// What other people's analysers export as plain numbers is not taken for named columns.
+/// Plain numbers exported by analysers are not taken for named columns.
 #[test]
 fn plain_exports_stay_plain() {
     let Some(folder) = others_files::folder("analyser") else { return };

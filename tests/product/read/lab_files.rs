@@ -1,7 +1,7 @@
-//! Files of oscilloscopes, of LabVIEW and of PEER.
+//! Files of oscilloscopes, LabVIEW and the PEER database.
 //!
-//! Numbers are those of `../shared/data/README.md`, in SI: where a file is in g, the factor stands in the
-//! test.
+//! Expected values are those of `../shared/data/README.md` in SI units. If a file is in g, the test
+//! contains the factor.
 
 #![expect(clippy::unreadable_literal, reason = "digits as the files print them")]
 
@@ -28,7 +28,7 @@ fn close(a: f64, b: f64, relative: f64) -> bool {
     (a - b).abs() <= relative * b.abs()
 }
 
-/// Names, number of values, start and step of all traces.
+/// Name, number of values, start in s and step in s of each trace.
 fn shape(recording: &Recording) -> Vec<(&str, usize, f64, Option<f64>)> {
     let of = |t: &Trace| (t.values.len(), t.axis.start(), t.axis.step());
     traces(recording)
@@ -43,7 +43,7 @@ fn shape(recording: &Recording) -> Vec<(&str, usize, f64, Option<f64>)> {
 #[test]
 fn oscilloscopes() {
     let Some(folder) = folder("scope") else { return };
-    // File, number of values, start, step, and channel with its largest magnitude in V.
+    // File, number of values, start in s, step in s, and channels with their largest magnitude in V.
     for (name, n, start, step, extremes) in [
         ("DS1074Z-A.csv", 1200, -2e-3, 20e-6, &[("CH1", 0.1), ("CH2", 1.1), ("CH3", -1.02)][..]),
         ("DS2072A-7.csv", 1400, -3.5e-3, 5e-6, &[("CH2", 0.32)]),
@@ -56,7 +56,7 @@ fn oscilloscopes() {
         for (trace, (channel, extreme)) in traces.iter().zip(extremes) {
             assert_eq!((trace.meta.name.as_str(), trace.values.len()), (*channel, n), "{name}");
             assert_eq!(trace.meta.unit.symbol(), "V");
-            // The first time of one is printed from single precision.
+            // One file prints its first time from single precision.
             assert!(
                 close(trace.axis.start(), start, 1e-7) && close(trace.axis.step().unwrap(), step, 1e-5),
                 "{name}"
@@ -124,7 +124,7 @@ fn one_series_five_to_a_line() {
     let least = trace.values.iter().copied().fold(f64::INFINITY, f64::min);
     let most = trace.values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     assert!(close(least, -0.2856169 * G, 1e-12) && close(most, 0.27492 * G, 1e-12), "{least} {most}");
-    // Without its head the file does not say what its columns are, and is asked about.
+    // Without its header the file does not show what its columns are, so the reader asks.
     let text = std::fs::read_to_string(folder.join(name)).unwrap();
     let rows = text.lines().skip(4).collect::<Vec<_>>().join("\n");
     let plain = || Reader::new().rate(Some(100.0));

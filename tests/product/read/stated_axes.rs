@@ -1,4 +1,5 @@
-//! A sampling rate or a base band that is stated beside a column of times or frequencies.
+//! A sampling rate or base band that the user states although the file has a column of times or
+//! frequencies.
 
 use super::sentences;
 use std::fmt::Write as _;
@@ -16,7 +17,7 @@ fn read(reader: &Reader, text: &str) -> Result<Recording, String> {
     reader.from_reader("x.csv", text.as_bytes()).map_err(|e| e.to_string())
 }
 
-/// What the column holds, to the thousandth, and what was stated in its place.
+/// The value that the column gives, rounded to 0.001, and the stated value that it replaces.
 fn refined(recording: &Recording) -> Option<(f64, f64)> {
     let found = recording.all_findings().into_iter().find(|f| f.code == "column-refines")?;
     Some(((found.get("holds")? * 1e3).round() / 1e3, found.get("stated")?))
@@ -31,7 +32,7 @@ fn a_rounded_rate_leaves_a_long_column_as_it_is() {
     // Both ends are printed to half a nanosecond.
     assert!((step - 1.0 / RATE).abs() <= 1e-9 / 19_999.0, "{step}");
     assert_eq!(refined(&recording), Some((2730.667, 2730.67)));
-    // Too far off: both steps are printed to the digit that differs.
+    // The stated rate is too far off: the message prints both steps up to the first digit that differs.
     let error = read(&Reader::new().rate(Some(2731.0)), &text).unwrap_err();
     assert!(error.contains("steps of 0.000366211 s") && error.contains("steps of 0.000366166 s"), "{error}");
 }

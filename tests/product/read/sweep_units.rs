@@ -1,11 +1,11 @@
-//! What the files of a sweep say of their units beside what a person states.
+//! Units in the files of a sweep, against units that the user states.
 
 use super::sentences;
 use vibroimpact::read::{Folder, SweepList, SweepReader};
 use vibroimpact::record::{Sweep, Values};
 use vibroimpact::units::Unit;
 
-/// Reads a sweep of one point: five lines to 20 Hz.
+/// Reads a sweep of one point: five lines from 0 to 20 Hz.
 fn read(force: &str, response: &str, how: &SweepReader) -> Result<Sweep, String> {
     let folder = tempfile::tempdir().unwrap();
     let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
@@ -32,7 +32,7 @@ fn a_force_in_volts_takes_its_calibration() {
     for unit in ["V", "mV", "%", "N"] {
         let how = SweepReader { force_calibration: Some(22.4), ..SweepReader::default() };
         let sweep = read(&format!("Unit: {unit}"), "Unit: m/s", &how).unwrap();
-        // Newtons per stored number, whatever the unit of that is.
+        // The calibration is in newtons per stored number, whatever the unit of that number.
         assert!(close(sweep.points[0].force.magnitude(2), 2.0 * 22.4), "{unit}: {:?}", sweep.points[0].force);
     }
     let error = read("Unit: V", "Unit: m/s", &SweepReader::default()).unwrap_err();
@@ -57,7 +57,7 @@ fn a_response_in_volts_takes_unit_and_calibration() {
     }
     let error = read("Unit: N", "Unit: V", &how(Some("mm/s"), None)).unwrap_err();
     assert!(error.contains("R.DAT") && error.contains("state unit and calibration"), "{error}");
-    // A calibration is no reason to take an acceleration for a velocity.
+    // A calibration does not turn an acceleration into a velocity.
     let error = read("Unit: N", "Unit: m/s²", &how(Some("mm/s"), Some(125.0))).unwrap_err();
     assert!(error.contains("acceleration") && error.contains("expected velocity"), "{error}");
 }
@@ -77,7 +77,7 @@ fn only_what_states_the_values_makes_them_decibels() {
                 .any(|d| d.contains("decibels") && d.contains("mm/s was stated")),
             "{header}"
         );
-        // What is stated of responses says nothing of forces.
+        // A unit stated for responses does not apply to forces.
         assert!(read(header, "Unit: m/s", &linear).unwrap_err().contains("F.DAT"), "{header}");
     }
 }
@@ -92,7 +92,7 @@ fn a_stated_unit_wins_over_the_files_and_that_is_said() {
         "{:?}",
         sentences(&sweep.findings)
     );
-    // Nobody stated the unit of the force.
+    // No unit is stated for the force, so that of the file applies.
     assert!(close(sweep.points[0].force.magnitude(2), 2000.0));
     let sweep = read("Unit: N", "Unit: mm/s", &how("mm/s")).unwrap();
     assert!(close(response(&sweep), 2e-3));

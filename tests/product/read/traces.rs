@@ -1,4 +1,4 @@
-//! Traces block by block, against reading everything.
+//! Traces read block by block, compared with reading the whole file.
 
 use std::path::{Path, PathBuf};
 use vibroimpact::Error;
@@ -33,7 +33,7 @@ fn all(traces: &mut Traces) -> (Vec<Vec<f64>>, usize) {
     (columns, blocks)
 }
 
-/// What is streamed is what reading everything gives, number for number and doubt for doubt.
+/// Streaming gives the same values and findings as reading the whole file.
 #[test]
 fn streaming_agrees_with_reading() {
     let folder = tempfile::tempdir().unwrap();
@@ -70,7 +70,7 @@ fn a_channel_is_found_by_name_or_number() {
     let folder = tempfile::tempdir().unwrap();
     let records = [trace("2", "N", 8.0, vec![1.0; 4]), trace("b", "m", 8.0, vec![2.0; 4])];
     let traces = Reader::new().stream(file(folder.path(), "x.ufb", &records)).unwrap();
-    // A name goes before a number.
+    // A channel name takes precedence over a channel number.
     assert_eq!(
         (traces.channel("2").unwrap(), traces.channel("1").unwrap(), traces.channel("b").unwrap()),
         (0, 0, 1)

@@ -1,4 +1,4 @@
-//! Binary values of universal files: every case, both byte orders, and sizes that contradict each other.
+//! Binary values of universal files: every case, both byte orders, and contradictory sizes.
 
 use super::uff_set::{SEVEN, Set, binary, clean, doubts, f32s, read, reader, refused, try_read, values};
 
@@ -26,7 +26,7 @@ fn a_record_7_that_the_closing_delimiter_contradicts() {
         assert_eq!(values(&recording), [1.5, -2.5, 3.5][..declared.min(3)]);
         assert!(doubts(&recording).contains(&declared.to_string()), "{}", doubts(&recording));
     }
-    // Nothing to decide by: all bytes to the end of the file, but not its last delimiter.
+    // Without a stated size, the values extend to the last delimiter of the file.
     let recording = read(&binary(2, 2_000_000_000, 1, 0, &bytes).file());
     assert_eq!(values(&recording), [1.5, -2.5, 3.5]);
 }
@@ -63,7 +63,7 @@ fn an_abscissa_in_double_precision() {
     assert_eq!(values(&recording), [1.5, 2.5, 3.5]);
     assert_eq!(recording.records[0].axis().values(), [0.0, 0.1, 0.5]);
     assert!(doubts(&recording).contains("has double precision"));
-    // And as the standard has it.
+    // As in the standard, with a single-precision abscissa.
     let mut narrow = Vec::new();
     for (x, y) in [(0.0f32, 1.5f64), (0.25, 2.5), (0.5, 3.5)] {
         narrow.extend_from_slice(&x.to_le_bytes());

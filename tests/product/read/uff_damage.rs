@@ -1,4 +1,4 @@
-//! Universal files that are none, and damaged ones: nothing panics.
+//! Damaged universal files, and files in other formats: nothing panics.
 
 use super::uff_set::{FREQUENCY, NONE, PASCAL, SEVEN, Set, binary, f32s, form, read, reader};
 use proptest::prelude::*;
@@ -13,7 +13,7 @@ fn other_files_are_not_taken_for_this_format() {
     let set = Set::trace(7, SEVEN).file();
     let recording = Reader::new().from_reader("x.txt", &[b"\n \r\n", &set[..]].concat()[..]).unwrap();
     assert_eq!(recording.format.name(), "uff");
-    // Under the usual ending words may come first.
+    // With the usual file extension, text may precede the first data set.
     let words = [b"exported by hand\n", &set[..]].concat();
     assert_eq!(read(&words).format.name(), "uff");
 }

@@ -1,7 +1,7 @@
-//! Universal files of other people's instruments, against what their makers and other readers say of them.
+//! Universal files of other people's instruments, against the statements of their makers and other readers.
 //!
-//! Numbers are those of `../shared/data/README.md`, in SI: where a file is in g or inches, the factor stands
-//! in the test.
+//! Expected values are those of `../shared/data/README.md` in SI units. If a file is in g or inches, the
+//! test contains the factor.
 
 use super::sentences;
 use std::path::{Path, PathBuf};
@@ -9,14 +9,14 @@ use vibroimpact::read::{Format, Header, Reader, Recording};
 use vibroimpact::record::{Axis, Frf, Record, Scaling, Spectrum, Trace};
 use vibroimpact::units::Quantity;
 
-/// Standard acceleration of gravity, m/s².
+/// Standard acceleration of gravity in m/s².
 const G: f64 = 9.806_65;
 
 fn folder() -> Option<PathBuf> {
     crate::others_files::folder("uff")
 }
 
-/// Reads a file, and checks that a survey of it says the same as its records.
+/// Reads a file, and checks that a survey agrees with its records.
 fn read(path: &Path) -> Recording {
     let recording = Reader::new().from_path(path).unwrap_or_else(|e| panic!("{e}"));
     assert_eq!(recording.format, Format::Uff);
@@ -25,7 +25,7 @@ fn read(path: &Path) -> Recording {
     assert_eq!(headers.len(), recording.records.len());
     for (record, header) in recording.records.iter().zip(headers) {
         let full = Header::of(record);
-        // A survey scales the maximum, reading scales the values: the largest may differ in its last bits.
+        // A survey scales the maximum, reading scales each value: the maxima may differ in their last bits.
         let ulps = |a: Option<f64>, b: Option<f64>| match (a, b) {
             (Some(a), Some(b)) => (a - b).abs() <= 4.0 * f64::EPSILON * a.abs(),
             (a, b) => a == b,
@@ -68,7 +68,7 @@ fn step(axis: &Axis) -> f64 {
     axis.step().expect("an even axis")
 }
 
-/// Whether a number agrees with one that is printed with `digits` significant digits.
+/// Whether `value` agrees with `expected`, printed with `digits` significant digits.
 fn printed(value: f64, expected: f64, digits: i32) -> bool {
     let unit = 10f64.powi(expected.abs().log10().floor() as i32 + 1 - digits);
     (value - expected).abs() <= 0.5 * unit * (1.0 + 1e-9)
@@ -93,7 +93,7 @@ fn a_microphone_record_in_both_encodings() {
     }
     let (text, binary) = (trace(text), trace(binary));
     for (i, (a, b)) in text.values.iter().zip(&binary.values).enumerate() {
-        // Six printed digits: half a unit of 1e-6 where values reach 0.14.
+        // Six printed digits: half a unit of 1e-6, where values reach 0.14.
         assert!((a - b).abs() <= 1e-6, "value {i}: {a} against {b}");
     }
 }
@@ -104,12 +104,12 @@ fn double_precision_in_binary() {
     let trace = trace(record);
     assert_eq!(trace.values.len(), 250);
     assert_eq!(step(&trace.axis), 0.01);
-    // The unit is g; the record is named "sine 5 Hz", and its amplitude is 1 g.
+    // The unit is g. The record is named "sine 5 Hz" and has an amplitude of 1 g.
     assert_eq!(trace.meta.unit.symbol(), "m/s²");
     for (i, value) in trace.values.iter().enumerate() {
         let sine = G * (std::f64::consts::TAU * 5.0 * 0.01 * i as f64).sin();
-        // The file's generator summed its phase in single precision: an independent reader finds it off by up
-        // to 7.5e-6.
+        // The program that wrote the file summed the phase in single precision. An independent reader finds
+        // deviations of up to 7.5e-6.
         assert!((value - sine).abs() <= 7.5e-6 * G, "sample {i}: {value} against {sine}");
     }
 }
@@ -123,8 +123,8 @@ fn a_density_with_a_latin1_superscript() {
     assert!(record.is_complex());
     assert_eq!(spectrum.axis.step(), None, "the abscissa is stored as uneven");
     assert_eq!(spectrum.axis.at(3200), 3200.0);
-    // g²/Hz in the file, (m/s²)²/Hz here. The largest value is printed as 4.457989E-04; the reference table
-    // has 4.457988e-4.
+    // The file is in g²/Hz, the record in (m/s²)²/Hz. The file prints the largest value as 4.457989E-04, the
+    // reference table has 4.457988e-4.
     let (at, value) = peak(&record);
     assert!(printed(value / (G * G), 4.457_989e-4, 7), "{value} at {at} Hz");
     assert_eq!(
@@ -177,12 +177,13 @@ fn wrong_line_ends_behind_binary_values() {
         assert_eq!(record.len(), 222_400);
         assert_eq!(step(record.axis()), 3.125e-4);
         assert_eq!(record.meta().unit.symbol(), "m/s²");
-        // The second is 0.43671378 by an independent reader of the bytes; the reference table has 0.436734.
+        // The second maximum is 0.43671378 by an independent reader of the bytes; the reference table has
+        // 0.436734.
         assert!(printed(peak(record).1, max, 6), "{:?} against {max}", peak(record));
     }
 }
 
-/// The same records under the name of the other file: their history names it.
+/// The same records with the name of the other file in their history.
 fn rename(mut records: Vec<Record>) -> Vec<Record> {
     for record in &mut records {
         for step in &mut record.meta_mut().history {
@@ -208,7 +209,7 @@ fn the_eight_cases_agree_in_text_and_binary() {
         let (text, binary) = (file("ascii"), file("binary"));
         let (complex, double, even) = (matches!(case, 3 | 4 | 7 | 8), case > 4, case % 2 == 1);
         let n = if complex { 801 } else { 1602 };
-        // Relative rounding of the text: six or thirteen digits.
+        // Relative rounding of the text, with six or thirteen digits.
         let digits = if double { 0.5e-12 } else { 0.5e-5 };
         for record in [&text, &binary] {
             assert_eq!((record.len(), record.is_complex()), (n, complex), "case {case}");
@@ -230,11 +231,11 @@ fn the_eight_cases_agree_in_text_and_binary() {
         };
         for (i, (a, b)) in numbers(&text).into_iter().zip(numbers(&binary)).enumerate() {
             for (a, b) in [(a.0, b.0), (a.1, b.1)] {
-                // A number with mantissa m is rounded by `digits`/m of itself, and m is at least 1.
+                // A number with the mantissa m ≥ 1 is rounded by `digits`/m of its value.
                 assert!((a - b).abs() <= digits * b.abs() * 1.001, "case {case}, value {i}: {a} against {b}");
             }
             let (x, y) = (text.axis().at(i), binary.axis().at(i));
-            // The abscissa has six digits in every case, and single precision in binary.
+            // The abscissa has six digits in each case, and single precision in binary files.
             assert!((x - y).abs() <= (0.5e-5 + 1e-7) * y.abs(), "case {case}, abscissa {i}: {x} against {y}");
         }
     }
@@ -245,8 +246,8 @@ fn a_hammer_test() {
     let Some(record) = only("dataset58_FRF.unv") else { return };
     let response = frf(record);
     assert_eq!((response.values.len(), step(&response.axis)), (1600, 0.5));
-    // The file says (m/s)/N under the label "Receptance"; that it was an acceleration only the mangled twin
-    // shows.
+    // The file states (m/s)/N under the label "Receptance". Only its mangled copy shows that it is an
+    // acceleration.
     assert_eq!(response.meta.quantity, Quantity::Mobility);
     let doubts = sentences(&response.meta.findings).join(" ");
     assert!(doubts.contains("Receptance") && doubts.contains("(m/s)/N"), "{doubts}");
@@ -346,7 +347,7 @@ fn inches_and_pounds_force_become_si() {
     let frf = frf(recording.records[0].clone());
     assert_eq!((frf.values.len(), step(&frf.axis)), (10, 0.25));
     assert_eq!(frf.meta.quantity, Quantity::Accelerance);
-    // in/s² over lbf, with the factors as the file prints them.
+    // in/s² over lbf, with the factors that the file prints.
     let factor = 0.224_808_943_099_710_5 / 39.370_078_740_157_48;
     assert!((frf.values[0].re / (1.733_31e-4 * factor) - 1.0).abs() < 1e-12, "{}", frf.values[0]);
 }

@@ -1,4 +1,4 @@
-//! What the header of a data set 58 means: units, kind of record, abscissa.
+//! The meaning of a data set 58's header: units, kind of record, abscissa.
 
 use super::sentences;
 use super::uff_set::{NONE, SEVEN, Set, doubts, form, read, reader, refused, try_read, values};
@@ -9,7 +9,7 @@ fn axis(code: u8, label: &str, unit: &str) -> String {
     format!("{code:10}    0    0    0 {label:20} {unit:20}")
 }
 
-/// Unit and factor that a ratio gets: its first value is 1 in the file.
+/// Unit symbol, first value (1 in the file, so the factor of the unit) and findings of a ratio.
 fn unit(set: &Set) -> (String, f64, String) {
     let recording = read(&set.file());
     (recording.records[0].meta().unit.symbol().to_owned(), values(&recording)[0], doubts(&recording))
@@ -23,7 +23,7 @@ fn numerator_and_denominator_share_the_unit() {
         (axis(12, "Acceleration", "m/s2"), &force, "(m/s²)/N", 1.0),
         (axis(12, "Acceleration", "g"), &force, "(m/s²)/N", 9.806_65),
         (axis(12, "Acceleration", "g"), &axis(13, "Force", "kN"), "(m/s²)/N", 9.806_65e-3),
-        // The whole ratio in the numerator, with and without a denominator that repeats itself.
+        // The numerator states the unit of the whole ratio, with and without a denominator that repeats it.
         (axis(12, "Acceleration", "(m/s²)/N"), &force, "(m/s²)/N", 1.0),
         (axis(0, "NONE", "mm/s/N"), &force, "(m/s)/N", 1e-3),
         (axis(0, "NONE", "µm/N"), &none, "m/N", 1e-6),
@@ -41,17 +41,17 @@ fn units_without_text() {
     let (symbol, value, text) = unit(&Set::ratio(4, &axis(12, "NONE", "NONE"), &axis(13, "NONE", "NONE")));
     assert_eq!((symbol.as_str(), value), ("(m/s²)/N", 1.0));
     assert!(text.contains("SI units of acceleration over excitation force are assumed"), "{text}");
-    // Millimetre and newton: a displacement of 1 is 1 mm.
+    // Millimetre and newton: a stored displacement of 1 is 1 mm.
     let system = b"    -1\n   164\n        10mm (newton)                  2\n  1.00000000000000000D+03  1.00000000000000000D+00  1.00000000000000000D+00\n  2.73149999999999977D+02\n    -1\n";
     let set = Set::ratio(4, &axis(8, "NONE", "NONE"), &axis(13, "NONE", "NONE")).file();
     let recording = read(&[&system[..], &set].concat());
     assert_eq!(recording.records[0].meta().unit.symbol(), "m/N");
     assert_eq!(values(&recording)[0], 1e-3);
-    // A text goes before the system.
+    // A unit in the text takes precedence over the unit system.
     let set = Set::ratio(4, &axis(8, "NONE", "m"), &axis(13, "NONE", "N")).file();
     let recording = read(&[&system[..], &set].concat());
     assert_eq!(values(&recording)[0], 1.0);
-    // A rotation has another unit.
+    // A rotation has a different unit.
     let mut set = Set::trace(1, "  1.00000E+00\n");
     set.axes[1] = axis(12, "NONE", "NONE");
     let rotation = String::from_utf8(set.file()).unwrap().replace("   7   3 NONE", "   7   6 NONE");
@@ -154,7 +154,7 @@ fn the_abscissa_is_time_frequency_or_something_else() {
     for (code, unit) in [(18, "rad/s"), (0, "rad/s"), (1, "1/s*rad")] {
         let (found, step, text) = kind(12, &axis(code, "omega", unit));
         assert!(found == AxisKind::Frequency && text.contains("divided by 2π"), "{unit}: {text}");
-        // One product and one quotient, each rounded by half an ulp.
+        // One product and one quotient, each rounded by half a unit in the last place.
         assert!((step * 2.0 * std::f64::consts::PI / 0.25 - 1.0).abs() < 4.0 * f64::EPSILON, "{step}");
     }
     assert_eq!(kind(0, &axis(19, "speed", "rpm")).0, AxisKind::Other("speed [rpm]".into()));
@@ -204,7 +204,7 @@ fn instants_that_are_stored_and_even_give_a_rate() {
     set.form = form(2, 9, 0);
     let recording = read(&set.file());
     let step = recording.records[0].axis().step().expect("an even axis");
-    // 8/3 is printed as 2.66667, so the step is off by half a unit over eight steps.
+    // 8/3 is printed as 2.66667, so the step is off by half a unit of the last digit over eight steps.
     assert!((step - 1.0 / 3.0).abs() <= 0.5e-5 / 8.0);
 }
 

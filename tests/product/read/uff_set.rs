@@ -1,4 +1,4 @@
-//! Universal files made by hand, one data set 58 at a time, and what is read of them.
+//! Hand-written universal files of one data set 58, and helpers that read them.
 
 use super::sentences;
 use vibroimpact::read::{Header, Reader, Recording};
@@ -10,7 +10,7 @@ pub const TIME: &str = "        17    0    0    0 time                 s";
 pub const FREQUENCY: &str = "        18    0    0    0 frequency            Hz";
 pub const PASCAL: &str = "        15    0    0    0 pressure             Pa";
 
-/// A data set 58 without its delimiters: function type, record 7, abscissa, ordinate, values.
+/// A data set 58 without its delimiters: function type, record 7, axes, values.
 pub struct Set {
     pub number: String,
     pub function: u8,
@@ -31,7 +31,7 @@ impl Set {
         }
     }
 
-    /// A frequency response of two lines, with these characteristics of numerator and denominator.
+    /// A frequency response of two lines, with these axis records of numerator and denominator.
     pub fn ratio(function: u8, above: &str, below: &str) -> Set {
         Set {
             function,
@@ -53,7 +53,7 @@ impl Set {
         [self.header().as_bytes(), &self.values].concat()
     }
 
-    /// With both delimiters.
+    /// The data set with both delimiters.
     pub fn file(&self) -> Vec<u8> {
         [b"    -1\n", &self.body()[..], b"    -1\n"].concat()
     }
@@ -67,7 +67,7 @@ pub fn reader() -> Reader {
     Reader::new()
 }
 
-/// Reads, and checks that the survey agrees or fails alike.
+/// Reads, and checks that the survey agrees or also fails.
 pub fn try_read(reader: &Reader, bytes: &[u8]) -> Result<Recording, String> {
     let read = reader.from_reader("odd.uff", bytes).map_err(|e| e.to_string());
     let file = tempfile::Builder::new().suffix(".uff").tempfile().expect("a temporary file");
@@ -110,7 +110,7 @@ pub fn doubts(recording: &Recording) -> String {
     sentences(&recording.all_findings()).join(" ")
 }
 
-/// Checks values and that there is no doubt.
+/// Checks the values, and that there is no finding.
 pub fn clean(bytes: &[u8], expected: &[f64]) {
     let recording = read(bytes);
     assert_eq!(values(&recording), expected);
@@ -122,7 +122,7 @@ pub const SEVEN: &str =
 pub const ONE_TO_SEVEN: [f64; 7] = [-1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0];
 
 pub fn binary(kind: u8, n: usize, even: u8, noted: usize, values: &[u8]) -> Set {
-    let big = 1 + u8::from(noted & 1 == 1); // an odd note would be no whole number of values: here it says the byte order
+    let big = 1 + u8::from(noted & 1 == 1); // an odd `noted` stands for big-endian values
     Set {
         number: format!(
             "    58b{big:6}     2          11{:12}     0     0           0           0",

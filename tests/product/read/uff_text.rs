@@ -1,5 +1,4 @@
-//! Universal files of text with something odd about their values: what is wrong is said, what is right is
-//! still read.
+//! Universal text files with unusual values: faults are reported, and sound values are still read.
 
 use super::uff_set::{ONE_TO_SEVEN, SEVEN, Set, clean, doubts, read, reader, refused, try_read, values};
 
@@ -21,7 +20,7 @@ fn values_in_any_layout() {
 
 #[test]
 fn a_number_wider_than_its_field_is_not_cut_in_two() {
-    // Fourteen columns: thirteen of them would be -1.00000E+00 and a rest of 0.
+    // Fields of fourteen columns: the first thirteen would give -1.00000E+00, with a 0 left over.
     clean(&Set::trace(2, " -1.00000E+000\n  2.50000E+001\n").file(), &[-1.0, 25.0]);
     clean(&Set::trace(2, "     0.0012345\n     0.1234567\n").file(), &[0.001_234_5, 0.123_456_7]);
 }
@@ -66,7 +65,7 @@ fn a_file_cut_anywhere_gives_no_wrong_value() {
         let values = values(&recording);
         assert_eq!(values, ONE_TO_SEVEN[..values.len()], "cut at byte {end}");
         let text = doubts(&recording);
-        // What is left of the first value may look like the delimiter.
+        // The rest of the first value may look like the delimiter.
         let looks_closed = set[header..end].trim_ascii() == b"-1";
         assert!(text.contains("without the closing -1") || looks_closed, "cut at byte {end}: {text}");
         if values.len() < 7 {
@@ -75,11 +74,11 @@ fn a_file_cut_anywhere_gives_no_wrong_value() {
                 "{text}"
             );
         }
-        // A number counts when its field is whole, and not a byte later.
+        // A number counts from the byte that completes its field.
         let fields = (end - header).min(78) / 13 + usize::from(end - header >= 79 + 13);
         assert_eq!(values.len(), fields, "cut at byte {end}");
     }
-    // Numbers between blanks: the last one may be half of one.
+    // Numbers separated by blanks: the last one may be cut off, so it does not count.
     let recording = read(&[b"    -1\n", &Set::trace(7, "1.5 2.5 3.25").body()[..]].concat());
     assert_eq!(values(&recording), [1.5, 2.5]);
     let recording = read(&[b"    -1\n", &Set::trace(3, "1.5 2.5 3.25E-").body()[..]].concat());
@@ -140,7 +139,7 @@ fn delimiters_out_of_step() {
     };
     let (d, other): (&[u8], &[u8]) = (b"    -1\n", b"    -1\n    15\n         1\n    -1\n");
     assert_eq!(bytes(&[d, &body, d, d, &body, d]), (2, String::new()));
-    // One -1 between two sets, three of them, blank lines.
+    // One -1 between two sets, three -1, and blank lines.
     assert_eq!(bytes(&[d, &body, d, &body, d]).0, 2);
     assert_eq!(bytes(&[b"\n\n", d, &body, d, d, d, b"\n \n", d, &body, d]), (2, String::new()));
     let (n, text) = bytes(&[d, &body]);

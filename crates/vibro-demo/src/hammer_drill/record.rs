@@ -30,13 +30,13 @@ pub struct Record {
 /// Standard deviation of the vibrometer's noise in V: 6 mm/s along the beam, at 2 m/s per volt.
 const NOISE: f64 = 0.003;
 
-/// A record of `seconds`, the same every time.
+/// A record of `seconds` s, the same every time.
 pub fn record(seconds: f64) -> Record {
     // Velocity of the striker after an impact divided by that before it, by balance of momentum with the bit
     // at rest: (m − R M)/(m + M), with the mass m of the striker, M of the bit.
     let rebound = (STRIKER - RESTITUTION * BIT) / (STRIKER + BIT);
-    // 47.3 impacts per second, each at 0.62 of a turn after top dead centre with 7.5 m/s and a contact of 60
-    // µs.
+    // 47.3 impacts per second, each at 0.62 of a turn after top dead centre, at 7.5 m/s and with a contact
+    // of 60 µs.
     let machine = Machine {
         speed: 47.3,
         speed_scatter: 0.004,

@@ -21,8 +21,8 @@ pub const SAMPLES: usize = 1024 * 32;
 /// Interval of the converter's samples in s.
 pub const INTERVAL: f64 = BLOCK / SAMPLES as f64;
 
-/// Frequency in Hz of the mains hum in a record: the 50 Hz pass the analogue filter in part and alias at the
-/// final record's sampling rate of 51.2 Hz.
+/// Frequency in Hz of the mains hum in a record: the analogue filter passes part of the 50 Hz, which
+/// aliases at the final sampling rate of 51.2 Hz.
 const HUM: f64 = 51.2 - 50.0;
 
 /// Noise, hum and converter of an input.

@@ -14,8 +14,8 @@ use vibro_record::Result;
 const FORCE: f64 = 0.1;
 
 /// Coefficient of restitution. The clapping branch ends where the force no longer supplies the losses in
-/// dampers and impacts: at 10.67 Hz for this value, and at 10.79 Hz for 0.998, that of the thesis' contact
-/// (1e5 N/m, 0.1 N s/m).
+/// dampers and impacts: at 10.67 Hz for this value, and at 10.79 Hz for 0.998, the restitution of the
+/// thesis' contact (1e5 N/m, 0.1 N s/m).
 const RESTITUTION: f64 = 0.98;
 
 /// Frequencies of the generator in Hz, ascending; none lies on a line of the analyser (multiples of 0.05 Hz).

@@ -87,7 +87,7 @@ pub fn spelled(text: &str) -> Option<String> {
     })
 }
 
-/// Most brackets and roots in a text, against deep recursion.
+/// Largest number of brackets and roots in a text, which limits the recursion.
 const MAX_BRACKETS: usize = 16;
 
 type Parsed = (Dimension, f64);
@@ -203,7 +203,7 @@ impl<'a> UnitParser<'a> {
         };
         match self.power()? {
             2 => Some(base),
-            // Nobody divides by milliseconds: `ms-2` means metres per square second.
+            // `ms-2` means metres per square second, since exports do not divide by milliseconds.
             halves if name == "ms" && halves < 0 && !below => {
                 Some((symbol("m")?.0.times(symbol("s")?.0.half_power(halves)?), 1.0))
             }
