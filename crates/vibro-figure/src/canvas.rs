@@ -164,8 +164,8 @@ impl Element {
     }
 }
 
-/// A path as SVG. Thin lines have bevelled corners: on them rounding would not be seen, and long noisy
-/// lines have many.
+/// A path as SVG. Lines thinner than 0.7 points have bevelled corners: rounding would not be visible,
+/// and long noisy lines have many corners.
 fn shape(data: &str, fill: Option<Rgb>, pen: Option<Pen>) -> String {
     let mut look = fill.map(|fill| format!(" fill=\"{fill}\"")).unwrap_or_default();
     if let Some(Pen { colour, width, dashes }) = pen {
