@@ -367,7 +367,7 @@ mod tests {
 
     #[test]
     fn every_option_that_takes_a_number_has_its_range() {
-        // The model checks these itself: varied parameters, and settings of the questions to it.
+        // The model checks these itself: parameters that can be varied, and settings of `vibro model`.
         let asked = ["from", "to", "step", "start", "tolerance", "noise_floor", "gap_std"];
         let of_model = |key: &str| Parameter::named(key).is_some() || asked.contains(&key);
         let mut left = vec![command()];
