@@ -317,9 +317,11 @@ impl Trial<'_> {
         }
     }
 
-    /// The tables of a hammer drill, one for each velocity: a channel beside them has two levels, as the
-    /// pulses of a crank. Where that channel is rather a contact circuit beside a sine, the table of its
-    /// impacts.
+    /// The tables of a hammer drill, one for each velocity channel, if another channel has two levels, as
+    /// the
+    /// pulses of a crank. If that channel is more likely a contact circuit beside a sine, the only table is
+    /// that
+    /// of its impacts.
     fn drill(&self, series: &FileSeries, name: &str) -> Vec<Table> {
         let file = &series.files[0];
         let is_velocity = |h: &Header| h.quantity == "velocity" || h.unit == "V";

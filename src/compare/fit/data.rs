@@ -37,7 +37,7 @@ pub struct SweepStep {
     pub frequency: f64,
     /// Its standard uncertainty in Hz; 0 where it is not known.
     pub frequency_std: f64,
-    /// Force in N, where the force of the setting equals [`Data::force`].
+    /// Force in N if the force of the setting is [`Data::force`]; else it scales with that of the setting.
     pub force: f64,
     /// Its standard uncertainty in N; 0 where it is not known.
     pub force_std: f64,
