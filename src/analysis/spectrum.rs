@@ -251,7 +251,7 @@ pub fn compared(found: &[(String, SpectralResult)]) -> Result<Answer> {
     let mut answer = Answer::default();
     let Some((first, like)) = found.first() else { return Ok(answer) };
     let mut spectra = Vec::new();
-    // The table of common peaks has its name among the files, too.
+    // The name `peaks` is kept for the table of common peaks.
     let slugs = files::slugs(std::iter::once("peaks").chain(found.iter().map(|(name, _)| name.as_str())));
     for ((name, result), slug) in found.iter().zip(&slugs[1..]) {
         let ordinate = |of: &SpectralResult| format!("{} ({})", of.unit, of.scaling);
@@ -333,7 +333,7 @@ const SHOWN_PEAKS: usize = 8;
 fn peaks(name: &str, found: &SpectralResult) -> Table {
     let finite_at = |values: &[f64], k: usize| values.get(k).copied().filter(|v| v.is_finite());
     let response = found.response.as_ref();
-    // A peak lies anywhere within half a line spacing of its line: rectangular, spacing/√12.
+    // A peak lies anywhere within half a line spacing of its line: rectangular distribution, spacing/√12.
     let line_std = found.frequency.windows(2).next().map_or(f64::NAN, |w| (w[1] - w[0]) / f64::sqrt(12.0));
     let peaks = table(
         "Largest peaks of spectra",
@@ -360,7 +360,7 @@ fn peaks(name: &str, found: &SpectralResult) -> Table {
     }
 }
 
-/// By how much a sine half-way between two lines reads low, by window.
+/// Amplitude lost by a sine half-way between two lines (scalloping loss), by window.
 const READS_LOW: [(&str, &str); 3] = [("hann", "15 %"), ("rectangular", "36 %"), ("hamming", "18 %")];
 
 /// Settings with which the lines of each record were computed.

@@ -25,7 +25,7 @@ impl Figure {
         )
     }
 
-    /// Whether a panel has a heat map, whose image is large.
+    /// Whether a panel has a heat map: printed, its image would be half of a page.
     pub fn has_map(&self) -> bool {
         self.panels.iter().any(|panel| matches!(panel, Panel::Plot(plot) if plot.heatmap.is_some()))
     }

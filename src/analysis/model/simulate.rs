@@ -13,7 +13,7 @@ use crate::report::layout::table;
 use crate::units::notation::counted;
 use serde_json::json;
 
-/// What is asked.
+/// Keys of `vibro model simulate`.
 #[derive(Debug, Clone)]
 #[cfg_attr(feature = "cli", derive(clap::Args))]
 pub struct Keys {

@@ -21,7 +21,7 @@ use serde::Deserialize;
 use serde_json::json;
 use std::f64::consts::TAU;
 
-/// What is asked.
+/// Keys of `vibro model sweep`.
 #[derive(Debug, Clone)]
 #[cfg_attr(feature = "cli", derive(clap::Args))]
 pub struct Keys {
@@ -68,7 +68,7 @@ pub struct Keys {
     pub observable: Observable,
 }
 
-/// What is swept.
+/// Parameter that is swept.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum SweptParameter {
@@ -78,7 +78,7 @@ pub enum SweptParameter {
     Force,
 }
 
-/// The ways in which it is swept.
+/// Directions of the sweeps, and where each begins.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Directions {

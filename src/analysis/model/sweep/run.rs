@@ -31,7 +31,7 @@ pub(super) struct End {
 }
 
 impl End {
-    /// Whether the masses move in phase.
+    /// Relative motion of the masses: in phase or antiphase.
     pub fn masses(&self) -> Option<&'static str> {
         self.relative_phase.map(|phase| if in_phase(phase) { "in phase" } else { "antiphase" })
     }
