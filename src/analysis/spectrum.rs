@@ -70,7 +70,7 @@ pub struct Keys {
     pub decibel: Option<f64>,
 }
 
-/// What is taken out of a segment before the window.
+/// Trend that is removed from a segment before the window.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Detrend {
@@ -124,7 +124,7 @@ impl Keys {
         let options = self.options()?;
         let traces = match self.traces(source) {
             Ok(traces) => traces,
-            // A stated base band is then that of the stored lines, and gives no sampling rate.
+            // A stated base band then belongs to the stored lines and gives no sampling rate.
             Err(why) => match source.reader()?.survey(source.path) {
                 Ok((_, headers, _)) if is_of_spectra(source, &headers) => {
                     return stored_lines(source, &options);
@@ -202,7 +202,7 @@ pub(crate) fn in_other_file(reference: &str) -> Option<(&Path, &str)> {
     file.extension().map(|_| (file, channel))
 }
 
-/// The files of a table, with that of its reference.
+/// The files of a table, and the file of its reference.
 ///
 /// # Errors
 /// If one leads outside the folder or does not exist.
@@ -243,7 +243,7 @@ impl OfFile for Keys {
     }
 }
 
-/// Spectra of several records, or functions: one figure, and the peaks of each beside those of the others.
+/// Compares spectra or functions of several records: one figure, and one table with the peaks of all.
 ///
 /// # Errors
 /// If their units or scalings differ.

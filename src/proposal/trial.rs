@@ -270,8 +270,9 @@ impl Trial<'_> {
         })
     }
 
-    /// A drop table marked as refused, where the record has several possible series of bounces. Its height
-    /// is asked for, which can decide between them.
+    /// A drop table marked as refused, if the record allows several series of bounces. Its missing height
+    /// can
+    /// decide between them.
     fn undecided_drop(&self, series: &FileSeries, k: usize, name: &str) -> Option<Table> {
         let refusal = self.answers(&[series.bounces(k, name)]).err().filter(|r| r.code == Train::UNTOLD)?;
         let table = series.bounces(k, name).missing("height", "0.5", HEIGHT);

@@ -57,7 +57,7 @@ pub(crate) struct Image {
     pub pixels: Pixmap,
 }
 
-/// What is drawn over the images.
+/// A path or a text, drawn over the images.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Element {
     /// A path.
@@ -66,7 +66,7 @@ pub(crate) enum Element {
     Text(Text),
 }
 
-/// What has been drawn so far, in order; images lie under everything else.
+/// Everything drawn so far, in order; images lie under all other elements.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(crate) struct Canvas {
     pub elements: Vec<Element>,

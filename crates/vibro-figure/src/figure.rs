@@ -60,7 +60,7 @@ pub struct Plot {
     pub series: Vec<Series>,
     /// Texts that label points of the data.
     pub notes: Vec<Note>,
-    /// Where the names of the series stand.
+    /// Position of the legend.
     pub legend: Legend,
     /// True if the plot repeats an earlier panel, for example on a logarithmic axis. A page with adjustable
     /// axes omits it.
@@ -81,7 +81,7 @@ pub struct Note {
     pub y: f64,
 }
 
-/// Where the names of the series stand.
+/// Position of the legend, the list of the names of the series.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub enum Legend {
     /// In the frame at a place without data; if there is none, to the right of the frame or above it.
@@ -161,7 +161,7 @@ impl Plot {
         Plot { heatmap: Some(heatmap), ..self }
     }
 
-    /// Sets where the names of the series stand.
+    /// Sets the position of the legend.
     pub fn legend(self, legend: Legend) -> Plot {
         Plot { legend, ..self }
     }

@@ -158,7 +158,7 @@ impl<'a> Sheet<'a> {
         notes::write_notes(canvas, &self.plot.notes, &place, &mut clutter);
     }
 
-    /// The frame in this rectangle: a square in its middle where the plot asks for one.
+    /// The frame in this rectangle: for a square plot, the largest square in its middle.
     fn within(&self, room: Rect) -> Rect {
         let side = room.w.min(room.h);
         let inset = |length: f64| (length - side) / 2.0;

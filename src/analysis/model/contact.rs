@@ -15,7 +15,7 @@ pub enum Contact {
     KelvinVoigt,
     /// Hertzian contact of spheres, without losses.
     Hertz,
-    /// Contact that is not linear, with losses; exponent 1.5, that of spheres, unless stated.
+    /// Nonlinear contact with losses; exponent 1.5 (spheres) unless stated.
     HuntCrossley,
     /// A mass that is loose on its spring.
     LooseMass,

@@ -189,7 +189,7 @@ fn points_within(ranges: &[Range], all: usize, code: &'static str) -> Option<Fin
     (n > 0).then(|| Finding::caution(code).count("n", n).count("all", all))
 }
 
-/// Notes the masses that stand still in the whole sweep.
+/// Note on a mass that does not move in the whole sweep.
 fn still(swept: &Swept, rig: &Rig) -> Option<Finding> {
     let moves = |mass: usize| swept.up.iter().chain(&swept.down).any(|p| p.amplitudes()[mass] > 0.0);
     let mass = (0..2).find(|mass| !moves(*mass))?;

@@ -89,7 +89,7 @@ impl Data {
     /// # Errors
     /// If there is no such response, or no force is known.
     pub fn new(force: Option<f64>, responses: &[Response], pace: Pace) -> Result<Data> {
-        // Findings on the force are already those of the overlay of the same responses.
+        // The overlay of the same responses already reports the findings on the force.
         let (swept, _) = Swept::all(force, responses)?;
         let points = || swept.iter().flat_map(|s| &s.response.points);
         let clear = points().filter(|p| p.upper_limit.is_none() && p.amplitude.value > 0.0);
