@@ -282,8 +282,8 @@ fn kind(result: &SpectralResult) -> &'static str {
     if matches!(result.found, Lines::Transfer(_)) { "frf" } else { "spectrum" }
 }
 
-/// Largest peaks of several spectra. Those of different spectra within one and a half line spacings of the
-/// coarsest share a row, the nearest first.
+/// Largest peaks of several spectra. Peaks of different spectra share a row if they are at most 1.5 line
+/// spacings of the coarsest spectrum apart; the nearest pairs are joined first.
 fn common_peaks(found: &[(String, SpectralResult)]) -> Table {
     let spacing = |result: &SpectralResult| result.frequency.windows(2).next().map_or(0.0, |w| w[1] - w[0]);
     let near = 1.5 * found.iter().map(|(_, result)| spacing(result)).fold(0.0, f64::max);

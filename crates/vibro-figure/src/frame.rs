@@ -197,7 +197,7 @@ pub(super) fn along(canvas: &mut Canvas, name: &str, x: f64, frame: Rect, below:
     canvas.text(Text { words: name, at, size, anchor, turn: 90.0, colour: BLACK, halo: false });
 }
 
-/// A text and its size such that it fits: at most a quarter smaller, then cut.
+/// A text and its size, made to fit: at most a quarter smaller, then cut.
 pub(super) fn fitted(text: &str, size: f64, room: f64) -> (String, f64) {
     let size = (size * room / font::width(text, size).max(1.0)).clamp(0.75 * size, size);
     (font::fit(text, size, room + 0.01), size)

@@ -103,9 +103,10 @@ pub(super) fn clipped(line: &[Point], frame: Rect) -> Vec<Vec<Point>> {
     parts
 }
 
-/// The line with fewer points, none of the others further than `tolerance` in points from it (Douglas and
-/// Peucker 1973). A dense line is first reduced to the first, lowest, highest and last point of every
-/// 0.25 points of width.
+/// Thins a line: no removed point is further than `tolerance` from the new line, in points of 1/72 inch
+/// (Douglas
+/// and Peucker 1973). A dense line is first reduced to the first, lowest, highest and last point of every
+/// 0.25 points of width; the tolerance holds for the rest.
 pub(super) fn thinned(line: &[Point], tolerance: f64) -> Vec<Point> {
     let line = by_columns(line, 0.25);
     let Some(last) = line.len().checked_sub(1).filter(|last| *last >= 2) else { return line };

@@ -1,4 +1,4 @@
-//! Turns of a drill one by one: a row a turn, columns over the phase.
+//! Turns of a drill one by one: a row for each turn, a column for each phase.
 
 use crate::measure::drill::Cycle;
 use std::fmt::Write as _;

@@ -184,7 +184,7 @@ fn summary(observed: &ObservedMotion) -> Table {
     .note("Phase: of the excitation at the last impact, after the crest of a sine force, the impulse or the onset of the pulse.")
 }
 
-/// Times and states, one a row.
+/// Times and states, one row for each time.
 fn states(times: &[f64], states: &[State]) -> Table {
     table(
         "States",
@@ -199,7 +199,7 @@ fn states(times: &[f64], states: &[State]) -> Table {
     )
 }
 
-/// Every impact, one a row.
+/// Every impact, one row each.
 fn impacts(portrait: &Portrait) -> Table {
     table(
         "Impacts",
