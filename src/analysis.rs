@@ -1,4 +1,4 @@
-//! Analyses, one folder a kind of record: its keys, its run, its figures, its tables.
+//! Analyses, one folder for each kind of record: its keys, its run, its figures, its tables.
 //!
 //! A table of a campaign and a command line fill the same keys: `[[impacts]] refractory = 0.005` and `vibro
 //! impacts --refractory 0.005` run one function. A new kind of record is a folder here and a row in

@@ -187,7 +187,7 @@ impl Campaign {
     pub(crate) fn commented(&self) -> Vec<Finding> {
         let lines: Vec<&str> = self.text.lines().collect();
         let comment = |line: &&str| line.strip_prefix('#').map(|text| text.trim_start().to_owned());
-        // In a table in a comment, optional keys are comments of their own (`##`) and are skipped.
+        // In a table that is commented out, optional keys begin with `##` and are skipped.
         let below = |i: usize| lines[i..].iter().map_while(comment).filter(|text| !text.starts_with('#'));
         let above = |i: usize, n: usize| comment(lines.get(i.checked_sub(n)?)?);
         // The lines above a refused table: its description, the reason of the refusal, then `FILL_IN`.

@@ -138,8 +138,7 @@ fn rows() -> impl Iterator<Item = &'static CommandRow> {
 
 /// Arguments of a command, and the function that runs it.
 trait CommandArgs: Args {
-    /// How messages name settings: as options, or as keys for commands whose settings stand in a campaign
-    /// file.
+    /// How messages name settings: as options, or as keys for commands that read a campaign file.
     const VOICE: Voice = Voice::Command;
 
     /// Runs the command and returns the exit code.
@@ -290,7 +289,7 @@ fn options(command: Typed) -> Typed {
     let option = |arg: Arg| {
         order += 1;
         let takes_value = arg.get_action().takes_values();
-        // Options that all commands have come after those of the command.
+        // Options common to all commands are listed after those of the command.
         let order = if arg.is_global_set() { usize::MAX } else { order };
         let arg = arg.allow_negative_numbers(takes_value).display_order(order);
         if arg.get_index().is_some() {
@@ -367,7 +366,7 @@ mod tests {
 
     #[test]
     fn every_option_that_takes_a_number_has_its_range() {
-        // The model checks these itself: varied parameters, and settings of the questions to it.
+        // The model checks these itself: parameters that can be varied, and settings of `vibro model`.
         let asked = ["from", "to", "step", "start", "tolerance", "noise_floor", "gap_std"];
         let of_model = |key: &str| Parameter::named(key).is_some() || asked.contains(&key);
         let mut left = vec![command()];

@@ -74,7 +74,9 @@
 //! # Ok::<(), vibroimpact::Error>(())
 //! ```
 
-// Only the command asks questions of models and compares methods: without it, this code is unused.
+// Only the command line uses the questions of models and the comparison of methods: without it, this code
+// is
+// unused.
 #![cfg_attr(not(feature = "cli"), allow(dead_code, unused_imports))]
 
 pub mod analysis;

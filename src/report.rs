@@ -1,4 +1,5 @@
-//! What a person reads: tables, figures, files, one page, and the words for findings. Nothing here knows an
+//! What a person reads: tables, figures, files, one page, and the words for findings. This folder depends
+//! on no
 //! analysis.
 
 pub(crate) mod files;

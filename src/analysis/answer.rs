@@ -21,7 +21,7 @@ pub struct Answer {
     pub findings: Vec<About>,
     /// Channel of the record; empty for several channels.
     pub channel: String,
-    /// Main numbers for the head of a report: all columns except that of the record.
+    /// Main numbers for the head of a report, without a column for the name of the record.
     pub headlines: Vec<Table>,
     /// Tables that are shown first.
     pub tables: Vec<Table>,
@@ -51,7 +51,7 @@ impl Answer {
         let Value::Object(mut result) = serde_json::to_value(result).map_err(unwritten)? else {
             return Err(Error::refused("the result is no object"));
         };
-        // The findings are added to the answer by themselves.
+        // Findings are added to the answer separately, with their record.
         result.shift_remove("findings");
         Ok(Answer { result, ..Answer::default() })
     }

@@ -17,8 +17,8 @@ use crate::report::layout::{pair, table, titled};
 use crate::report::{Cell, Table};
 use serde::Deserialize;
 
-/// Memory for the search, as a multiple of the trace: with ten million samples 8.8 traces were measured in
-/// all.
+/// Memory for the search beside the trace, as a multiple of it. With ten million samples, trace and search
+/// together took 8.8 times the trace.
 const BESIDE: f64 = 8.0;
 
 /// How modes of a decay are found.

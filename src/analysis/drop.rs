@@ -22,7 +22,7 @@ use crate::units::notation::significant;
 use serde::Deserialize;
 use std::path::Path;
 
-/// What is known of drops of one series beside their records.
+/// Known quantities of the drops of one series, beside their records.
 #[derive(Debug, Clone, Default, PartialEq, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 #[cfg_attr(feature = "cli", derive(clap::Args))]

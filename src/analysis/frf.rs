@@ -29,8 +29,8 @@ use crate::units::notation::significant;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 
-/// Share of a reference's power in its strongest sine from which it is a pure sine: 20 dB above all else.
-/// Noise and blows spread their power over all lines.
+/// Share of its power in its strongest sine from which a reference counts as a pure sine: 20 dB above the
+/// rest. Noise and blows spread their power over all lines.
 const ALONE: f64 = 0.99;
 /// Samples at the beginning of a reference that are tested first.
 const HEAD: usize = 1 << 16;

@@ -91,7 +91,7 @@ pub(crate) fn of_kinds<T>(each: impl Fn(&AnalysisKind) -> Result<Vec<T>>) -> Res
     Ok(KINDS.iter().map(each).collect::<Result<Vec<_>>>()?.into_iter().flatten().collect())
 }
 
-/// The row of a kind of record.
+/// Entry of [`KINDS`] for one analysis.
 const fn row<A: Analysis>() -> AnalysisKind {
     AnalysisKind {
         section: A::SECTION,
@@ -122,7 +122,7 @@ fn channels_in<A: Analysis>(campaign: &Campaign, entry: &Entry<A>) -> Result<()>
     // An error in a line of the file points there; otherwise the table is at fault.
     let at = |error: Error| if error.line().is_some() { error } else { campaign.fault(entry, error) };
     let (_, headers, _) = surveyed.map_err(at)?;
-    // Traces with a constant step but no sampling rate.
+    // Traces with a constant step but no sampling rate: the error asks for the rate.
     if headers.iter().all(|h| h.kind == "trace" && h.rate.is_none() && h.dx.is_some()) {
         let error = Error::usage(format!("{} has no sampling rate", shown(path)), "rate = HZ");
         return Err(campaign.fault(entry, error.setting("rate").setting("file")));

@@ -1,5 +1,6 @@
-//! The model of a rig: `vibro model`, one file a question; figures of its orbits, motions, sweeps, maps, and
-//! of the choice of a model.
+//! The model of a rig: `vibro model`, one file for each question; figures of its orbits, motions, sweeps,
+//! maps,
+//! and of the choice of a model.
 
 pub mod branch;
 pub mod choose;
@@ -19,7 +20,7 @@ use num_complex::Complex64;
 use serde::Serialize;
 use std::path::PathBuf;
 
-/// The scene that a model is asked about.
+/// Keys of a scene: the rig, and its excitation.
 #[derive(Debug, Clone, Default)]
 #[cfg_attr(feature = "cli", derive(clap::Args))]
 pub struct SceneKeys {
@@ -48,8 +49,9 @@ struct Driven {
 }
 
 impl SceneKeys {
-    /// The scene: the file, then what is set, then the keys of the excitation. `frequency` in Hz replaces
-    /// that of the excitation.
+    /// The scene: the rig file, with the keys in `set` replaced, then with the keys of the excitation.
+    /// `frequency`
+    /// in Hz replaces that of the excitation.
     fn driven(&self, frequency: Option<f64>) -> Result<Driven> {
         let mut draft = self.rig.as_ref().map_or_else(|| Ok(Draft::default()), Draft::from_path)?;
         let missing = if self.rig.is_some() { draft.left_out() } else { Vec::new() };
@@ -99,7 +101,7 @@ struct JudgedOrbit<'a> {
     lines: Vec<[f64; 2]>,
     /// Whether grazing is farther away than the uncertainty of the gap, where that is stated.
     robust: Option<bool>,
-    /// Whether grazing is as near as that uncertainty.
+    /// Whether grazing lies within that uncertainty.
     near_grazing: Option<bool>,
 }
 

@@ -62,7 +62,7 @@ pub fn page(
     if let Some(sliders) = compared.and_then(|compared| compared.sliders.as_ref()) {
         page = page.heading("What if").paragraph(WHAT_IF).what_if(json!(sliders));
     }
-    // Findings after those of the parts are about the campaign.
+    // Findings after the parts concern the campaign as a whole.
     let rest = parts.last().map_or(0, |(_, [.., findings])| findings.end);
     page = page.heading("Where the numbers come from").findings(&at_records(&all.findings[rest..]));
     let page = origin(page, job, inputs, all);

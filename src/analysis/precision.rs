@@ -40,7 +40,7 @@ fn yes(yes: bool) -> Cell {
     if yes { "yes" } else { "" }.into()
 }
 
-/// Whose code a method is, by its group in the chart.
+/// Origin of a method's code, by the group of the method in the chart.
 const CODE: [&str; 3] = ["vibro", "vibro, a common method", "other program"];
 
 /// The methods of one scene, for a reader.

@@ -16,7 +16,7 @@ use crate::report::{Cell, Table};
 use serde::Deserialize;
 use std::collections::BTreeMap;
 
-/// What is known of a pulse and of its instrument, or two times without a record.
+/// Known properties of a pulse and its instrument, or two times in place of a record.
 #[derive(Debug, Clone, Default, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 #[cfg_attr(feature = "cli", derive(clap::Args))]

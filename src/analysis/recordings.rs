@@ -33,7 +33,7 @@ pub struct Recordings {
 pub fn recordings(folder: &Folder) -> Result<Recordings> {
     let Walk { mut files, skipped } = folder.walk(folder.root(), LEVELS)?;
     let top = plain(folder.root());
-    // Versions without a manifest had a folder for results alone: all files in it are results.
+    // Versions without a manifest wrote results into a folder of their own: all files in it are results.
     let has = |path: &Path, name: &str| folder.is_file(&path.join(name));
     let is_results =
         |path: &Path| path != top && has(path, RESULTS) && has(path, REPORT) && !has(path, Manifest::FILE);

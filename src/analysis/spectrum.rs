@@ -70,7 +70,7 @@ pub struct Keys {
     pub decibel: Option<f64>,
 }
 
-/// What is taken out of a segment before the window.
+/// Trend that is removed from a segment before the window.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Detrend {
@@ -124,7 +124,7 @@ impl Keys {
         let options = self.options()?;
         let traces = match self.traces(source) {
             Ok(traces) => traces,
-            // A stated base band is then that of the stored lines, and gives no sampling rate.
+            // A stated base band then belongs to the stored lines and gives no sampling rate.
             Err(why) => match source.reader()?.survey(source.path) {
                 Ok((_, headers, _)) if is_of_spectra(source, &headers) => {
                     return stored_lines(source, &options);
@@ -202,7 +202,7 @@ pub(crate) fn in_other_file(reference: &str) -> Option<(&Path, &str)> {
     file.extension().map(|_| (file, channel))
 }
 
-/// The files of a table, with that of its reference.
+/// The files of a table, and the file of its reference.
 ///
 /// # Errors
 /// If one leads outside the folder or does not exist.
@@ -243,7 +243,7 @@ impl OfFile for Keys {
     }
 }
 
-/// Spectra of several records, or functions: one figure, and the peaks of each beside those of the others.
+/// Compares spectra or functions of several records: one figure, and one table with the peaks of all.
 ///
 /// # Errors
 /// If their units or scalings differ.
@@ -251,7 +251,7 @@ pub fn compared(found: &[(String, SpectralResult)]) -> Result<Answer> {
     let mut answer = Answer::default();
     let Some((first, like)) = found.first() else { return Ok(answer) };
     let mut spectra = Vec::new();
-    // The table of common peaks has its name among the files, too.
+    // The name `peaks` is kept for the table of common peaks.
     let slugs = files::slugs(std::iter::once("peaks").chain(found.iter().map(|(name, _)| name.as_str())));
     for ((name, result), slug) in found.iter().zip(&slugs[1..]) {
         let ordinate = |of: &SpectralResult| format!("{} ({})", of.unit, of.scaling);
@@ -282,8 +282,8 @@ fn kind(result: &SpectralResult) -> &'static str {
     if matches!(result.found, Lines::Transfer(_)) { "frf" } else { "spectrum" }
 }
 
-/// Largest peaks of several spectra. Those of different spectra within one and a half line spacings of the
-/// coarsest share a row, the nearest first.
+/// Largest peaks of several spectra. Peaks of different spectra share a row if they are at most 1.5 line
+/// spacings of the coarsest spectrum apart; the nearest pairs are joined first.
 fn common_peaks(found: &[(String, SpectralResult)]) -> Table {
     let spacing = |result: &SpectralResult| result.frequency.windows(2).next().map_or(0.0, |w| w[1] - w[0]);
     let near = 1.5 * found.iter().map(|(_, result)| spacing(result)).fold(0.0, f64::max);
@@ -333,7 +333,7 @@ const SHOWN_PEAKS: usize = 8;
 fn peaks(name: &str, found: &SpectralResult) -> Table {
     let finite_at = |values: &[f64], k: usize| values.get(k).copied().filter(|v| v.is_finite());
     let response = found.response.as_ref();
-    // A peak lies anywhere within half a line spacing of its line: rectangular, spacing/√12.
+    // A peak lies anywhere within half a line spacing of its line: rectangular distribution, spacing/√12.
     let line_std = found.frequency.windows(2).next().map_or(f64::NAN, |w| (w[1] - w[0]) / f64::sqrt(12.0));
     let peaks = table(
         "Largest peaks of spectra",
@@ -360,7 +360,7 @@ fn peaks(name: &str, found: &SpectralResult) -> Table {
     }
 }
 
-/// By how much a sine half-way between two lines reads low, by window.
+/// Amplitude lost by a sine half-way between two lines (scalloping loss), by window.
 const READS_LOW: [(&str, &str); 3] = [("hann", "15 %"), ("rectangular", "36 %"), ("hamming", "18 %")];
 
 /// Settings with which the lines of each record were computed.

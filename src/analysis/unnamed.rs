@@ -67,7 +67,7 @@ pub fn beside(campaign: &Campaign) -> Result<Vec<Finding>> {
     let found = Finding::note("files-not-named").count("n", new.len());
     let found = (!new.is_empty()).then(|| found.name("files", few(&names)));
     let skipped = seen.skipped.into_iter().map(|(path, why)| (file_name(&path), why));
-    // A file that the campaign names has a finding of its own.
+    // A file that the campaign names already has a finding.
     let skipped = skipped.filter(|(name, _)| !campaign.text().contains(name));
     let skipped = skipped.map(|(name, why)| Finding::note("file-not-used").about(name).name("why", why));
     Ok(found.into_iter().chain(skipped).collect())

@@ -45,7 +45,7 @@ impl<K> Entry<K> {
         (self.head.start, self.file.clone())
     }
 
-    /// The first key of the table that tells how a file is read, if any.
+    /// The first stated key that sets how a file is read, if any.
     pub fn reads(&self) -> Option<&'static str> {
         let mut keys = Reading::KEYS.into_iter().chain(Channel::KEYS);
         keys.find(|key| self.places.iter().any(|(name, _)| name == key))

@@ -48,7 +48,8 @@ const STARTS: usize = 8;
 /// one.
 const TURNS: usize = 6;
 const IDLE: usize = 2;
-/// Smallest reduction of the unexplained distance that makes an answer better: one point more within one κ.
+/// Smallest reduction of the unexplained distance by which an answer is better: that of one more point
+/// explained to within one κ.
 const BETTER: f64 = 1.0;
 /// Relative standard uncertainty of calibrations where none is stated: that of a good sensor. Amplitudes do
 /// not reveal a calibration error, which scales gap, force and masses.

@@ -62,13 +62,15 @@ fn nearest(points: &[Point], frequency: f64) -> usize {
     (0..points.len()).min_by(|a, b| off(a).total_cmp(&off(b))).unwrap_or(0)
 }
 
-/// A transient of the start has decayed to 1/e³, 5 %.
+/// Number of time constants after which a transient of the start counts as decayed: to 1/e³, 5 %.
 const DECAYS: f64 = 3.0;
-/// Largest part of a sweep's time that a transient of the start is given: without damping none decays.
+/// Largest share of a sweep's duration that a transient of the start may take: without damping it never
+/// decays.
 const LONGEST_START: f64 = 0.05;
 
-/// Whether the motion at a frequency (Hz) is periodic, and no transient of the start. Points behind a jump
-/// may be unsettled; so the point itself must be regular, and most of the five around it.
+/// Whether the motion at a frequency (Hz) is periodic, and no transient of the start. Points after a jump
+/// may be
+/// unsettled: the point itself must be regular, and most of the five around it.
 fn is_settled(points: &[Point], frequency: f64, floor: f64, rig: &Rig) -> bool {
     let at = nearest(points, frequency);
     let around = &points[at.saturating_sub(2)..(at + 3).min(points.len())];

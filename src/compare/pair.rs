@@ -38,8 +38,9 @@ pub struct Pair {
     pub motion: Option<MotionKind>,
     /// Pattern of the predicted motion: impacts/cycles, or a word such as `irregular`.
     pub regime: Option<String>,
-    /// Model that predicted the amplitude: the closed form where one of its motions is that of the
-    /// simulated sweep, else the simulated model.
+    /// Model that predicted the amplitude: the closed form if the simulated sweep reached one of its
+    /// motions,
+    /// else the simulated model.
     pub model: Model,
     /// Number of stable motions of the closed form at this point; with more than one, the history of the
     /// sweep decides which is reached.

@@ -388,7 +388,7 @@ pub(super) fn short(error: &Error) -> String {
     let text = error.to_string();
     let line = text.lines().next().unwrap_or_default();
     let found = line.split_once(": ").map_or(line, |(_, rest)| rest);
-    // What was expected helps the author of a file, not the person who sorts a folder: it is cut off.
+    // The expected content is cut off: it helps the author of a file, not the person who sorts a folder.
     found.split("; expected ").next().unwrap_or(found).to_owned()
 }
 

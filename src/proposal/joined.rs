@@ -61,10 +61,10 @@ pub(super) fn join_all(series: Vec<FileSeries>, folder: &Folder, kept: &AnswerCa
 /// Merges series of steps into sweeps; returns each sweep with the indices of its series in `members`.
 /// `force` is the index of the force channel.
 ///
-/// Only series with the record length of the longest and mostly with a sine as force count, longer ones
-/// first. A series of [`LEAST_SWEEP_FILES`] or more with most of its frequencies already in a sweep repeats
-/// that sweep, and begins another one. Any other is added to the only sweep in its direction; if several
-/// sweeps could take it, it is added to none.
+/// Only series whose records are as long as those of the longest series, and whose force is mostly a sine,
+/// are considered, those with most files first. A series of [`LEAST_SWEEP_FILES`] or more with most of its
+/// frequencies already in a sweep repeats that sweep and begins another one. Any other is added to the only
+/// sweep in its direction; if several sweeps could take it, it is added to none.
 fn sweeps(trial: &Trial<'_>, members: &[&FileSeries], force: usize) -> Vec<(Vec<usize>, FileSeries)> {
     let count = |k: usize| members[k].files.len();
     let Some(longest) = (0..members.len()).rev().max_by_key(|k| count(*k)) else { return Vec::new() };

@@ -9,8 +9,9 @@ pub(super) const CHANNELS: usize = 8;
 /// other.
 const PARALLEL_VALUES: usize = 1 << 25;
 
-/// Number of files of `values` values each that one core takes as a share of the work: 1 where all cores
-/// can work at once, all files where their memory would not suffice.
+/// Number of files of `values` values each that one core takes as a share of the work: 1 if all cores can
+/// work
+/// at once, unlimited (one core takes all files) if memory does not suffice for that.
 pub(super) fn share(values: usize) -> usize {
     if values.saturating_mul(rayon::current_num_threads()) > PARALLEL_VALUES { usize::MAX } else { 1 }
 }

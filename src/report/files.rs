@@ -52,7 +52,8 @@ pub fn figures(
     Ok(drawn)
 }
 
-/// A matrix as CSV: the frequencies of the lines, then a column a spectrum, headed by its excitation
+/// A matrix as CSV: the frequencies of the lines, then one column for each spectrum, headed by its
+/// excitation
 /// frequency.
 pub(crate) fn matrix_csv(matrix: &Waterfall) -> String {
     let mut text = String::from("frequency [Hz]");

@@ -33,7 +33,7 @@ pub struct Page {
     figures: Vec<Value>,
     /// Matrices to which the figures refer.
     matrices: Matrices,
-    /// Start of the sliders, if the page has them.
+    /// Initial values of the sliders, if the page has them.
     whatif: Option<Value>,
 }
 
@@ -115,7 +115,8 @@ impl Page {
         let width = picture.width.round();
         let inside = match (data, files.first()) {
             (None, _) => svg.clone(),
-            // Without scripts a map is only named, by its file: its picture would be half of the page.
+            // Without scripts a map is replaced by the name of its file: its picture would be half of the
+            // page.
             (Some(data), Some(file)) if figure.has_map() => {
                 self.place(data, &format!("<p>The map is in {}.</p>\n", escaped(file)))
             }

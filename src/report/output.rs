@@ -262,7 +262,7 @@ impl Output {
         Ok(staged_names)
     }
 
-    /// Files that an earlier run of a campaign wrote, that nobody changed, and that this run does not write.
+    /// Unchanged files of an earlier run of a campaign that this run does not write.
     fn stale(&self, manifest: &Manifest) -> Vec<String> {
         let is_unchanged_leftover = |(name, recorded): &(&str, &Digest)| {
             let path = self.at(name);

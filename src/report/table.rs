@@ -162,7 +162,8 @@ impl Table {
         columns.retain(|(_, cells)| cells.is_empty() || cells.iter().any(filled));
         let shown = |(column, cells): &(&Column, Vec<&Cell>)| {
             // Upper limits take the power of ten of the first column of their unit, whose missing values
-            // they stand for.
+            // they
+            // replace.
             let limited_column =
                 |c: &&(&Column, Vec<&Cell>)| c.0.unit == column.unit && column.name == "upper limit";
             let (scale_of, values) =

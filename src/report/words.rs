@@ -134,7 +134,7 @@ pub fn foremost(findings: &[(Severity, String)]) -> usize {
 struct Sentence<'a> {
     finding: &'a Finding,
     text: String,
-    /// The records about which it is said; empty for all.
+    /// Names of the records to which the sentence applies; an empty name stands for all records.
     records: Vec<&'a str>,
     /// Findings that differ from it in numbers only, with their records.
     others: Vec<(&'a Finding, Vec<&'a str>)>,

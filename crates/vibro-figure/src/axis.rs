@@ -126,11 +126,12 @@ pub(super) enum Room {
     Tight,
     /// 3 % at both ends, so that markers are not cut.
     Margin,
-    /// None, for the magnitudes of a waterfall: the axis begins at zero, or 60 dB below the largest value.
-    /// Below that, the noise of a hundred stacked spectra would hide the lines.
+    /// None. The axis starts at zero, or at 60 dB below the largest value on a level axis.
+    /// For a waterfall: below 60 dB, the noise of a hundred stacked spectra would hide the lines.
     Floor,
-    /// This fraction above the data. Below, 6 %, or a limit of zero where the smallest value is at most 0.4
-    /// of the largest.
+    /// This fraction above the data and 6 % below. A linear axis instead ends at zero if the value nearest
+    /// to
+    /// zero is at most 0.4 of the one furthest from it.
     Above(f64),
 }
 
@@ -149,7 +150,8 @@ pub(super) struct Axis {
 const LEVEL_RANGE: f64 = 100.0;
 
 impl Axis {
-    /// Axis with limits, as specified or from the data; `None` where a limit has neither.
+    /// Axis with limits, as specified or from the data; `None` if a limit is not specified and there are no
+    /// data.
     pub(super) fn new(spec: &AxisSpec, data: Extent, room: Room) -> Option<Axis> {
         let given = |end: f64| {
             let u = if spec.scale == Scale::Log { end.log10() } else { end };

@@ -57,7 +57,7 @@ pub(crate) struct Image {
     pub pixels: Pixmap,
 }
 
-/// What is drawn over the images.
+/// A path or a text, drawn over the images.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Element {
     /// A path.
@@ -66,7 +66,7 @@ pub(crate) enum Element {
     Text(Text),
 }
 
-/// What has been drawn so far, in order; images lie under everything else.
+/// Everything drawn so far, in order; images lie under all other elements.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(crate) struct Canvas {
     pub elements: Vec<Element>,
@@ -164,8 +164,8 @@ impl Element {
     }
 }
 
-/// A path as SVG. Thin lines have bevelled corners: on them rounding would not be seen, and long noisy
-/// lines have many.
+/// A path as SVG. Lines thinner than 0.7 points have bevelled corners: rounding would not be visible,
+/// and long noisy lines have many corners.
 fn shape(data: &str, fill: Option<Rgb>, pen: Option<Pen>) -> String {
     let mut look = fill.map(|fill| format!(" fill=\"{fill}\"")).unwrap_or_default();
     if let Some(Pen { colour, width, dashes }) = pen {

@@ -62,7 +62,7 @@ impl Figure {
     }
 }
 
-/// All plots with their axes; plots of one column share their abscissa where the figure asks for it.
+/// All plots with their axes; plots of one column share their abscissa if `shared_x` is set.
 fn sheets<'a>(figure: &'a Figure, columns: usize) -> Vec<Option<Sheet<'a>>> {
     let x_extent = |panel: &Panel| match panel {
         Panel::Plot(plot) => plot::extents(plot).0,

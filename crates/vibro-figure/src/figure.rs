@@ -15,8 +15,8 @@ use serde::{Deserialize, Serialize};
 /// ```
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Figure {
-    /// What the figure shows, in a few words. It is not drawn: it is the figure's name for readers that
-    /// cannot see it, and stands over its caption on a page.
+    /// What the figure shows, in a few words. Not drawn: it names the figure for screen readers and heads
+    /// its caption on a page.
     pub title: String,
     /// Caption below the figure; empty for none.
     pub caption: String,
@@ -60,12 +60,13 @@ pub struct Plot {
     pub series: Vec<Series>,
     /// Texts that label points of the data.
     pub notes: Vec<Note>,
-    /// Where the names of the series stand.
+    /// Position of the legend.
     pub legend: Legend,
-    /// Whether it repeats an earlier panel, for example on a logarithmic axis. A page whose axes can be
-    /// changed leaves it out.
+    /// True if the plot repeats an earlier panel, for example on a logarithmic axis. A page with adjustable
+    /// axes omits it.
     pub again: bool,
-    /// Whether both axes, linear and of one unit, have the same length a unit: a circle is round.
+    /// True if both axes have the same scale in points per unit, so that a circle is round. Both axes must
+    /// be linear and have one unit.
     pub square: bool,
 }
 
@@ -80,10 +81,10 @@ pub struct Note {
     pub y: f64,
 }
 
-/// Where the names of the series stand.
+/// Position of the legend, the list of the names of the series.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub enum Legend {
-    /// In the frame where no data are; beside or over the frame where there is no such place.
+    /// In the frame at a place without data; if there is none, to the right of the frame or above it.
     #[default]
     Auto,
     /// To the right of the frame.
@@ -160,12 +161,12 @@ impl Plot {
         Plot { heatmap: Some(heatmap), ..self }
     }
 
-    /// Sets where the names of the series stand.
+    /// Sets the position of the legend.
     pub fn legend(self, legend: Legend) -> Plot {
         Plot { legend, ..self }
     }
 
-    /// Gives both axes the same length a unit.
+    /// Gives both axes the same scale in points per unit.
     pub fn square(self) -> Plot {
         Plot { square: true, ..self }
     }

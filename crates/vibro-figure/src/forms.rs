@@ -89,7 +89,7 @@ pub(super) fn is_open(marker: Marker) -> bool {
     matches!(marker, Marker::OpenCircle | Marker::Square | Marker::Diamond | Marker::Limit)
 }
 
-/// Size of open circles and squares over that of filled ones, so that both are seen at the same place.
+/// Size ratio of open to filled circles and squares, so that both are visible at the same place.
 const OPEN: f64 = 1.3;
 
 /// Draws markers of one shape, half width in points and colour. Open ones are white inside.

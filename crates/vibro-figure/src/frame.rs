@@ -72,7 +72,7 @@ fn spread(axis: &Axis, length: f64, most: f64, gap: f64, size: impl Fn(&str) -> 
     let mut candidates = (2..=most).rev().map(|most| axis.ticks(most));
     let mut ticks = candidates.find(|ticks| !touch(ticks)).unwrap_or_else(|| axis.ticks(2));
     if touch(&ticks) {
-        // Not even two numbers fit: the ticks stay, only the first has its number.
+        // Not even two numbers fit: all ticks stay, but only the first tick keeps its label.
         ticks.major.iter_mut().skip(1).for_each(|t| t.label.clear());
     }
     ticks
@@ -86,7 +86,8 @@ pub(super) fn widest(ticks: &Ticks) -> f64 {
 /// Space that axes need around a frame of about this size, in points.
 pub(super) fn insets(x: &Axis, y: &Axis, size: (f64, f64), named_x: bool) -> Insets {
     let (tx, ty) = (across(x, size.0), upward(y, size.1));
-    // By how much the number of an outer tick of the abscissa extends beyond the end of the axis.
+    // Length in points by which the number of an outer tick of the abscissa extends beyond the end of the
+    // axis.
     let overhang = |at: Option<&crate::ticks::Tick>, end: f64, axis: &Axis| {
         at.map_or(0.0, |t| font::width(&t.label, SMALL) / 2.0 - (axis.at_scaled(t.at) - end).abs() * size.0)
     };
@@ -196,7 +197,7 @@ pub(super) fn along(canvas: &mut Canvas, name: &str, x: f64, frame: Rect, below:
     canvas.text(Text { words: name, at, size, anchor, turn: 90.0, colour: BLACK, halo: false });
 }
 
-/// A text and its size such that it fits: at most a quarter smaller, then cut.
+/// A text and its size, made to fit: at most a quarter smaller, then cut.
 pub(super) fn fitted(text: &str, size: f64, room: f64) -> (String, f64) {
     let size = (size * room / font::width(text, size).max(1.0)).clamp(0.75 * size, size);
     (font::fit(text, size, room + 0.01), size)

@@ -87,7 +87,7 @@ impl Grid {
         let (left, top) = (cell.x + groups + names, cell.y + self.lines() as f64 * ROW_HEIGHT + GAP);
         let count = self.columns.len().max(1) as f64;
         let width = ((cell.right() - left) / count).clamp(4.0, 60.0);
-        // All names have the largest size that the widest word allows.
+        // One size for the names of all columns: the largest at which the widest word fits its column.
         let word = widest(&mut heads.iter().flatten());
         let size = (TEXT_SIZE * (width - 1.0) / word.max(1.0)).clamp(LEAST_TEXT_SIZE, TEXT_SIZE);
         for (i, words) in heads.iter().enumerate() {
@@ -97,7 +97,7 @@ impl Grid {
                 canvas.label(&font::fit(word, size, width), at, size, Anchor::Middle);
             }
         }
-        // From the upper edge of a row to the baseline of its texts.
+        // Distance in points from the upper edge of a row to the baseline of its texts.
         let base = 0.5 * ROW_HEIGHT + font::DIGIT_HEIGHT * TEXT_SIZE / 2.0;
         let mut y = top;
         for group in self.rows.chunk_by(|a, b| a.group == b.group) {

@@ -134,10 +134,11 @@ pub(super) fn draw_bar(canvas: &mut Canvas, bar: &Axis, frame: Rect) {
     frame::along(canvas, &bar.title, x, frame, 2.0 * LEADING);
 }
 
-/// Checks that there is one value for each row and column; `what` names the figure.
+/// Checks that `values` has one row for each of `rows` and one column for each of `columns`; `what` names
+/// the figure in the error.
 ///
 /// # Errors
-/// If there is not.
+/// If the shape differs.
 pub(super) fn fits(what: &str, values: &ArrayRef2<f64>, rows: &[f64], columns: &[f64]) -> Result<()> {
     let ((down, across), expected) = (values.dim(), (rows.len(), columns.len()));
     if (down, across) == expected {
@@ -147,7 +148,7 @@ pub(super) fn fits(what: &str, values: &ArrayRef2<f64>, rows: &[f64], columns: &
     Err(Error::usage(format!("{what} of {down} × {across} values"), expected))
 }
 
-/// Checks that positions ascend; `of` names them.
+/// Checks that positions ascend; `of` names them in the error.
 ///
 /// # Errors
 /// If they do not.

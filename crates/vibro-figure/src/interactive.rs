@@ -25,22 +25,23 @@ impl Figure {
         )
     }
 
-    /// Whether a panel has a heat map, whose image is large.
+    /// Whether a panel has a heat map: printed, its image would be half of a page.
     pub fn has_map(&self) -> bool {
         self.panels.iter().any(|panel| matches!(panel, Panel::Plot(plot) if plot.heatmap.is_some()))
     }
 }
 
 /// The matrices of a page, each stored once: a waterfall and a map may show the same one.
-///
-/// A matrix is base64. Each value is a 16-bit level, linear from `low` (1) to `high` (65535) of the panel
-/// that shows it; for non-negative quantities of log₁₀ of the value. 0 means missing.
+/// ///
+/// A matrix is base64 of 16-bit levels: 0 for a missing value, else 1 at `low` to 65535 at `high` of the
+/// panel
+/// that shows it. Levels are linear in the value, or in log₁₀ of the value for non-negative quantities.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct Matrices(Vec<String>);
 
 impl Matrices {
     /// Number of matrices.
-    #[allow(clippy::len_without_is_empty)] // nobody asks
+    #[allow(clippy::len_without_is_empty)] // the number alone is used
     pub fn len(&self) -> usize {
         self.0.len()
     }
@@ -196,9 +197,10 @@ fn floats(values: impl Iterator<Item = f64>) -> Value {
 /// Decades below the largest magnitude that levels cover.
 const DECADES: f64 = 8.0;
 
-/// A matrix as 16-bit levels. Each value is a level, linear from `low` (1) to `high` (65535); where all
-/// values of a quantity are non-negative, of log₁₀ of the value, over at most 8 decades in steps of 0.03 %,
-/// and smaller values get the lowest level. 0 means missing.
+/// A matrix as 16-bit levels: 0 for a missing value, else 1 at `low` to 65535 at `high`.
+/// Levels are linear in the value. If all values of a quantity are non-negative, they are linear in log₁₀
+/// of
+/// the value, over at most 8 decades in steps of 0.03 %; smaller values get level 1.
 fn levels(values: impl Iterator<Item = f64> + Clone, quantity: bool, matrices: &mut Matrices) -> Value {
     let finite = values.clone().filter(|v| v.is_finite());
     let magnitudes = quantity && finite.clone().all(|v| v >= 0.0) && finite.clone().any(|v| v > 0.0);

@@ -7,13 +7,13 @@ use crate::{Anchor, BLACK, Canvas, Form, GREY, Note, Place, Point, Rect, Rgb, Se
 /// Height of a text's baseline above the lower edge of its box, as a fraction of the size of small text.
 const DESCENT: f64 = 0.16;
 
-/// Cost of a place outside the frame: above all others, so that it is never chosen.
+/// Cost of a place outside the frame: so high that no such place is chosen.
 const OUTSIDE: f64 = 1e5;
 
 /// Cost of a leader that crosses a box: more than that of the longest leader, 50 points.
 const CROSSING: f64 = 60.0;
 
-/// Cost in points of leader per point of covered line: a note rather moves away than covers data.
+/// Cost of 1 point of covered line, in points of leader: covering data is worse than a longer leader.
 const COVERING: f64 = 3.0;
 
 /// A candidate place of a text.
@@ -91,11 +91,13 @@ fn write(canvas: &mut Canvas, text: &str, spot: Option<Spot>, colour: Rgb, clutt
     });
 }
 
-/// The best place for a name along a line, on either side of it. `line` is the place of the line on the page.
+/// The best place for a name along a line, on either side of it. `line` is the position of the line in
+/// points:
+/// the abscissa of a vertical line, the ordinate of a horizontal one.
 fn along_line(name: &str, line: f64, vertical: bool, frame: Rect, clutter: &Clutter) -> Option<Spot> {
     let length = font::width(name, SMALL);
     let (start, end) = if vertical { (frame.y, frame.bottom()) } else { (frame.x, frame.right()) };
-    // Length along which the name can be shifted, with 5 points to either end.
+    // Length in points along which the name can be shifted, with 5 points left free at either end.
     let way = end - start - length - 10.0;
     let steps = (0..=12).flat_map(|i| [(i, true), (i, false)]);
     best(steps.filter(|_| way >= 0.0).map(|(i, first)| {
@@ -116,7 +118,7 @@ fn along_line(name: &str, line: f64, vertical: bool, frame: Rect, clutter: &Clut
     }))
 }
 
-/// The best place for a text around a point, on which there is a marker of half width `taken`.
+/// The best place for a text around a point whose marker has the half width `taken` in points.
 fn around_point(text: &str, at: Point, taken: f64, frame: Rect, clutter: &Clutter) -> Option<Spot> {
     let (w, h) = (font::width(text, SMALL), SMALL);
     let frame = frame.grown(-TICK);
@@ -178,7 +180,7 @@ impl Clutter {
         self.boxes.push(rect);
     }
 
-    /// Cost of covering lines and boxes by `rect`; 0 if it covers none. A line costs 1 and its covered
+    /// Cost of covering lines and boxes by `rect`; 0 if it covers none. A line costs 1 plus its covered
     /// length in points, a box four times the covered area in square points.
     pub fn under(&self, rect: Rect) -> f64 {
         let lines: f64 = self

@@ -25,7 +25,7 @@ impl Rect {
         (self.x + self.w / 2.0, self.y + self.h / 2.0)
     }
 
-    /// A square around a point, with half its side.
+    /// A square around a point; `half` is half of its side.
     pub fn around((x, y): Point, half: f64) -> Rect {
         Rect { x: x - half, y: y - half, w: 2.0 * half, h: 2.0 * half }
     }
@@ -103,9 +103,10 @@ pub(super) fn clipped(line: &[Point], frame: Rect) -> Vec<Vec<Point>> {
     parts
 }
 
-/// The line with fewer points (Douglas and Peucker 1973). Many points within a quarter of a point of width
-/// are first reduced to their first, lowest, highest and last; the rest lies within `tolerance`, in points,
-/// of these.
+/// Thins a line: no removed point is further than `tolerance` from the new line, in points of 1/72 inch
+/// (Douglas
+/// and Peucker 1973). A dense line is first reduced to the first, lowest, highest and last point of every
+/// 0.25 points of width; the tolerance holds for the rest.
 pub(super) fn thinned(line: &[Point], tolerance: f64) -> Vec<Point> {
     let line = by_columns(line, 0.25);
     let Some(last) = line.len().checked_sub(1).filter(|last| *last >= 2) else { return line };
@@ -126,8 +127,9 @@ pub(super) fn thinned(line: &[Point], tolerance: f64) -> Vec<Point> {
     line.iter().zip(kept).filter(|(_, kept)| *kept).map(|(p, _)| *p).collect()
 }
 
-/// A line whose points ascend in x, with at most four points in each column of this width: the first,
-/// lowest, highest and last. Lines with few points a column stay unchanged.
+/// At most four points in each column of this width: the first, lowest, highest and last. Lines whose
+/// points
+/// do not ascend in x, or with fewer than five points a column on average, stay unchanged.
 fn by_columns(line: &[Point], width: f64) -> Vec<Point> {
     let ascending = line.windows(2).all(|w| w[0].0 <= w[1].0);
     let (Some(first), Some(last)) = (line.first(), line.last()) else { return Vec::new() };
@@ -147,7 +149,7 @@ fn by_columns(line: &[Point], width: f64) -> Vec<Point> {
     kept
 }
 
-/// Distance of a point from a segment.
+/// Distance of a point from the segment between `a` and `b`.
 fn distance(p: Point, a: Point, b: Point) -> f64 {
     let (dx, dy) = (b.0 - a.0, b.1 - a.1);
     let length = dx * dx + dy * dy;

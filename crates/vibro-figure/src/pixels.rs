@@ -48,6 +48,7 @@ impl Drawing {
     }
 }
 
-/// Most pixels of a picture: four times those of a square of a double column's width at 1200 dots per inch,
+/// Most pixels of a picture: those of four squares as wide as a double column (178 mm) at 1200 dots per
+/// inch,
 /// 1.1 GB in memory.
 const MOST_PIXELS: u64 = 280_000_000;

@@ -29,7 +29,7 @@ pub(super) struct Sheet<'a> {
     keys: KeyList,
     /// Place of the legend; inside the frame while automatic.
     legend: Legend,
-    /// Whether the abscissa has numbers and a name; without them, the panel below has.
+    /// Whether the abscissa has numbers and a name; otherwise the panel below shows them.
     named_x: bool,
 }
 
@@ -52,10 +52,11 @@ pub(super) fn extents(plot: &Plot) -> (Extent, Extent) {
 }
 
 impl<'a> Sheet<'a> {
-    /// Fixes axes and looks; `shared` is the range of the abscissa, which panels may share.
+    /// Fixes axes and looks. `shared` is the range of the abscissa, common to the panels of a column if the
+    /// figure shares it.
     pub fn new(plot: &'a Plot, shared: Extent, named_x: bool) -> Sheet<'a> {
         let has = |shapes: [Shape; 2]| plot.series.iter().any(|s| shapes.contains(&s.shape));
-        // Only points or bars, no curve: these get a margin left and right.
+        // Plots of points or bars without a curve get a margin left and right, so that no marker is cut.
         let needs_margin = has([Shape::Points, Shape::Bars]) && !has([Shape::Line, Shape::Band]);
         // More space above data with notes, which mostly label peaks.
         let above = Room::Above(if plot.notes.is_empty() { 0.06 } else { 0.2 });
@@ -157,7 +158,7 @@ impl<'a> Sheet<'a> {
         notes::write_notes(canvas, &self.plot.notes, &place, &mut clutter);
     }
 
-    /// The frame in this rectangle: a square in its middle where the plot asks for one.
+    /// The frame in this rectangle: for a square plot, the largest square in its middle.
     fn within(&self, room: Rect) -> Rect {
         let side = room.w.min(room.h);
         let inset = |length: f64| (length - side) / 2.0;

@@ -23,10 +23,11 @@ pub struct Series {
     pub high: Vec<f64>,
     /// Colour.
     pub ink: Ink,
-    /// Dashes and width of a line; where `None`, those of the colour. Points are joined by a line only where
-    /// this is set.
+    /// Dashes and width of a line; `None` takes those that belong to the colour. Points are joined by a
+    /// line
+    /// only if this is set.
     pub stroke: Option<Stroke>,
-    /// Form of markers; where `None`, that of the colour.
+    /// Form of markers; `None` takes the one that belongs to the colour.
     pub marker: Option<Marker>,
 }
 
@@ -167,8 +168,9 @@ impl Series {
         Series { low: low.into(), high: high.into(), ..Series::new(name, Shape::Band, x, []) }
     }
 
-    /// Histogram of the finite values, in bars whose width is that of Freedman and Diaconis (1981), twice the
-    /// interquartile range over the cube root of the count; 5 to 60 bars, and one where all values are equal.
+    /// Histogram of the finite values. The bar width is that of Freedman and Diaconis (1981), twice the
+    /// interquartile range over the cube root of the count, limited to 5 to 60 bars. 20 bars if the
+    /// interquartile range is 0; one bar if all values are equal.
     pub fn histogram(name: impl Into<String>, values: &[f64]) -> Series {
         let (edges, heights) = histogram_of(values);
         Series::new(name, Shape::Bars, edges, heights)

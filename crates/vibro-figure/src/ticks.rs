@@ -79,8 +79,9 @@ pub(super) fn linear(lo: f64, hi: f64, most: usize, power: i32, degrees: bool) -
     };
     let count = |i: usize| candidates[i].within(lo, hi).len();
     let finest = (0..candidates.len()).find(|&i| count(i) <= most).unwrap_or(candidates.len() - 1);
-    // The finest step with at most `most` ticks may leave a single one; then the next finer step is taken,
-    // which may exceed `most`.
+    // The finest step with at most `most` ticks may leave a single tick. Then the next finer step is used,
+    // which
+    // may exceed `most`.
     let step = candidates[if count(finest) < 2 { finest.saturating_sub(1) } else { finest }];
     let decimals = usize::try_from(power - step.exponent).unwrap_or(0);
     let shown = TickStep { exponent: step.exponent - power, ..step };
@@ -94,9 +95,10 @@ pub(super) fn linear(lo: f64, hi: f64, most: usize, power: i32, degrees: bool) -
     }
 }
 
-/// Ticks of a logarithmic axis from `lo` to `hi` (log₁₀ of its limits). With two powers of ten or more on
-/// the axis these are labelled; with fewer, the multiples of powers of ten by 1, 2 and 5, if there
-/// are 2 to `most` of them; else round values.
+/// Ticks of a logarithmic axis from `lo` to `hi` (log₁₀ of its limits). The labels are:
+/// - powers of ten, if at least two are on the axis;
+/// - else multiples of powers of ten by 1, 2 and 5, if there are 2 to `most` of them;
+/// - else round values, as on a linear axis.
 pub(super) fn logarithmic(lo: f64, hi: f64, most: usize) -> Ticks {
     if !(hi > lo && (hi - lo).is_finite()) {
         return Ticks::default();

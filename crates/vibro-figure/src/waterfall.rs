@@ -35,7 +35,8 @@ pub struct Waterfall {
     height: AxisSpec,
     pub(super) frequency: Vec<f64>,
     pub(super) rows: Vec<(f64, Vec<f64>)>,
-    /// Name of the record whose spectra are shown: a line of that name on the page links to them.
+    /// Name of the record whose spectra are shown: lines of that name in other figures of the page link
+    /// here.
     pub(super) record: String,
 }
 
@@ -64,7 +65,7 @@ impl Waterfall {
         Ok(Waterfall { x: AxisSpec::frequency(), height, frequency, rows, record })
     }
 
-    /// Names the record whose spectra are shown, as the lines of other figures name it.
+    /// Names the record whose spectra are shown; lines of other figures refer to it by this name.
     pub fn of(self, record: impl Into<String>) -> Waterfall {
         Waterfall { record: record.into(), ..self }
     }
@@ -134,11 +135,11 @@ impl Waterfall {
 struct Sheet<'a> {
     cube: &'a Cube,
     frame: Rect,
-    /// Width of a spectrum.
+    /// Length of the frequency axis.
     along: f64,
-    /// Horizontal extent of the back edge, and its height.
+    /// Horizontal and vertical extent of the excitation axis, which is drawn to the back.
     back: Point,
-    /// Height of the amplitude axis.
+    /// Length of the amplitude axis, which is drawn upwards.
     rise: f64,
 }
 

@@ -33,11 +33,12 @@ pub(crate) fn scenes(quick: bool, progress: &mut dyn FnMut(&str)) -> Vec<Benchma
 ///
 /// An answer with an uncertainty is right within three of its standard uncertainties. One without is right
 /// within a limit that is the same for all methods of a border: half a line for a frequency, 5 % for an
-/// amplitude, 10 % for a damping ratio, 1 % for an impact frequency, 0.02 for ξ. It counts as refused where
-/// it is withheld, where a doubt removes its uncertainty, and where its uncertainty exceeds the limit. No
-/// doubt excuses a stated uncertainty. A method is wrong where more answers are off than chance allows, or
-/// one by more than 5.2 standard uncertainties: methods with correct uncertainties exceed these limits in
-/// fewer than one of a hundred full maps.
+/// amplitude, 10 % for a damping ratio, 1 % for an impact frequency, 0.02 for ξ. An answer counts as
+/// refused
+/// if it is withheld, if it has no uncertainty because of a doubt, or if its uncertainty exceeds the limit.
+/// A doubt does not excuse an answer whose uncertainty is stated. A method is wrong if more than 3 of 40
+/// answers lie outside, or one by more than 5.2 standard uncertainties: methods with correct uncertainties
+/// exceed these limits in fewer than one of a hundred full maps.
 pub fn failures(quick: bool) -> FailureMap {
     FailureMap::answered(Family::Estimators, questions(quick))
 }

@@ -6,7 +6,7 @@ use crate::report::layout::{capital, lettered};
 use crate::report::{AxisSpec, Figure, Ink, Legend, Marker, Plot, Series, Stroke};
 use std::fmt::Write as _;
 
-/// Samples of a line: more than print can show.
+/// Most samples of a drawn line: print cannot show more.
 const SHOWN: usize = 4000;
 
 /// The fitted part with the sum of its modes, the residuals, and the damping ratio of the strongest mode

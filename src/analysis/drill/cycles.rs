@@ -1,4 +1,4 @@
-//! Turns of a drill one by one: a row a turn, columns over the phase.
+//! Turns of a drill one by one: a row for each turn, a column for each phase.
 
 use crate::measure::drill::Cycle;
 use std::fmt::Write as _;
@@ -13,7 +13,8 @@ pub fn head(points: usize) -> String {
     head
 }
 
-/// The row of a turn; a phase at which nothing was measured is empty. Seven digits are what 24 bits hold.
+/// The row of a turn; a phase without a measured value is empty. Seven significant digits resolve 24-bit
+/// samples.
 pub fn row(cycle: &Cycle<'_>) -> String {
     let mut row = format!("{},{},{}", cycle.number, cycle.time, cycle.speed);
     for v in cycle.velocity {

@@ -5,7 +5,9 @@ use crate::measure::drill::{Corner, Drill, Group};
 use crate::report::layout::{headed, pair};
 use crate::report::{Cell, Table};
 
-/// Which velocities these are: the energy differs by per cents where the drive accelerates the striker.
+/// Note on the velocities: those in the middle of the contact differ from those at first contact if the
+/// drive
+/// accelerates the striker, and the energy then differs by some per cent.
 const MIDDLE: &str = "Velocities before and after impact, energy and restitution: continued to the middle of the contact, as if the impact took no time. First contact is earlier.";
 
 /// Results of a drill, one row a number.

@@ -264,7 +264,7 @@ mod tests {
             let series = plot.series.iter().find(|series| series.name == name).unwrap();
             assert!(series.x.len() > 4);
             for (re, im) in series.x.iter().zip(&series.y) {
-                // As far as the curve of the fit, see above, and between two of its points.
+                // Errors of the fit, as in the test above, and of the line between two points of the curve.
                 assert!(
                     ((re - radius).hypot(*im) - radius).abs() < 1e-4 * radius,
                     "{}: {re} {im}",

@@ -30,7 +30,7 @@ fn unit_of_constants(result: &ModalResult) -> &'static str {
     result.modes.first().map_or("1/kg", |mode| mode.modal_constant.unit)
 }
 
-/// What each method gives for each mode.
+/// Results of each method for each mode.
 pub(crate) fn modal_methods(result: &ModalResult) -> Table {
     let note = |note: &Option<_>| note.as_ref().map_or_else(String::new, |n| sentence(n, Voice::Campaign));
     table(

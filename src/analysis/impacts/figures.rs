@@ -46,7 +46,7 @@ pub fn impacts(title: &str, trace: &Trace, found: &Impacts) -> Figure {
 pub fn drops(name: &str, drops: Vec<Plot>) -> Figure {
     let columns = drops.len().clamp(1, 2);
     let rows = drops.len().div_ceil(columns) as f64;
-    // A page holds many drops, too.
+    // Rows are 55 mm high, lower if there are more than four, but at least 25 mm: many drops fit a page.
     let height = if columns == 1 { 70.0 } else { rows * (220.0 / rows).clamp(25.0, 55.0) };
     let title = if name.is_empty() { "Drops".to_owned() } else { format!("Drops, {name}") };
     let figure = Figure::double(title).height(height).columns(columns).caption("Triangles: impacts found.");

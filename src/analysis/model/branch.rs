@@ -14,7 +14,7 @@ use crate::units::notation::counted;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
-/// What is asked.
+/// Keys of `vibro model continue`.
 #[derive(Debug, Clone)]
 #[cfg_attr(feature = "cli", derive(clap::Args))]
 pub struct Keys {
@@ -42,7 +42,7 @@ pub struct Keys {
     pub step: f64,
 }
 
-/// What is varied.
+/// Parameter over which branches are followed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum BranchParameter {

@@ -1,4 +1,4 @@
-//! The simplest model that is good enough: `vibro model choose`.
+//! The simplest adequate model: `vibro model choose`.
 
 use super::{Driven, SceneKeys, figures};
 use crate::analysis::answer::Answer;
@@ -17,7 +17,7 @@ use crate::units::notation::significant;
 use serde::Serialize;
 use serde_json::{Value, json};
 
-/// What is asked.
+/// Keys of `vibro model choose`.
 #[derive(Debug, Clone)]
 #[cfg_attr(feature = "cli", derive(clap::Args))]
 pub struct Keys {

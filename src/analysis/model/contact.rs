@@ -13,9 +13,9 @@ pub enum Contact {
     Restitution,
     /// Spring and damper that do not pull.
     KelvinVoigt,
-    /// Spheres.
+    /// Hertzian contact of spheres, without losses.
     Hertz,
-    /// Spheres with losses.
+    /// Nonlinear contact with losses; exponent 1.5 (spheres) unless stated.
     HuntCrossley,
     /// A mass that is loose on its spring.
     LooseMass,

@@ -10,7 +10,7 @@ use crate::report::files::Names;
 use crate::report::layout::{Shown, table};
 use serde_json::json;
 
-/// What is asked.
+/// Keys of `vibro model map`.
 #[derive(Debug, Clone)]
 #[cfg_attr(feature = "cli", derive(clap::Args))]
 pub struct Keys {

@@ -13,7 +13,7 @@ use crate::report::{Cell, Table};
 use serde::Serialize;
 use serde_json::{Value, json};
 
-/// What is asked.
+/// Keys of `vibro model orbit`.
 #[derive(Debug, Clone)]
 #[cfg_attr(feature = "cli", derive(clap::Args))]
 pub struct Keys {
@@ -112,7 +112,7 @@ impl Keys {
     }
 }
 
-/// An orbit, with its correction for contacts that take time.
+/// An orbit, with its correction for the duration of contacts.
 #[derive(Serialize)]
 struct SoftenedOrbit<'a> {
     #[serde(flatten)]
@@ -120,7 +120,8 @@ struct SoftenedOrbit<'a> {
     soft: &'a Option<Softened>,
 }
 
-/// The contact, and the correction for it of each orbit; with a finding where there is none.
+/// The stated contact, and the correction of each orbit for it. If a stated contact allows no correction, a
+/// finding says why.
 fn soften(
     driven: &Driven,
     found: &Orbits,

@@ -13,7 +13,7 @@ use crate::report::layout::table;
 use crate::units::notation::counted;
 use serde_json::json;
 
-/// What is asked.
+/// Keys of `vibro model simulate`.
 #[derive(Debug, Clone)]
 #[cfg_attr(feature = "cli", derive(clap::Args))]
 pub struct Keys {
@@ -184,7 +184,7 @@ fn summary(observed: &ObservedMotion) -> Table {
     .note("Phase: of the excitation at the last impact, after the crest of a sine force, the impulse or the onset of the pulse.")
 }
 
-/// Times and states, one a row.
+/// Times and states, one row for each time.
 fn states(times: &[f64], states: &[State]) -> Table {
     table(
         "States",
@@ -199,7 +199,7 @@ fn states(times: &[f64], states: &[State]) -> Table {
     )
 }
 
-/// Every impact, one a row.
+/// Every impact, one row each.
 fn impacts(portrait: &Portrait) -> Table {
     table(
         "Impacts",

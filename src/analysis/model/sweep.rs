@@ -21,7 +21,7 @@ use serde::Deserialize;
 use serde_json::json;
 use std::f64::consts::TAU;
 
-/// What is asked.
+/// Keys of `vibro model sweep`.
 #[derive(Debug, Clone)]
 #[cfg_attr(feature = "cli", derive(clap::Args))]
 pub struct Keys {
@@ -68,7 +68,7 @@ pub struct Keys {
     pub observable: Observable,
 }
 
-/// What is swept.
+/// Parameter that is swept.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum SweptParameter {
@@ -78,7 +78,7 @@ pub enum SweptParameter {
     Force,
 }
 
-/// The ways in which it is swept.
+/// Directions of the sweeps, and where each begins.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Directions {
@@ -189,7 +189,7 @@ fn points_within(ranges: &[Range], all: usize, code: &'static str) -> Option<Fin
     (n > 0).then(|| Finding::caution(code).count("n", n).count("all", all))
 }
 
-/// Notes the masses that stand still in the whole sweep.
+/// Note on a mass that does not move in the whole sweep.
 fn still(swept: &Swept, rig: &Rig) -> Option<Finding> {
     let moves = |mass: usize| swept.up.iter().chain(&swept.down).any(|p| p.amplitudes()[mass] > 0.0);
     let mass = (0..2).find(|mass| !moves(*mass))?;

@@ -30,7 +30,7 @@ const RECURRING: [&str; 10] = [
     "diffsol BDF, sign test",
 ];
 
-/// Groups of methods by whose code they are: headings in the legend.
+/// Groups of methods by the origin of their code: headings in the legend.
 const GROUPS: [&str; 3] = ["Methods of vibro", "Common methods, coded in vibro", "Other programs"];
 
 /// Index of the group of a method in [`GROUPS`].
@@ -42,10 +42,11 @@ pub fn group(m: &MeasuredMethod) -> usize {
     }
 }
 
-/// Height of a row of crosses, over the decades of the errors.
+/// Height of a row of crosses, as a share of the decades that the errors span.
 const ROW_HEIGHT: f64 = 0.05;
 
-/// Distance within which points of a line share their letters, over the width and the height of the chart.
+/// Distance within which points of a line share their letters, as a share of the width and height of the
+/// chart.
 const SAME_PLACE: [f64; 2] = [0.025, 0.03];
 
 /// Visible part of the plane: decades of time in s and of the error, and above them a row of crosses for
@@ -179,7 +180,7 @@ impl LineStyle {
     }
 }
 
-/// What the lines, the letters and the crosses of a chart are.
+/// Caption: the meaning of lines, letters and crosses.
 fn caption(scene: &BenchmarkScene) -> String {
     let (points, front) = match scene.family {
         Family::Models => (

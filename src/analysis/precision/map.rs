@@ -36,7 +36,7 @@ fn grid(map: &FailureMap, title: String) -> Figure {
     };
     let methods = map.methods();
     let mut grid = Grid::new(methods.iter().map(|&m| m.to_owned()).collect(), OUTCOMES.map(kind).to_vec());
-    // The cells of a row stand together.
+    // The cells of a row are adjacent.
     for row in map.cells.chunk_by(|a, b| (&a.border, &a.scene) == (&b.border, &b.scene)) {
         let outcome_index = |method: &&str| {
             let cell = row.iter().find(|c| c.method == **method);

@@ -30,7 +30,7 @@ pub fn pulse(title: &str, result: &PulseResult) -> Option<Figure> {
     let start = onset.unwrap_or(from);
     let label = if onset.is_some() { "Time after the onset" } else { "Time after the first sample shown" };
     let x = || AxisSpec::new(label, "s").limits(from - start, to - start);
-    // A model under the line of many samples must leave that line to be seen.
+    // Many samples are drawn as a line; the model over it is dashed, so that the line stays visible.
     let dense = picture.samples.iter().filter(|s| s.2).count() > DENSE;
     let rejected = if result.xi.value.is_finite() { "" } else { " (rejected)" };
     let mut above = Plot::new(x(), AxisSpec::new(capital(quantity), unit));

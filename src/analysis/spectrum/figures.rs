@@ -155,11 +155,11 @@ fn transfer(title: &str, transfer: &Transfer, conditions: &str) -> Figure {
 
 /// Most peaks of a function whose frequencies are written in its Argand diagram.
 const NAMED_PEAKS: usize = 3;
-/// Least magnitude over the largest of lines that have a dot, or a name, in an Argand diagram.
+/// Least magnitude, relative to the largest, of lines that get a dot or a name in an Argand diagram.
 const LEAST_NAMED: f64 = 0.05;
 
 /// Argand diagram of a frequency response function, without lines of a coherence below 0.5: imaginary over
-/// real part. `None` of a spectrum.
+/// real part. `None` for a spectrum.
 pub fn argand(title: &str, result: &SpectralResult) -> Option<Figure> {
     let Lines::Transfer(found) = &result.found else { return None };
     let (f, values, coherence) = (found.frf.axis.values(), &found.frf.values, &found.coherence);

@@ -40,7 +40,7 @@ fn by_level<'a>(responses: impl Iterator<Item = &'a Response>) -> Vec<Vec<usize>
     levels(&responses.map(median_force).collect::<Vec<_>>())
 }
 
-/// Names the resonances of sweeps (grazing, clapping, …), each level of force by itself.
+/// Names the resonances of sweeps (grazing, clapping, …), separately at each level of force.
 pub(super) fn name(responses: &mut [&mut Response]) {
     for level in by_level(responses.iter().map(|r| &**r)) {
         let members = responses.iter_mut().enumerate().filter(|(i, _)| level.contains(i));

@@ -9,7 +9,7 @@ use crate::units::{Quantity, Unit};
 /// Quantities of a response that an analyser stores.
 pub(crate) const MOTION: [Quantity; 3] = [Quantity::Displacement, Quantity::Velocity, Quantity::Acceleration];
 
-/// What is stated of stored responses.
+/// Stated settings of stored responses.
 #[derive(Debug, Clone, Default)]
 #[cfg_attr(feature = "cli", derive(clap::Args))]
 pub struct StoredResponseKeys {

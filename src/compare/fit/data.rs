@@ -37,7 +37,7 @@ pub struct SweepStep {
     pub frequency: f64,
     /// Its standard uncertainty in Hz; 0 where it is not known.
     pub frequency_std: f64,
-    /// Force in N, where the force of the setting equals [`Data::force`].
+    /// Force in N if the force of the setting is [`Data::force`]; else it scales with that of the setting.
     pub force: f64,
     /// Its standard uncertainty in N; 0 where it is not known.
     pub force_std: f64,
@@ -89,7 +89,7 @@ impl Data {
     /// # Errors
     /// If there is no such response, or no force is known.
     pub fn new(force: Option<f64>, responses: &[Response], pace: Pace) -> Result<Data> {
-        // Findings on the force are already those of the overlay of the same responses.
+        // The overlay of the same responses already reports the findings on the force.
         let (swept, _) = Swept::all(force, responses)?;
         let points = || swept.iter().flat_map(|s| &s.response.points);
         let clear = points().filter(|p| p.upper_limit.is_none() && p.amplitude.value > 0.0);

@@ -17,8 +17,8 @@ use rayon::prelude::*;
 /// Widths κ of the search, one after another: at first as large as the relative errors of the starts, up to a
 /// half.
 const COARSE_KAPPA: [f64; 2] = [0.3, 0.1];
-/// Widths κ after the search, one after another, when motions are those of simulated sweeps; the last is
-/// about the noise.
+/// Widths κ after the search, one after another, with motions from simulated sweeps; the last is about the
+/// noise.
 pub(crate) const FINE_KAPPA: [f64; 4] = [0.1, 0.03, 0.01, 0.003];
 /// Factor on the relative standard uncertainty s of a point in its residual z, so that noise is no outlier.
 const STD_FACTOR: f64 = 3.0;

@@ -20,7 +20,7 @@ fn example() -> Setting {
     Setting { rig: Rig { restitution: 0.98, ..Rig::thesis() }, force: 0.1 }
 }
 
-/// Amplitude over noise from which it is above the noise floor: 2 µm at 0.3 µm.
+/// Ratio of amplitude to noise from which an amplitude is above the noise floor: 2 µm at a noise of 0.3 µm.
 const FAINT: f64 = 20.0 / 3.0;
 
 /// Sweeps of this rig up and down, with the uncertainties of the example's points: 0.3 µm in x, below the

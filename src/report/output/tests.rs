@@ -85,7 +85,7 @@ fn leftovers_of_killed_programs_are_removed_by_who_holds_the_lock() {
     let mut first = results(dir.path());
     first.write("a.csv", "x").unwrap();
     let parts = || names(dir.path()).iter().filter(|name| name.ends_with(".vibro.part")).count();
-    // Left are the temporary file of `first`, and the file without a leading dot, which is not vibro's.
+    // Two remain: the temporary file of `first`, and the file without a leading dot, which is not vibro's.
     assert_eq!(parts(), 2);
     // A second writer waits for the first and does not remove its files as leftovers.
     let path = dir.path().to_owned();

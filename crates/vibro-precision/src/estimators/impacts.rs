@@ -35,11 +35,11 @@ struct SyntheticTrain {
     noise: f64,
     /// Standard deviation of the logarithm of the heights.
     heights: f64,
-    /// Standard deviation of the onsets in intervals.
+    /// Standard deviation of the onsets, as a share of the interval.
     jitter: f64,
     /// Height of the first impact; the others have a mean of 1.
     first: f64,
-    /// Height of a ringing with 12 samples a cycle, over that of its impact.
+    /// Amplitude of a ringing with 12 samples a cycle, as a share of the height of its impact.
     ringing: f64,
 }
 

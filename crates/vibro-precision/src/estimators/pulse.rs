@@ -38,7 +38,7 @@ const TWO_TIMES: EstimationMethod<Pulse> = EstimationMethod::Own("two times", |p
     Ok(EstimatorAnswer::found(&found.xi, &found.findings))
 });
 
-/// The same from a spreadsheet, which does not check the range of ρ.
+/// ξ from the same two times in closed form, as in a spreadsheet, which does not check the range of ρ.
 const FORMULA: EstimationMethod<Pulse> =
     EstimationMethod::Rival("formula of ρ", |p| closed_form(p.times[0] / p.times[1]));
 

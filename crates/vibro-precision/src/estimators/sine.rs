@@ -211,7 +211,7 @@ pub(crate) fn borders(quick: bool) -> Vec<BorderQuestion> {
     let faults = std::iter::once(fixed_sine("level 1000 times the amplitude", N, 40.3, 1e3)).chain(changed);
     let beside = [0.3, 0.7, 1.0, 2.0, 4.0]
         .map(|apart| Ensemble::new(format!("{apart} lines apart"), 13_000, pair(apart)));
-    // Methods for a single sine are asked for the stronger of two.
+    // Methods for a single sine must find the stronger of two.
     let stronger = [0.5, 1.0, 2.0, 4.0].map(|apart| {
         Ensemble::new(format!("{apart} lines apart"), 14_000, move |noise: &mut Noise| {
             let case = pair(apart)(noise);

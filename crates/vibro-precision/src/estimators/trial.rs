@@ -77,7 +77,7 @@ type Make<D> = dyn Fn(&mut Noise) -> Case<D> + Send + Sync;
 
 /// Random records of one kind.
 pub struct Ensemble<D> {
-    /// Its name: the setting of a scene, or the scene at a border of what methods can do.
+    /// Its name: the setting of a scene, or the scene at a border.
     name: String,
     /// Seed of its first record; each further record adds 1.
     seed: u64,
@@ -168,9 +168,11 @@ pub fn measured<D: 'static>(
 const TRIALS: [usize; 2] = [40, 6];
 /// An answer within this many of its standard uncertainties is right.
 const RIGHT_WITHIN: f64 = 3.0;
-/// Most answers of a cell that may lie further off, in a full and a quick run; and the standard uncertainties
-/// beyond which a single answer is wrong. Either limit calls a method with correct uncertainties wrong
-/// somewhere in a full map of 500 cells in fewer than one of 200 runs.
+/// Most answers of a cell that may lie further off, in a full and a quick run. [`WRONG_BEYOND`] is the
+/// number
+/// of standard uncertainties beyond which a single answer makes the method wrong. In fewer than one of 200
+/// full
+/// maps of 500 cells, either limit calls a method with correct uncertainties wrong.
 const OUTLIERS: [usize; 2] = [3, 2];
 const WRONG_BEYOND: f64 = 5.2;
 
@@ -191,8 +193,9 @@ pub fn questions<D: Send + 'static>(
 }
 
 /// Error of an answer over the largest allowed one, or why it counts as no answer. An answer with an
-/// uncertainty may err by three of it, even if a finding doubts it; one without may err by `tolerance`. A
-/// doubted answer without uncertainty is none, and so is one whose uncertainty exceeds `tolerance`.
+/// uncertainty may err by three standard uncertainties, even if a finding doubts it; one without may err by
+/// `tolerance`. A doubted answer without uncertainty is none, and so is one whose uncertainty exceeds
+/// `tolerance`.
 fn relative_error(answer: &EstimatorAnswer, truth: f64, tolerance: f64) -> std::result::Result<f64, String> {
     let error = (answer.value - truth).abs();
     match (answer.std, &answer.doubt) {
@@ -242,7 +245,8 @@ mod tests {
     #[test]
     fn chance_calls_a_right_method_wrong_in_fewer_than_one_map_in_a_hundred() {
         let half = 0.5 * 0.01 / 500.0;
-        // The normal distribution by the midpoint rule, which is off by 1e-8/24 of its curvature.
+        // The normal distribution by the midpoint rule with steps h = 1e-4, which errs by h²/24 of its
+        // curvature.
         let density = |x: f64| (-0.5 * x * x).exp() * (2.0 / std::f64::consts::PI).sqrt();
         let beyond =
             |z: f64| (0..100_000).map(|i| 1e-4 * density(z + 1e-4 * (f64::from(i) + 0.5))).sum::<f64>();

@@ -186,7 +186,9 @@ mod tests {
     #[test]
     fn what_the_motion_settles_on_is_told_and_stable_and_what_is_told_is_as_it_says() {
         let task = task_b(1.0);
-        // Just below the force that reaches the gap by itself there are two orbits, one of them unstable.
+        // Just below the force at which the forced motion alone reaches the gap there are two orbits, one
+        // of them
+        // unstable.
         let unit =
             Steady::new(&task.rig, &Sine { force: 1.0, frequency: task.frequency }).unwrap().amplitude();
         let force = task.rig.gap / unit * (1.0 - 1e-3);

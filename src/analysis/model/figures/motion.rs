@@ -33,7 +33,8 @@ pub fn traces(title: &str, portrait: &Portrait, gap: f64) -> Figure {
     )
 }
 
-/// Force between the masses over the last cycles where contacts last, and the impulse of each impact.
+/// Force between the masses over the last cycles, if contacts have a duration, and the impulse of each
+/// impact.
 pub fn reaction(title: &str, portrait: &Portrait) -> Figure {
     let from = portrait.time.first().copied().unwrap_or(f64::NEG_INFINITY);
     let time = || AxisSpec::new("Time", "s");
@@ -134,8 +135,8 @@ pub fn poincare(title: &str, portrait: &Portrait) -> Figure {
 /// Number of samples of a period.
 const PERIOD_SAMPLES: usize = 800;
 
-/// Both masses over two periods, x₂ counted from the rest of x₁'s contact face, so that the curves meet at
-/// the impacts; velocities over displacements beside it.
+/// Both masses over two periods, x₂ measured from the rest position of mass 1's contact face, so that the
+/// curves meet at the impacts; velocities over displacements beside it.
 pub fn orbit(title: &str, rig: &Rig, orbit: &Orbit) -> Figure {
     let at = |i: usize| orbit.period() * i as f64 / PERIOD_SAMPLES as f64;
     let states: Vec<(f64, State)> =
@@ -176,7 +177,8 @@ pub fn orbit(title: &str, rig: &Rig, orbit: &Orbit) -> Figure {
     )))
 }
 
-/// Both masses over a period with several impacts, x₂ counted from the rest of x₁'s contact face.
+/// Both masses over a period with several impacts, x₂ measured from the rest position of mass 1's contact
+/// face.
 pub fn pattern(title: &str, orbit: &PeriodicOrbit) -> Figure {
     let at = |i: usize| orbit.period() * i as f64 / PERIOD_SAMPLES as f64;
     let states: Vec<(f64, State)> = (0..=PERIOD_SAMPLES).map(|i| (at(i), orbit.state(at(i)))).collect();

@@ -66,7 +66,7 @@ pub(in crate::analysis::model) fn counted<'a>(cells: impl Iterator<Item = &'a Ce
     counts
 }
 
-/// Index of the colour of a regime, where the patterns `own` have colours of their own.
+/// Index of the colour of a regime; `coloured` are the patterns with a colour of their own.
 fn class(coloured: &[Regime], regime: Regime) -> usize {
     coloured.iter().position(|r| *r == regime).unwrap_or(match regime {
         Regime::Periodic { .. } => coloured.len(),

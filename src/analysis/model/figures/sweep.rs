@@ -54,11 +54,12 @@ pub fn sweep(
     )
 }
 
-/// The force between the masses over frequency or force: peak and RMS where contacts last, and the impulse a
-/// cycle.
+/// The force between the masses over frequency or force: its peak and RMS, if contacts have a duration, and
+/// the
+/// impulse a cycle.
 pub fn forces(swept: &Swept, over_force: bool) -> Figure {
     let (over, unit) = if over_force { ("Force", "N") } else { ("Excitation frequency", "Hz") };
-    // Contacts that last have a force; instantaneous impacts have an impulse only.
+    // Contacts with a duration have a force; instantaneous impacts have an impulse only.
     let has_force = swept.up.iter().chain(&swept.down).any(|p| p.reaction.peak.is_some());
     let mut figure =
         Figure::double("Force between the masses").height(if has_force { 170.0 } else { 70.0 }).shared_x();

@@ -10,7 +10,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 use std::f64::consts::TAU;
 
-/// Phases of the excitation at which the sweep is started too, in cycles after that of the start.
+/// Further phases of the excitation at which the sweep is started, in cycles after the stated phase.
 const OTHER_PHASES: [f64; 3] = [0.25, 0.5, 0.75];
 
 /// Cycles over which the motion at the end is read, and those that are drawn.
@@ -31,7 +31,7 @@ pub(super) struct End {
 }
 
 impl End {
-    /// Whether the masses move in phase.
+    /// Relative motion of the masses: in phase or antiphase.
     pub fn masses(&self) -> Option<&'static str> {
         self.relative_phase.map(|phase| if in_phase(phase) { "in phase" } else { "antiphase" })
     }
@@ -71,10 +71,10 @@ pub(super) struct Runs {
 type Sweep<'a> = &'a dyn Fn(&mut dyn Motion, Direction) -> Result<Vec<Point>>;
 
 impl Runs {
-    /// Sweeps motions that `make` creates from an excitation and a shift of the phase at the start (rad),
-    /// over the force at `frequency` (Hz) if that is given. A start from another phase that fails is left
-    /// out. There is none where at most half of the points are regular: irregular motions cannot be told
-    /// from one another.
+    /// Sweeps motions that `make` creates from an excitation and a shift of the start phase (rad), over the
+    /// force at `frequency` (Hz) if that is given. A start from another phase that fails is left out. If at
+    /// most half of the points are regular, no other phase is tried: irregular motions cannot be told
+    /// apart.
     pub fn of(
         make: impl Fn(&Excitation, f64) -> Result<Moving> + Sync,
         excitation: &Excitation,

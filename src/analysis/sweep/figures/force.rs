@@ -4,8 +4,9 @@ use super::response::{look, rank};
 use crate::measure::response::Response;
 use crate::report::{AxisSpec, Figure, Plot, Series, Stroke};
 
-/// Amplitude of the force over excitation frequency; `None` where no sweep has its force. At a resonance a
-/// shaker's force drops, as the structure takes its stroke.
+/// Amplitude of the force over excitation frequency; `None` where no sweep has its force. At a resonance
+/// the
+/// force of a shaker drops, since the structure moves along with it.
 pub fn force(title: &str, responses: &[Response]) -> Option<Figure> {
     let forces = responses.iter().flat_map(|r| &r.points).filter_map(|p| p.force);
     let largest = forces.filter(|force| force.is_finite()).fold(0.0, f64::max);

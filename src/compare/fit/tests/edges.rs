@@ -136,8 +136,9 @@ fn a_scale_is_as_uncertain_as_the_calibration() {
             let Estimate { value, std, .. } = found.estimate;
             let off = (value - setting.get(found.parameter)).abs();
             println!("{found:?}");
-            // The factor is one standard uncertainty of each mass' calibration, √2 of both together; 2.5
-            // more have a chance of one in 80.
+            // The factor is off by one standard uncertainty of each mass' calibration, √2 of both together;
+            // a
+            // further 2.5 are exceeded by chance in one of 80 cases.
             assert!(off < 3.9 * std.unwrap_or(0.0), "{names}: {found:?}");
         }
         let Estimate { value, std, .. } = of(&fit, scale).estimate;
@@ -150,7 +151,7 @@ fn a_scale_is_as_uncertain_as_the_calibration() {
         data.calibration = 0.2;
     })
     .unwrap();
-    // 0.8 times the force, within the noise of some hundred points.
+    // Amplitudes 0.8 times as large give 0.8 times the force, within the noise of some hundred points.
     let ratio = finding(&far, "force-differs-from-stated").unwrap().get("ratio").unwrap();
     assert!((ratio - 0.8).abs() < 0.01, "{ratio}");
     assert!(finding(&far, "calibration-assumed").is_none(), "{:?}", far.findings);
@@ -174,7 +175,9 @@ fn the_gap_is_as_uncertain_as_a_fixed_force() {
             let Estimate { value, std, .. } = found.estimate;
             let off = (value - setting.get(found.parameter)).abs();
             println!("{found:?}");
-            // The force is off by one of its standard uncertainties; 2.5 more have a chance of one in 80.
+            // The force is off by one of its standard uncertainties; a further 2.5 are exceeded by chance
+            // in one
+            // of 80 cases.
             assert!(off < 3.5 * std.unwrap_or(0.0), "{names}: {found:?}");
         }
         let Estimate { value, std, .. } = of(&fit, Parameter::Gap).estimate;

@@ -71,9 +71,10 @@ fn other_patterns(draws: std::ops::Range<u64>, rigs: usize) {
     }
 }
 
-/// A gap stated in metres that was meant in millimetres, or the reverse. Starts spread by no more than a
-/// half, and such simulated rigs strike a million times a cycle. The fit ends all the same, here at the
-/// truth.
+/// A stated gap off by a factor of 1000: metres taken for millimetres, or the reverse. Starts vary by a
+/// factor
+/// of 1.5 only, and rigs simulated with such a gap may impact a million times a cycle. The fit still ends,
+/// here at the true values.
 #[test]
 fn a_gap_a_thousand_times_off_is_found() {
     gaps_far_off(&[1e-6]);

@@ -121,7 +121,9 @@ mod tests {
         let all = truth_runs().unwrap();
         for i in 0..2 {
             let [mean, std] = moments(all.iter().map(|run| run[i]));
-            // None of ten numbers can be 9/√10 = 2.85 of their own standard deviations off; 2.6 are rare.
+            // None of n = 10 numbers can deviate from their mean by more than (n − 1)/√n = 2.85 of their
+            // sample
+            // standard deviations; 2.6 is rare.
             assert!(all.iter().all(|run| (run[i] - mean).abs() < 2.6 * std), "{all:?}");
         }
     }
