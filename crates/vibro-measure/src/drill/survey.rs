@@ -81,8 +81,8 @@ const AT_LEVEL: f64 = 0.1;
 /// A pulse is on one of its two levels for more than this part of the time; a sine is within [`AT_LEVEL`] of
 /// the medians of its halves for a quarter.
 const PULSED: f64 = 0.8;
-/// Largest median change from one turn of a shaft to the next, over a turn. Edges of a vibration come at any
-/// distance.
+/// Largest median change from one turn of a shaft to the next, over a turn. Edges of a vibration are
+/// unevenly spaced.
 const UNEVEN: f64 = 0.2;
 
 /// Refuses a reference that is no pulse: the velocity in its place, or a vibration. The `reference` comes

@@ -22,7 +22,7 @@ const PAUSE: f64 = 4.0;
 pub(super) struct Turn {
     /// First edge, in samples from the first sample of the record.
     pub start: f64,
-    /// Last edge, in samples likewise.
+    /// Last edge, in samples from the first sample of the record.
     pub end: f64,
 }
 
@@ -33,7 +33,7 @@ impl Turn {
     }
 }
 
-/// Edges numbered as an even series, since a pick-up misses pulses and catches sparks.
+/// Edges numbered as an even series, since a pick-up misses pulses and picks up interference.
 pub(crate) struct Numbered {
     /// Number and time in samples of each edge; a pause begins a new run.
     pub runs: Vec<Vec<(usize, f64)>>,
@@ -158,14 +158,14 @@ pub enum Edge {
 /// ringing of a pick-up is smaller.
 const HYSTERESIS: f64 = 0.2;
 
-/// Margins of the hysteresis on both sides of the middle that a sharp edge passes between two samples: three
-/// fifths of the height. The samples then give no place between them.
+/// An edge is sharp if two neighbouring samples lie at least this many margins of the hysteresis below and
+/// above the middle: a step of 60 % of the height. The samples do not show where between them it lies.
 const SHARP: f64 = 1.5;
 
 /// Edges of a reference signal, and how well their times are known.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Edges {
-    /// Places in samples from the first.
+    /// Positions in samples from the first sample.
     pub at: Vec<f64>,
     /// Whether most edges rise between two samples, so that their places in between are unknown.
     pub sharp: bool,
@@ -183,7 +183,7 @@ impl Edges {
         let sign = if edge == Edge::Rising { 1.0 } else { -1.0 };
         let (middle, margin) = (0.5 * (low + high), HYSTERESIS * (high - low).abs());
         let (mut at, mut sharp, mut slopes) = (Vec::new(), 0, 0.0);
-        // First and last crossing of an edge, and the samples on both sides of the last.
+        // `crossed`: first and last crossing of an edge, and the samples on both sides of the last.
         let (mut armed, mut crossed) = (false, None::<(f64, f64, f64, f64)>);
         for (i, step) in signal.windows(2).enumerate() {
             let (from, to) = (sign * (step[0] - middle), sign * (step[1] - middle));

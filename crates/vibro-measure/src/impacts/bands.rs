@@ -11,8 +11,8 @@ const ORDER: usize = 4;
 const HIGHEST: f64 = 0.9;
 /// Number of bands, each an octave wide and half an octave below the one before.
 const BANDS: i32 = 10;
-/// Least kurtosis of a band with impacts: that of noise is 3, of a tone that comes and goes as a sine 2.9 or
-/// less (J. Antoni, Mech. Syst. Signal Process. 20 (2006) 282).
+/// Least kurtosis of a band with impacts: noise has 3, a tone whose amplitude varies as a sine 2.9 or less
+/// (J. Antoni, Mech. Syst. Signal Process. 20 (2006) 282).
 const IMPULSIVE: f64 = 3.5;
 
 /// Octaves in Hz below half the `rate` in Hz, the highest first.
@@ -21,7 +21,7 @@ pub fn octaves(rate: f64) -> impl Iterator<Item = (f64, f64)> {
     (0..BANDS).map(high).map(|high| (0.5 * high, high))
 }
 
-/// The values filtered to the band between both corners in Hz, without delay.
+/// The values, zero-phase filtered to the band between both corners in Hz.
 ///
 /// # Errors
 /// As those of [`Filter`].

@@ -1,5 +1,5 @@
-//! Impacts against their excitation: their phases, the fraction of impacts per cycle that they keep, or the
-//! beat by which they miss it.
+//! Impacts against their excitation: their phases, the fraction of impacts per cycle to which they are
+//! locked, or the beat by which they miss it.
 
 use super::interval::CountedImpacts;
 use super::interval::interval;
@@ -96,9 +96,9 @@ const DOUBLED: f64 = 0.5;
 const LARGEST: usize = 8;
 /// Largest scatter of a pattern in cycles (root mean square): of n impacts about m cycles, and of each phase.
 const REPEATS: f64 = 0.1;
-/// Largest distance of a kept fraction from the rate, in standard uncertainties.
+/// Largest distance of a locked fraction from the rate (impacts per cycle), in standard uncertainties.
 const AGREES: f64 = 3.0;
-/// Largest relative distance from the rate of a fraction that is a candidate.
+/// Largest relative distance of a candidate fraction from the rate (impacts per cycle).
 const FITS: f64 = 0.02;
 
 /// Standard uncertainty in Hz of a stated frequency: anywhere within half a unit of its last digit.
@@ -110,7 +110,7 @@ fn last_digit(frequency: f64) -> f64 {
 /// Relation of the impacts to the excitation.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Locking {
-    /// They keep this fraction of impacts per cycle.
+    /// They are locked to this fraction of impacts per cycle.
     Locked(PerCycle),
     /// They come close to a fraction, but slip by this many impacts a cycle of the excitation (negative: too
     /// few).
