@@ -87,7 +87,7 @@ pub fn modal(measured: &Measured, options: &ModalOptions) -> Result<ModalResult>
     Ok(ModalResult { modes, findings })
 }
 
-/// The refusal of a function without modes.
+/// Error for a function without modes.
 fn without_modes(options: &ModalOptions) -> Error {
     let refused = Error::refused("no peak of the function is supported as a mode");
     match options.band {
@@ -100,7 +100,8 @@ fn without_modes(options: &ModalOptions) -> Error {
 
 /// Gathers `unsupported` peaks, and findings on further peaks without a mode, in one finding.
 fn gather_noise(lines: &Measured, unsupported: &[Peak], findings: &mut Vec<Finding>) {
-    // The highest peaks without a mode keep a finding each. Further ones are noise, and share one finding.
+    // The [`NAMED`] highest peaks without a mode keep a finding each. Further ones are noise, and share one
+    // finding.
     let odd = |found: &Finding| found.get("frequency").filter(|_| found.code == "modal-peak-unsupported");
     let height = |f: &f64| lines.values[lines.frequency.partition_point(|line| line < f)].norm();
     let mut at: Vec<f64> = findings.iter().filter_map(odd).collect();
