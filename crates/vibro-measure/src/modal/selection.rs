@@ -33,8 +33,8 @@ pub(super) fn averaging(lines: &mut Measured, groups: &[PeakGroup]) -> bool {
     (without - with).abs() > NO_SUPPORT
 }
 
-/// Fits the peaks of a group that the lines need. The group keeps those; the others are added to
-/// `unsupported`.
+/// Fits those peaks of a group that the lines support as modes. The group keeps them; the others are added
+/// to `unsupported`.
 ///
 /// The highest peaks are fitted at once: without a strong one the others would bend to explain its lines.
 /// Modes that are not determined, or not needed beside the others, are dropped.
@@ -149,8 +149,8 @@ fn narrowed(lines: &Measured, group: &mut PeakGroup, wide: Rational) -> Rational
 }
 
 /// Least drop of Akaike's criterion for an additional mode that shows no peak. Its four parameters then
-/// explain 28 of χ², as chance does in one of 10⁵ peaks; a drop of ten (Burnham & Anderson 2002, 2.6) would
-/// be chance in one of a thousand.
+/// lower χ² by 28, which chance does at one of 10⁵ peaks. A drop of ten (Burnham & Anderson 2002, 2.6)
+/// occurs by chance at one of a thousand.
 const SPLIT: f64 = 20.0;
 
 /// Distances from a mode, in its bandwidths, at which a neighbour without a peak is searched.
@@ -437,7 +437,7 @@ mod bands {
         let all = groups(&found, None).unwrap();
         let peaks: Vec<usize> = all.iter().flat_map(|g| g.peaks.iter().map(|p| p.at)).collect();
         // A third of 2000 lines are local maxima. Fewer than one line of noise in 3000 passes four
-        // deviations; with deviations that are wrong by a quarter one in 90 does.
+        // deviations; with a standard deviation that is too small by a quarter, one in 90 does.
         assert!(peaks.contains(&1000) && peaks.len() < 22, "{peaks:?}");
         let sizes = measured(true);
         assert!(groups(&sizes, None).unwrap().iter().any(|g| g.peaks.iter().any(|p| p.at == 1000)));

@@ -271,7 +271,7 @@ mod curved {
             let contact = Rebound::power_law(alpha, 1.5, 1.5).unwrap();
             let level = |v: f64| v / alpha - (alpha * v).ln_1p() / (alpha * alpha);
             let (before, after) = (level(1.0), level(-contact.restitution));
-            // As above.
+            // Tolerance as for Hertz.
             assert!((before - after).abs() < 1e-5 * before, "{alpha} {before} {after}");
         }
         assert!(
