@@ -95,7 +95,8 @@ pub(super) fn fit(trains: &[Timed], fall: bool) -> Option<TrainFit> {
     let onsets_alone = ratios.node(0.0, sigma2, scaled)?;
     if free < 3 {
         let log_r = if scaled { scatter_alone.as_ref()?.log_r } else { onsets_alone.log_r };
-        // All residuals are put down to scatter of R, which bounds the noise of the first flights.
+        // All residuals are attributed to the scatter of R, which gives an upper limit of the noise of first
+        // flights.
         let scatter = |node: Node| widened(free).powi(2) * node.scale;
         let onset = stated.unwrap_or(0.0);
         let noise =
