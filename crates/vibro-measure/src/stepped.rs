@@ -27,7 +27,8 @@ use vibro_signal::spectrum;
 
 mod growth;
 
-/// Fewest periods of a step: as blocks, they leave four in its second half, the fewest with an uncertainty.
+/// Fewest periods of a step: as blocks of one period, they leave four in its second half, the fewest with an
+/// uncertainty.
 const PERIODS: f64 = 8.0;
 /// Periods of a block, the first that gives enough blocks: 12 hold whole periods of subharmonics up to the
 /// fourth.
@@ -328,7 +329,7 @@ struct Blocks {
     period: f64,
     /// Periods of a block.
     periods: usize,
-    /// Samples of the trace.
+    /// Number of samples of the trace.
     samples: usize,
 }
 
