@@ -14,8 +14,8 @@ pub struct Excitation {
     pub file: String,
     /// Frequency in Hz.
     pub frequency: f64,
-    /// Standard uncertainty of the frequency in Hz; `None` where it is not known, as beside another line that
-    /// shifts this one.
+    /// Standard uncertainty of the frequency in Hz; `None` if it is not known, for example near another line
+    /// that shifts this one.
     pub std: Option<f64>,
     /// Force amplitude in N; `None` where the frequency was given.
     pub force: Option<f64>,

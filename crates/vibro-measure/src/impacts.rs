@@ -31,7 +31,7 @@ use interval::{CountedImpacts, count, evened, pattern};
 use serde::Serialize;
 use vibro_record::{Error, Finding, Result, Severity, Trace, median};
 
-/// Intervals that spread by less than this part of their median are regular.
+/// Intervals that spread by less than this fraction of their median are regular.
 pub const REGULAR: f64 = 0.05;
 
 /// Impacts of a trace.
@@ -51,8 +51,8 @@ pub struct Impacts {
     /// Serial correlation of neighbouring intervals, without the part that a pattern repeats: −0.5 where
     /// onsets are noisy, 0 where intervals jitter.
     pub serial_correlation: Option<f64>,
-    /// Number of impacts after which the intervals repeat, where they differ within that pattern; null where
-    /// there is no pattern.
+    /// Number of impacts after which the intervals repeat, if they differ within this pattern; null without
+    /// a pattern.
     pub pattern: Option<usize>,
     /// Number of impacts missing from intervals that are several times the others.
     pub missed: usize,
@@ -225,7 +225,7 @@ fn of_detected(trace: &Trace, options: &ImpactsOptions, detected: Detected) -> R
 
 /// Standard uncertainty of an interval from `n` onsets, widened for the fit of a pattern.
 fn widened(std: f64, n: usize, pattern: Option<usize>) -> f64 {
-    // The shift of each place of a pattern is fitted too, and costs a degree of freedom.
+    // The mean shift of each impact of a pattern is fitted too, and costs a degree of freedom.
     let free = |parameters: usize| n.saturating_sub(parameters) as f64;
     (free(2) / free(1 + pattern.unwrap_or(1))).sqrt() * std
 }

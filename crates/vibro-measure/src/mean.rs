@@ -105,8 +105,8 @@ impl Mean {
 }
 
 /// Spectral density at frequency 0 of `n` values where only neighbours are correlated: γ₀ + 2γ₁, a positive
-/// γ₁ left out. `squares` is the sum of squares about the mean, `products` that of products of neighbours. 0
-/// where neighbours are clearly anticorrelated, as times between edges are.
+/// γ₁ left out. `squares` is the sum of squares about the mean, `products` that of products of neighbours.
+/// Returns 0 if neighbours are clearly anticorrelated, like intervals between edges.
 fn density(squares: f64, products: f64, n: f64) -> f64 {
     if products < -SURE * squares / n.sqrt() {
         return 0.0;
@@ -206,7 +206,7 @@ mod tests {
             assert!(rho > 0.0 || told < 1.9, "n = {n}: {told} %");
         }
         // 20 or 60 values span too few correlation lengths of a chain of 0.9 to show its correlation: the
-        // coverage is the stated 83 % and 89 %, and most sequences are reported to wander. The part of 2000
+        // coverage is the stated 83 % and 89 %, and most sequences are reported to wander. The share of 2000
         // sequences scatters by 0.8 %, four times that.
         for (n, stated) in [(20, 83.0), (60, 89.0)] {
             let (part, told) = coverage(n, 0.9);

@@ -209,8 +209,8 @@ mod tests {
         assert!(judged >= 66, "{judged} of 72");
     }
 
-    /// Number of cases (three places, these windows and levels) that state an uncertainty; asserts that the
-    /// observed scatter agrees with it.
+    /// Number of cases (three positions between lines, these windows and levels) that state an uncertainty;
+    /// asserts that the observed scatter agrees with it.
     fn judged(windows: &[Window], decibels: &[i32]) -> u32 {
         let mut normal = Noise::new(0x5eed);
         let mut judged = 0;

@@ -166,7 +166,7 @@ fn leaning(vertex: Vertex, f: [f64; 3], a: [f64; 3]) -> Vertex {
     }
 }
 
-/// Place and height of the vertex near point `i` with their uncertainties; `None` where the polynomial
+/// Position and height of the vertex near point `i` with their uncertainties; `None` where the polynomial
 /// through all points has no single vertex.
 fn fitted(points: &[Point], i: usize) -> Option<[(f64, f64); 2]> {
     let beside = (points[i - 1].0, points[i + 1].0);

@@ -195,7 +195,7 @@ impl Curve<'_> {
         }
     }
 
-    /// The maximum or minimum at point `i`. Its true place lies with equal chance anywhere between the
+    /// The maximum or minimum at point `i`. Its true frequency lies with equal chance anywhere between the
     /// points on its two `sides`.
     fn point(&self, i: usize, sides: [usize; 2], kind: ResonanceKind) -> Resonance {
         let (frequency, amplitude, _) = self.points[i];

@@ -1,4 +1,4 @@
-//! Response at the excitation, step by step (the job of the thesis' sinesw3).
+//! Response at the excitation, step by step, as the thesis' script sinesw3 computes it.
 
 mod result;
 mod steady;
@@ -156,8 +156,8 @@ pub(crate) fn read(
 }
 
 impl Response {
-    /// Finds jumps and resonances of the points as a curve. The direction is the one stated, else that of
-    /// the frequencies.
+    /// Finds jumps and resonances of the points as a curve. The direction is as stated, else it follows from
+    /// the order of the frequencies.
     pub(crate) fn curve(mut self, stated: Option<Direction>) -> Response {
         let Response { points, findings, fmin, mass, .. } = &mut self;
         let frequency: Vec<f64> = points.iter().map(|p| p.excitation).collect();

@@ -186,8 +186,8 @@ fn without_answer(measured: &Measured) -> Error {
     settings.into_iter().fold(none.hint(hint), Error::setting)
 }
 
-/// Longest contact in s for which uncertainties allow where none is stated or seen: longer than steel and
-/// most plastics touch.
+/// Longest contact in s that the uncertainties allow for if no contact time is stated or measured: longer
+/// than steel and most plastics touch.
 const LONGEST: f64 = 1e-3;
 
 /// Doubt about a drop where too many flights of a train are longer than its first.

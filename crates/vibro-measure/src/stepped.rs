@@ -3,8 +3,8 @@
 //! The frequency is that of the force ([`sine`]). Both traces are cut into blocks of whole periods, in each
 //! of which a sine of that frequency and a mean are fitted by least squares (IEEE Std 1057, three
 //! parameters). The phasors of the response, relative to the phase of the force in the same block, do not
-//! drift with the force. They are averaged from the block on from which they are settled, and their scatter
-//! gives the uncertainty of amplitude, phase and receptance.
+//! drift with the force. They are averaged from the first settled block on, and their scatter gives the
+//! uncertainty of amplitude, phase and receptance.
 
 use super::answered::answered;
 use super::clipping::clipped;

@@ -64,8 +64,8 @@ const CALM: usize = 4;
 const SPIKE_NOISE: f64 = 10.0;
 /// Least height of a spike over the range of the channel; smaller ones move neither impacts nor averages.
 const SPIKE_RANGE: f64 = 0.02;
-/// An extreme nearer to the median than this part of the larger excursion is the signal at rest, not the end
-/// of the range.
+/// An extreme nearer to the median than this fraction of the larger excursion is the signal at rest, not the
+/// end of the range.
 const RAIL: f64 = 0.1;
 
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -359,7 +359,8 @@ fn followed(impacts: &[&Impact]) -> usize {
     let ([first, .., last], gaps) = (impacts, impacts.windows(2).map(|w| w[1].time - w[0].time)) else {
         return 0;
     };
-    // Turns with an impact; a turn without one, as in a pause, does not count in the distance.
+    // Number of turns with an impact; a turn without one, for example in a pause, does not count in the mean
+    // distance.
     let turns = 1 + impacts.windows(2).filter(|w| w[1].cycle > w[0].cycle).count();
     let period = (last.time - first.time) / last.cycle.saturating_sub(first.cycle).max(1) as f64;
     let distance = period * turns as f64 / impacts.len() as f64;
@@ -373,9 +374,9 @@ fn followed(impacts: &[&Impact]) -> usize {
 /// mean of (v₂⁺ − v₁⁺ − R v₁⁻)/mean(v₁⁻), which is the propagated one (delta method). `moved` gives the bias
 /// of a quantity from its derivatives by the velocities before and after.
 ///
-/// No restitution is given where most approaches are consistent with 0, as those of a bit, which is struck;
-/// nor where it is negative or above 1 by more than its uncertainty explains. Without an uncertainty, a value
-/// above 1 stays.
+/// No restitution is given if most approaches are consistent with 0, as for a bit, which is struck. Nor is
+/// it given if it is negative or above 1 by more than its uncertainty explains. Without an uncertainty, a
+/// value above 1 stays.
 fn restitution(
     impacts: &[&Impact],
     front: bool,

@@ -37,13 +37,13 @@ const SHAPE: f64 = 0.13;
 struct Jump {
     cycle: usize,
     turn: Turn,
-    /// Place of the impact in samples.
+    /// Position of the impact in samples.
     at: f64,
     /// Fits before and after the contact.
     sides: [Parabola; 2],
-    /// Step between the two samples around the place, in the unit of the velocity.
+    /// Step between the two samples around this position, in the unit of the velocity.
     step: f64,
-    /// Part of the interval between these two samples that lies before the place.
+    /// Fraction of the interval between these two samples that lies before this position.
     share: f64,
     clipped: bool,
     /// Samples from [`BEGUN`] of the jump to half of it; NaN if [`BEGUN`] is not crossed within the contact.

@@ -14,13 +14,14 @@ const OUTLIER: f64 = 2.0;
 const NEAR: f64 = 0.1;
 /// The repeated impact must also come within this fraction of the median interval.
 const BETWEEN: f64 = 0.25;
-/// Standard deviations of chance that are subtracted from an agreement, as many lags are tried.
+/// Standard deviations of chance that are subtracted from an agreement, because many lags are tried.
 const CHANCE: f64 = 2.0;
 /// Least agreement of a common period: one in a hundred trains at random reaches it.
 const COMMON: f64 = 0.4;
-/// The period is the first lag with this part of the best agreement: multiples of the period agree as well.
+/// The period is the first lag with this fraction of the best agreement: multiples of the period agree as
+/// well.
 const FIRST: f64 = 0.9;
-/// Neighbours in a train are whole periods apart, within this part of a period.
+/// Neighbours in a train are whole periods apart, within this fraction of a period.
 const UNEVEN: f64 = 0.2;
 /// Neighbours more than this many periods apart lie before and after a pause of the machine.
 const PAUSE: f64 = 4.0;
@@ -181,7 +182,8 @@ mod tests {
             let whole = slowing(&mut noise);
             let kept: Vec<(f64, f64)> = (0..60).filter(|k| k % 9 != 4).map(|k| whole[k]).collect();
             let truth: Vec<f64> = kept.iter().map(|e| e.0).collect();
-            // False ones anywhere, of any strength up to that of the others, and one far above it.
+            // False impacts at any time: of any strength up to that of the others, and one ten times
+            // stronger.
             let wrong = |k| (61_000.0 * noise.uniform(), if k == 0 { -70.0 } else { -7.0 * noise.uniform() });
             let with: Vec<(f64, f64)> = (0..8).map(wrong).chain(kept.iter().copied()).collect();
             let found = train(with).unwrap();

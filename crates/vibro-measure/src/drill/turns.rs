@@ -10,7 +10,7 @@ use vibro_record::{Error, Result, median};
 /// Intervals on each side whose median is the expected interval: a machine that runs up changes little over
 /// them.
 const AROUND: usize = 15;
-/// An interval shorter than this part of the expected one ends in a false edge.
+/// An interval shorter than this fraction of the expected one ends in a false edge.
 const SHORT: f64 = 0.6;
 /// An interval longer than this many expected ones lacks edges.
 const LONG: f64 = 1.5;
@@ -45,7 +45,7 @@ pub(crate) struct Numbered {
 
 impl Numbered {
     /// Numbers each edge by the median interval around it. Of two edges within an interval, the one farther
-    /// from its expected place is ignored.
+    /// from its expected time is ignored.
     pub fn new(edges: &[f64]) -> Numbered {
         let intervals: Vec<f64> = edges.windows(2).map(|e| e[1] - e[0]).collect();
         let (mut missing, mut extra) = (0, 0);
@@ -154,8 +154,8 @@ pub enum Edge {
     Falling,
 }
 
-/// Part of the pulse height by which the signal must pass the middle on both sides before an edge counts:
-/// ringing of a pick-up is smaller.
+/// Fraction of the pulse height by which the signal must pass the middle on both sides before an edge
+/// counts: ringing of a pick-up is smaller.
 const HYSTERESIS: f64 = 0.2;
 
 /// An edge is sharp if two neighbouring samples lie at least this many margins of the hysteresis below and
@@ -167,7 +167,7 @@ const SHARP: f64 = 1.5;
 pub(crate) struct Edges {
     /// Positions in samples from the first sample.
     pub at: Vec<f64>,
-    /// Whether most edges rise between two samples, so that their places in between are unknown.
+    /// Whether most edges rise between two samples, so that their positions in between are unknown.
     pub sharp: bool,
     /// Mean step between the samples around an edge, in the unit of the signal.
     slope: f64,
@@ -229,9 +229,9 @@ fn around(values: &[f64], i: usize) -> Option<[f64; 4]> {
     values.get(i.checked_sub(1)?..i + 3)?.try_into().ok()
 }
 
-/// Place of the crossing of `level` between samples `i` and `i + 1`, on the cubic through the four samples
-/// around it (a straight line beside the ends of the record and missing samples). `None` unless the level
-/// lies between the two samples.
+/// Position in samples of the crossing of `level` between samples `i` and `i + 1`, on the cubic through the
+/// four samples around it (a straight line beside the ends of the record and missing samples). `None` unless
+/// the level lies between the two samples.
 pub(super) fn between(values: &[f64], i: usize, level: f64) -> Option<f64> {
     let (a, b) = (values.get(i)? - level, values.get(i + 1)? - level);
     if !(a.is_finite() && b.is_finite()) || a == b || a * b > 0.0 {
@@ -245,8 +245,8 @@ pub(super) fn between(values: &[f64], i: usize, level: f64) -> Option<f64> {
     Some(i as f64 + border(0.0, 1.0, |s| cubic(four, s) * a > 0.0))
 }
 
-/// Value at a place between samples, on the cubic through the four samples around it; a straight line at the
-/// ends. `None` outside the record.
+/// Value at a position between samples, on the cubic through the four samples around it; a straight line at
+/// the ends. `None` outside the record.
 pub(super) fn value(values: &[f64], at: f64) -> Option<f64> {
     let i = at.floor();
     if i < 0.0 {

@@ -7,7 +7,7 @@ use vibro_signal::filter::Filter;
 
 /// Order of one pass of a filter.
 const ORDER: usize = 4;
-/// Highest corner as a part of half the sampling rate: the filter needs room for its flank.
+/// Highest corner over half the sampling rate: the filter needs room for its flank.
 const HIGHEST: f64 = 0.9;
 /// Number of bands, each an octave wide and half an octave below the one before.
 const BANDS: i32 = 10;
@@ -24,7 +24,7 @@ pub fn octaves(rate: f64) -> impl Iterator<Item = (f64, f64)> {
 /// The values, zero-phase filtered to the band between both corners in Hz.
 ///
 /// # Errors
-/// As those of [`Filter`].
+/// As [`Filter::high_pass`] and [`Filter::zero_phase`].
 pub fn within(values: &[f64], (low, high): (f64, f64), rate: f64) -> Result<Vec<f64>> {
     let above = Filter::high_pass(low, ORDER, rate)?.zero_phase(values)?;
     Filter::low_pass(high, ORDER, rate)?.zero_phase(&above)

@@ -230,9 +230,9 @@ fn too_few(
     }
 }
 
-/// A pulse lasts as long as it exceeds this part of its height, or the noise limit where that is higher.
+/// A pulse lasts as long as it exceeds this fraction of its height, or the noise limit where that is higher.
 const FOOT: f64 = 0.1;
-/// A pulse that swings back by this part of its height rings, and is no contact force.
+/// A pulse that swings back by this fraction of its height rings, and is no contact force.
 const BACK: f64 = 0.2;
 
 /// Duration of an impact in s, the median of all. A pulse that exceeds the fraction p of its height for a
@@ -268,9 +268,9 @@ fn contact(values: &[f64], bursts: &[Range<usize>], quiet: &Background, rate: f6
     Some(Estimate::new(0.5 * (least + most), Some(std), "s", all.len(), "time above a tenth of the height"))
 }
 
-/// A contact is open below this part of its height.
+/// A contact is open below this fraction of its height.
 const OPEN: f64 = 0.2;
-/// A contact is closed above this part of its height.
+/// A contact is closed above this fraction of its height.
 const CLOSED: f64 = 0.8;
 
 /// Finding on switching contacts, which have two levels, that open and close again within an impact. A burst

@@ -13,8 +13,8 @@ const SAME: f64 = 3e-4;
 /// Of the impacts that any quieter burst follows, the least fraction that must have one at the delay of an
 /// echo.
 const MOST: f64 = 0.6;
-/// Largest part of the impacts that another burst precedes by the same delay: in a train of uneven heights
-/// most are.
+/// Largest fraction of the impacts that another burst precedes by the same delay: in a train of uneven
+/// heights most are preceded so.
 const FEW: f64 = 0.2;
 /// Fewest impacts with an echo.
 const ENOUGH: usize = 4;
@@ -28,7 +28,7 @@ const CROWD: f64 = FEW * LONGEST / (2.0 * SAME);
 /// Bursts that repeat impacts.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Echoes {
-    /// Their places in the list of bursts, in order.
+    /// Their indices in the list of bursts, in order.
     pub places: Vec<usize>,
     /// Longest of their delays in s.
     pub delay: f64,

@@ -89,8 +89,8 @@ pub fn compare(
     Ok(())
 }
 
-/// A multiple of a fraction, as 2/2 of 1/1, counts where its phases scatter by less than this part of the
-/// scatter about the fraction itself.
+/// A multiple of a fraction, as 2/2 of 1/1, counts where its phases scatter by less than this fraction of
+/// the scatter about the fraction itself.
 const DOUBLED: f64 = 0.5;
 /// Most impacts, and most cycles, of a pattern.
 const LARGEST: usize = 8;
@@ -165,7 +165,7 @@ fn locking(cycles: &[f64], index: &[usize], part: f64) -> Locking {
 
 /// Rising edges of a reference channel, one a cycle.
 struct Reference {
-    /// Cycle that each rising edge begins, and its place in samples; at least two.
+    /// Number of the cycle that each rising edge begins, and its position in samples; at least two edges.
     edges: Vec<(usize, f64)>,
     /// Number of missing edges.
     missing: usize,
@@ -218,7 +218,7 @@ impl Reference {
     }
 }
 
-/// Phases of the places of a pattern in cycles: circular mean and standard deviation (Mardia 1972) on a
+/// Phases of the impacts of a pattern, in cycles: circular mean and standard deviation (Mardia 1972) on a
 /// circle of all cycles of the pattern.
 fn phases(cycles: &[f64], index: &[usize], pattern: PerCycle) -> Vec<Phase> {
     let length = pattern.cycles as f64;

@@ -221,14 +221,14 @@ pub fn count(times: &[f64], steps: &[f64], complete: bool) -> CountedImpacts {
     counted
 }
 
-/// Intervals are alike where they differ by less than this part of the shorter.
+/// Intervals are alike where they differ by less than this fraction of the shorter.
 const ALIKE: f64 = 0.1;
 /// Most impacts in one round of a pattern.
 const LONGEST: usize = 8;
 /// Fewest rounds of a pattern in a record.
 const SEEN: usize = 3;
-/// One unlike interval in a round of p makes 2/p of all neighbours unlike. A pattern needs this part of that
-/// number, as the ends of a record may lack one.
+/// One unlike interval in a round of p makes 2/p of all neighbours unlike. A pattern needs this fraction of
+/// that number, as the ends of a record may lack one.
 const UNLIKE: f64 = 0.8;
 
 /// Number of impacts after which all intervals repeat although neighbours differ, as for two impacts a cycle;
@@ -243,7 +243,7 @@ pub fn pattern(steps: &[f64]) -> Option<usize> {
     (2..=LONGEST).take_while(|p| steps.len() >= SEEN * p).find(repeats)
 }
 
-/// Times without the mean shift of each place in a pattern of `length` impacts: an even train.
+/// Times less the mean shift of each impact within a pattern of `length` impacts: an even train.
 pub fn evened(times: &[f64], length: usize) -> Vec<f64> {
     let rounds: f64 = times.windows(length + 1).map(|w| w[length] - w[0]).sum();
     let interval = rounds / (length * (times.len() - length)) as f64;

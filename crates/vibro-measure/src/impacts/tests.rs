@@ -351,7 +351,7 @@ fn an_envelope_that_rings_until_the_next_impact_has_them_all() {
     }
 }
 
-/// The hint of a refusal is tried: with it the impacts are found.
+/// Each hint of an error, when followed, finds the impacts.
 #[test]
 fn the_hints_of_a_refusal_find_the_impacts() {
     let plain = ImpactsOptions::default();
@@ -376,8 +376,8 @@ fn the_hints_of_a_refusal_find_the_impacts() {
     let hiss = trace((0..25_600).map(|_| noise.normal()).collect(), 25_600.0);
     let why = impacts(&hiss, &beside).unwrap_err().to_string();
     assert!(why.contains("another band"), "{why}");
-    // A pause longer than the period joins all impacts. Where a record has one impact alone, the hint does
-    // not blame the pause.
+    // A pause longer than the period joins all impacts. For a record with only one impact, the hint does not
+    // suggest a shorter pause.
     let long = ImpactsOptions { refractory: Some(0.1), ..plain.clone() };
     let why = impacts(&ringing(0.05, 0.0), &long).unwrap_err().to_string();
     assert!(why.contains("shorter pause"), "{why}");
@@ -474,15 +474,16 @@ fn the_fault_of_an_outer_race_is_found_in_the_band_in_which_it_rings() {
         println!("bearing {seed}: {} Hz ± {std}, {off:.2} std, {} impacts", found.frequency.value, found.n);
         answered += 1;
         within += usize::from(off < 2.0);
-        // A plausible wrong period, as of every second impact or of the shaft, is thousands of these away.
+        // A plausible wrong period, such as that of every second impact or of the shaft, is thousands of
+        // uncertainties away.
         assert!(off < 4.0, "{seed}: {:?} {:?}", found.frequency, found.findings);
     }
     // Of five, 4.75 within two standard uncertainties.
     assert!(answered >= 4 && within + 1 >= answered, "{answered} {within}");
 }
 
-/// A free decay of 9.6 Hz from a pluck, at several rates and dampings: its swings are no impacts, however
-/// they are searched.
+/// A free decay of 9.6 Hz after a pluck, for several sampling rates and damping ratios: no search takes its
+/// swings for impacts.
 #[test]
 fn the_swings_of_a_free_decay_are_no_impacts() {
     for (rate, zeta) in [(500.0, 0.01), (2000.0, 0.003), (2000.0, 0.03), (10_000.0, 0.02)] {

@@ -98,8 +98,8 @@ const REACH: usize = 4;
 /// Steps of the grid before the first line, and after the last.
 pub(super) const MARGIN: usize = REACH * STEPS;
 
-/// Least variance of the noise of a line, over that of the leakage there: no excitation is quite flat, and
-/// the covariance needs an inverse.
+/// Least variance of the noise of a line, over that of the leakage there: no excitation spectrum is quite
+/// flat, and the covariance matrix must have an inverse.
 const LEAST: f64 = 0.02;
 
 /// Noise of H1 over segments under a window. `h` is the function without leakage on a grid; the lines are at

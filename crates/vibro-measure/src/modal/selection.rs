@@ -12,7 +12,8 @@ use vibro_record::{Error, Result, Window, median};
 /// Most modes in one group: with more, the parameters outgrow the lines.
 const TOGETHER: usize = 6;
 
-/// First guesses of frequency in Hz and damping ratio for `peaks`, from place and half-power bandwidth.
+/// First guesses of frequency in Hz and damping ratio for `peaks`, from the line and the half-power
+/// bandwidth of each.
 fn starts(lines: &Measured, peaks: &[Peak]) -> Vec<(f64, f64)> {
     let start = |p: &Peak| (lines.frequency[p.at], p.width / (2.0 * lines.frequency[p.at]));
     peaks.iter().map(start).collect()
@@ -167,7 +168,7 @@ const APART: f64 = 0.25;
 /// A neighbour lower than this fraction of the highest peak of a group is left to the residual terms.
 const LOW: f64 = 0.05;
 
-/// Number of the best places of [`BESIDE_A_MODE`] at which a further mode is fitted.
+/// Number of the best distances of [`BESIDE_A_MODE`] at which a further mode is fitted.
 const TRIED: usize = 3;
 
 /// The best fit of a group with one more mode than `fit`, whether it shows a peak or not; `others` are
@@ -239,7 +240,7 @@ pub(super) fn complete(
             (group.peaks, *fit, sound) = (peaks, more, its);
             continue;
         }
-        // A mode that does not lower the criterion leaves the uncertainties as they are.
+        // A further mode that does not lower the criterion does not change the uncertainties.
         if better <= 0.0 {
             break;
         }

@@ -279,7 +279,7 @@ mod curved {
         );
     }
 
-    /// With both exponents alike the same balance holds for any; with those of spring and damper the contact
+    /// With equal exponents of any size the same balance holds; with those of spring and damper the contact
     /// is that of [`KelvinVoigt`]; a spring that yields keeps the part R² of its energy.
     #[test]
     fn other_exponents_and_a_yielding_spring_balance_the_energy() {

@@ -301,7 +301,8 @@ fn without_the_low_pass_that_is_there_nothing_is_stated() {
     let without = fitted(None).unwrap();
     assert!(nothing(&without), "{without:?}");
     assert!(says(&without, "pulse-low-pass-missing"), "{:?}", without.findings);
-    // A stated corner that is far too high is as bad as none, above half the sampling rate as below.
+    // A stated corner that is far too high gives no more values than none, both above and below half the
+    // sampling rate.
     let beyond = fitted(Some(600e3)).unwrap();
     assert!(nothing(&beyond), "{:?} {:?}", beyond.xi, beyond.findings);
     let high = fitted(Some(450e3)).unwrap();

@@ -184,9 +184,9 @@ fn oscillator(f: f64, natural: f64, zeta: f64) -> Complex64 {
     Complex64::new(1.0 - r * r, 2.0 * zeta * r).inv()
 }
 
-/// A mass that strikes a stop moves as one on a stiffer spring, until it lets go near the resonance without
-/// the stop. There the amplitude is at most halved, and the curve falls steeply afterwards, but the phase
-/// reverses.
+/// A mass that strikes a stop moves as if on a stiffer spring. Near its resonance without the stop it no
+/// longer reaches the stop. There the amplitude is at most halved, and the curve falls steeply afterwards
+/// anyway, but the phase reverses.
 #[test]
 fn a_motion_that_turns_round_within_a_step_has_jumped() {
     let f: Vec<f64> = (16..27).map(f64::from).collect();

@@ -21,7 +21,7 @@ use crate::mean::{average, mixture};
 use crate::residuals::{student, widened};
 use nalgebra::{DMatrix, DVector};
 
-/// One flight: its place in the train, and the logarithm of its time in s.
+/// One flight: its index in the train, and the logarithm of its time in s.
 #[derive(Clone, Copy)]
 pub(super) struct Flight {
     pub place: usize,

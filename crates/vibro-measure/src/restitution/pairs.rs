@@ -302,7 +302,8 @@ impl Pairs<'_> {
     /// Log-likelihood of the first two impacts with the restitution `r`.
     fn begin(&self, (i, j): (usize, usize), (any, rest): (f64, f64), log_r: f64, r: f64) -> f64 {
         let flight = self.flight(i, j);
-        // Evenly spaced sounds are found whatever their intervals, so that they do not pass for bounces.
+        // This limit does not hold for evenly spaced sounds: they must be found, so that they do not pass
+        // for bounces.
         let shrinks = log_r <= LARGEST.ln();
         if shrinks && self.sounds.len() > CLEAN && flight < LOWEST * r {
             return f64::NEG_INFINITY;

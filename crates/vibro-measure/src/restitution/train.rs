@@ -26,7 +26,7 @@ impl Train {
     /// Least height of a bounce that counts, over the median height of the sounds.
     pub const THRESHOLD: f64 = 0.02;
 
-    /// Code of a refusal: the record has sounds of bounces, but does not determine which are those of one
+    /// Code of the error for a record with sounds of bounces that does not determine which are those of one
     /// body.
     pub const UNTOLD: &str = "bounces-untold";
 
@@ -172,7 +172,8 @@ fn rivalled(train: &Plausible, sounds: &[Sound]) -> Option<String> {
     })
 }
 
-/// Findings on the sounds beside a train, `other` of which are neither before it nor its echoes.
+/// Findings on the sounds that do not belong to a train; `other` of them are neither before it nor its
+/// echoes.
 fn on_others(train: &Plausible, other: usize, sounds: &[Sound]) -> Vec<Finding> {
     let before = train.impacts[0];
     let of = |code, n: usize| (n > 0).then(|| Finding::note(code).count("n", n));

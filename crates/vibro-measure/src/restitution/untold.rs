@@ -32,7 +32,7 @@ pub(super) struct Untold {
 }
 
 impl Untold {
-    /// Adds to a refusal the first advice that finds the bounces when tried.
+    /// Adds to an error the first advice that finds the bounces when tried.
     pub fn advise(&self, refused: Error, read: Read<'_>) -> Error {
         if let Some(threshold) = self.threshold(read) {
             return refused

@@ -183,7 +183,7 @@ fn amplitude_phase_and_receptance_are_covered() {
 #[test]
 fn a_transient_is_left_out_and_what_has_not_settled_is_doubted() {
     let mut noise = Noise::new(1);
-    // τ = 1/(ζω) = 0.27 s: after 4 s it is 3e-7 of what it was.
+    // τ = 1/(ζω) = 0.27 s: after 4 s the transient has decayed to 3e-7.
     let found = response_of(&[step(25.0, 8.0, 5.0, (1e-3, &mut noise))]);
     let point = &found.points[0];
     let error = (point.amplitude.value / (3.0 * receptance(25.0).norm()) - 1.0).abs();

@@ -131,7 +131,7 @@ fn the_tone_beside_which_another_is_left_has_no_uncertainty() {
     let all = [&doubtful.frequency, &doubtful.amplitude, &doubtful.phase];
     assert!(all.iter().all(|e| e.std.is_none()), "{found:?}");
     assert!(found.findings.iter().any(|f| f.code == "sine-not-alone"), "{found:?}");
-    // With all three fitted, no sine is left beside any.
+    // With all three fitted, the residual has no sine near any of them.
     let found = tones(&trace, 3).unwrap();
     assert!(found.tones.iter().all(|t| t.frequency.std.is_some()), "{found:?}");
 }
