@@ -1,4 +1,4 @@
-//! Keeps the steps of a sweep that can be evaluated: a bad record loses only itself.
+//! Keeps the steps of a sweep that can be evaluated: a bad record is left out, the others stay.
 
 use std::path::PathBuf;
 use vibro_record::{Error, Finding, Result};

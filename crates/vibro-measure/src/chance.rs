@@ -1,9 +1,10 @@
-//! Probabilities and quantiles of the distributions that estimators and tests here follow, from statrs.
+//! Probabilities and quantiles of the normal, χ² and Student distributions, from statrs.
 
 use statrs::distribution::{ChiSquared, Continuous, ContinuousCDF, Normal, StudentsT};
 
-/// Mean of a standard normal variable that is known to lie beyond `a`: its density over the probability,
-/// from 3 on by the continued fraction of Abramowitz & Stegun 26.2.14, which does not underflow.
+/// Mean of a standard normal variable that is known to exceed `a`: density φ(a) over tail probability Q(a).
+/// Above 3 it is computed by the continued fraction of Abramowitz & Stegun 26.2.14, which does not
+/// underflow.
 pub(crate) fn normal_beyond(a: f64) -> f64 {
     if a > 3.0 {
         return (1..60).rev().fold(a, |tail, k| a + f64::from(k) / tail);

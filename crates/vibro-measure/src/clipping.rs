@@ -5,10 +5,11 @@ use nalgebra::{Matrix3, Vector3};
 use num_complex::Complex64;
 use std::f64::consts::{PI, TAU};
 
-/// Places of clipped samples, which lie at the largest or the smallest value. For a sine of this `period` in
-/// samples with noise of few converter steps, an end is clipped where the fitted sine goes beyond it. For
-/// another signal an end is clipped where samples rest on it longer than a crest of this period stays within
-/// three steps, or where more samples lie at the end than a crest puts there beside those one step away.
+/// Indices of clipped samples, which all have the largest or the smallest value (an end). `period` is that
+/// of the signal in samples. A sine with noise of few converter steps is clipped at an end if the fitted
+/// sine exceeds this end. Any other signal is clipped at an end in two cases: samples stay there longer than
+/// a crest of this period stays within three steps, or the end has more samples, compared with the step next
+/// to it, than a crest puts there.
 pub fn clipped(values: &[f64], period: f64) -> Vec<usize> {
     let (low, high) =
         values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)));
@@ -33,20 +34,20 @@ pub fn clipped(values: &[f64], period: f64) -> Vec<usize> {
         runs.into_iter().any(|run| crest(run.len() - 1) > 3.0 * step)
     };
     let crowds = |end: f64| {
-        // The end, and the step next to it.
+        // Samples at the end, or one step from it.
         let near = |v: &&f64| (**v - end).abs() <= 1.5 * step;
         let (at, near) = (at(end) as f64, values.iter().filter(near).count() as f64);
         let beside = near - at;
         // The crest of a rounded sine puts 2.4 times as many samples in the last step as in the one before.
-        // More than three times as many are clipped, with four standard deviations for chance: at − 3 beside
-        // has the variance at + 9 beside.
+        // More than three times as many mean clipping. Four standard deviations allow for chance: `at − 3
+        // beside` has the variance `at + 9 beside` (Poisson).
         if rounded { at > 3.0 * beside + 4.0 * (at + 9.0 * beside).sqrt() } else { at > 2.0 }
     };
     let ends: Vec<f64> = repeated.into_iter().filter(|end| rests(*end) || crowds(*end)).collect();
     (0..values.len()).filter(|i| ends.contains(&values[*i])).collect()
 }
 
-/// Number of different values over all, below which values are rounded.
+/// Distinct values over all values; below this fraction the values were rounded to converter steps.
 const UNROUNDED: f64 = 0.8;
 
 /// Largest standard deviation of the residuals of a sine, in converter steps: with more, the values are no
@@ -57,23 +58,23 @@ const NOISE: f64 = 3.0;
 const FAR: f64 = 100.0;
 /// Smallest standard deviation of the noise in steps: a fit of rounded values is off by as much.
 const LEAST: f64 = 0.05;
-/// Number of phases that are distinguished. Errors of rounding depend on the phase and repeat with it; noise
-/// of σ steps leaves e^(−2π²σ²) of this (Widrow & Kollár, Quantization Noise, 2008).
+/// Number of bins of the phase of the sine. Rounding errors repeat with the phase. Noise of σ steps reduces
+/// this repetition to e^(−2π²σ²) (Widrow & Kollár, Quantization Noise, 2008).
 const PHASES: usize = 1024;
-/// Largest harmonic of the residuals, in steps, apart from noise: half of what an end hides, so that it moves
-/// no crest past an end.
+/// Largest second or third harmonic of the residuals beyond noise, in steps. It is half of the half step
+/// that rounding hides at an end, so that no such harmonic moves a crest past an end.
 const SLIGHT: f64 = 0.25;
-/// Most rounds: each reduces the error to the part of the samples that lie at the ends.
+/// Most iterations; each multiplies the error by the fraction of samples that lie at the ends.
 const ROUNDS: usize = 30;
-/// Standard uncertainties by which the sine is lowered before it may go beyond an end.
+/// Number of its standard uncertainties by which the fitted sine must exceed an end.
 const SURE: f64 = 3.0;
 /// Least logarithm of the likelihood ratio of a clipped end, ln 10⁶: chance exceeds it in fewer than one of
-/// 10⁶ cases (Markov), and a dozen values may be the end.
+/// 10⁶ cases (Markov's inequality).
 const RATIO: f64 = 13.8;
 
-/// Ends that the fitted sine goes beyond, so that samples there are clipped. The fit uses all samples; those
-/// at an end state only that the sine was there or beyond (Tobin, Econometrica 26 (1958) 24, by expectation
-/// and maximization). `None` where the values are no sine with noise of few steps.
+/// Ends that the fitted sine exceeds, at which samples are therefore clipped. The fit is a censored
+/// regression: a sample at an end states only that the sine was there or beyond (Tobin, Econometrica 26
+/// (1958) 24, by expectation maximization). `None` if the values are not a sine with noise of few steps.
 fn passed(values: &[f64], period: f64, step: f64, ends: &[f64]) -> Option<Vec<f64>> {
     let n = values.len();
     let centre = 0.5 * (ends[0] + ends[ends.len() - 1]);
@@ -122,15 +123,15 @@ fn passed(values: &[f64], period: f64, step: f64, ends: &[f64]) -> Option<Vec<f6
     if sigma > NOISE || [2.0, 3.0].into_iter().any(|k| harmonic(k) > shown) {
         return None;
     }
-    // Without the samples at the ends the others may not determine a sine: then no end is clipped.
+    // If the samples between the ends do not determine a sine, no end counts as clipped.
     let Some(kept) = normal(&kept).cholesky() else { return Some(Vec::new()) };
     let passes = |end: &&f64| {
         let ratio = |i: &usize| {
             let own = row(*i);
             let off = SURE * sigma * (own.dot(&kept.solve(&own)) * repeats).sqrt();
             let over = side(*i) * (p.dot(&own) - y(*i)) - off;
-            // Probability that a value at this end or beyond lies within the step of the end; small where the
-            // sine goes beyond.
+            // Probability that a value known to lie at this end or beyond is within the step of the end. It
+            // is small where the sine exceeds the end.
             -(1.0 - above((0.5 - over) / noise) / above((-0.5 - over) / noise).max(1e-300)).max(1e-12).ln()
         };
         at.iter().filter(|i| values[**i] == **end).map(ratio).sum::<f64>() > RATIO * repeats
@@ -166,7 +167,8 @@ mod tests {
         assert!(clipped(&[1.0; 50], 10.0).is_empty());
     }
 
-    /// The crests of a sum of two sines are cut for a sample or two: too short to see by their length.
+    /// Clipping cuts a crest of the sum for only one or two samples. Their number shows it, not their
+    /// duration.
     #[test]
     fn sums_of_fast_sines_are_clipped_where_many_samples_share_the_end() {
         let sum = |i: i32| {
@@ -181,13 +183,13 @@ mod tests {
         }
     }
 
-    /// A sine in steps of the converter, with noise; with `cut`, clipped at this part of its amplitude.
+    /// A sine in steps of the converter, with noise; with `cut`, clipped at this fraction of its amplitude.
     /// Returns its samples and its period.
     fn stepped(noise: &mut Noise, amplitude: f64, cut: Option<f64>) -> (Vec<f64>, f64) {
         let periods = noise.between(8.0, 200.0);
         let exact = noise.between(0.0, 1.0) < 0.5;
         let whole = |noise: &mut Noise, low: f64, high: f64| noise.between(low, high).floor();
-        // Half of the sines sample a few phases again and again.
+        // Half of the sines have a rational period: the same few phases are sampled again and again.
         let period = if exact {
             whole(noise, 8.0, 100.0) / whole(noise, 1.0, 4.0)
         } else {
@@ -202,9 +204,10 @@ mod tests {
         ((0..((periods * period) as usize).max(200)).map(value).collect(), period)
     }
 
-    /// Seeds of whole sines that are called clipped, and of sines clipped at 97 % that are missed. Misses
-    /// count from 20 steps of amplitude on, where the cut exceeds what rounding hides, where it changes 4 %
-    /// of the samples, and where 256 phases give the amplitude to 0.29·√(3/256) = 0.03 steps.
+    /// Seeds of unclipped sines that are reported as clipped, and of sines clipped at 97 % of their
+    /// amplitude that are missed. A miss counts only under three conditions. The amplitude is at least 20
+    /// steps, so that the cut exceeds the rounding. Clipping changes at least 4 % of the samples. At least
+    /// 256 phases occur, which give the amplitude to 0.29·√(3/256) = 0.03 steps.
     fn wrong(draws: u64) -> (Vec<u64>, Vec<u64>) {
         let draw = |seed: u64, cut: Option<f64>, least: f64| {
             let mut noise = Noise::new(seed);

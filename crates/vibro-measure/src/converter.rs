@@ -7,37 +7,37 @@ use vibro_record::lanes::{Survey, survey};
 /// Least range of an analogue trace, in steps: a switch has two values and no noise.
 const FINE: f64 = 32.0;
 
-/// Smallest difference between neighbours that is not 0: the step, where values are rounded; 0 where all are
-/// the same. Sorted values show it with the fewest of them.
+/// Smallest non-zero difference between neighbours, which is the step of rounded values; 0 if all are equal.
+/// Sorted values need the fewest samples to show it.
 pub(crate) fn step(values: &[f64]) -> f64 {
     let steps = values.windows(2).map(|w| (w[1] - w[0]).abs()).filter(|step| *step > 0.0);
     steps.min_by(f64::total_cmp).unwrap_or(0.0)
 }
 
-/// The step of a trace; 0 for one of a few levels, such as a switch.
+/// The converter step of a trace; 0 for a trace of few levels, such as a switch.
 pub(crate) fn analogue_step(values: &[f64]) -> f64 {
     let (Survey { low, high, .. }, step) = (survey(values), step(values));
     if step < (high - low) / FINE { step } else { 0.0 }
 }
 
 /// Standard deviation of rounding to a step q, q/√12 (Widrow & Kollár, Quantization Noise, 2008): the least
-/// noise of a trace. A stretch whose noise is below a step shows none.
+/// noise of a trace. A stretch with noise well below a step shows no scatter.
 pub(crate) fn rounding(step: f64) -> f64 {
     step / 12f64.sqrt()
 }
 
-/// Standard deviation of what rounding to a step q adds to the mean of a quiet stretch that scatters by
-/// `scatter`: the stretch does not show it. It is q/√12 in a flat stretch, and e^(−2π²σ²/q²) of that in noise
-/// σ, with the scatter √(σ² + q²/12) (Widrow & Kollár, 2008).
+/// Standard deviation of the error that rounding to a step q causes in the mean of a quiet stretch. The
+/// standard deviation `scatter` of the stretch does not show this error. It is q/√12 in a flat stretch, and
+/// e^(−2π²σ²/q²) times that with noise σ, for which `scatter` is √(σ² + q²/12) (Widrow & Kollár, 2008).
 pub(crate) fn hidden(scatter: f64, step: f64) -> f64 {
     let noise = (scatter.powi(2) - rounding(step).powi(2)).max(0.0);
     if step > 0.0 { rounding(step) * (-2.0 * (PI / step).powi(2) * noise).exp() } else { 0.0 }
 }
 
-/// Largest standard deviation of noise that a stretch of `n` values with this `scatter` may conceal; 0 where
-/// the scatter shows its noise, from q/√12 on. Of noise σ about the middle of a step q, 2Φ(−q/2σ) of the
-/// values leave the step: these are scatter²/q² of them and, at 95 %, at most 3/n more (Hanley &
-/// Lippman-Hand, If nothing goes wrong, is everything all right?, 1983).
+/// Largest noise, as a standard deviation, that rounding may conceal in a stretch of `n` values with this
+/// `scatter`. It is 0 if `scatter` is q/√12 or more and so shows the noise. Noise σ about the middle of a
+/// step q moves the fraction 2Φ(−q/2σ) of the values out of the step. This fraction is scatter²/q² and, at
+/// 95 %, at most 3/n more (Hanley & Lippman-Hand, If nothing goes wrong, is everything all right?, 1983).
 pub(crate) fn concealed(scatter: f64, n: f64, step: f64) -> f64 {
     if step <= 0.0 || scatter >= rounding(step) {
         return 0.0;
@@ -61,7 +61,7 @@ mod tests {
         assert_eq!((step(&switch), analogue_step(&switch), step(&[2.0; 9])), (1.0, 0.0, 0.0));
     }
 
-    /// A plain oracle: the error of the mean of a rounded level, at levels all over a step.
+    /// Reference: the error of the mean of a rounded level, simulated for 200 levels within a step.
     #[test]
     fn a_mean_hides_less_of_its_rounding_in_more_noise() {
         for sigma in [0.0, 0.2, 0.3, 0.5] {
@@ -73,17 +73,18 @@ mod tests {
                 squares += (average(&values) - level).powi(2) / 200.0;
                 scatters += scatter(&values).powi(2) / 200.0;
             }
-            // The mean of 400 draws scatters by √(σ² + 1/12)/20 beside what is hidden; not at σ = 0.
+            // Besides the hidden error, the mean of 400 draws scatters by √(σ² + 1/12)/20, except at σ = 0.
             let chance = if sigma > 0.0 { scatters / 400.0 } else { 0.0 };
             let found = hidden(scatters.sqrt(), 1.0).powi(2);
-            // The exponential is that of the first harmonic of the error, which has 6/π² of the variance; and
-            // the scatter lacks what is hidden. A tenth and a third for chance.
+            // The exponential holds for the first harmonic of the error, which has 6/π² of the variance. The
+            // scatter lacks the variance of the hidden error. Margins for chance: 10 % and 30 %.
             let most = 1.1 * PI * PI / 6.0 * squares * (4.0 * PI * PI * squares).exp();
             assert!(found < most && squares < 1.3 * (found + chance), "{sigma}: {squares} {found}");
         }
     }
 
-    /// A plain oracle: draws of the noise that 100 flat values may conceal are flat in 1 of 20 cases.
+    /// Reference: with the noise that 100 flat values may conceal, 100 simulated values are flat in 1 of 20
+    /// cases.
     #[test]
     fn a_flat_stretch_conceals_noise_of_a_fifth_of_a_step() {
         let sigma = concealed(0.0, 100.0, 2.0);
@@ -94,7 +95,7 @@ mod tests {
         assert_eq!((concealed(0.6, 100.0, 2.0), concealed(0.0, 100.0, 0.0)), (0.0, 0.0));
     }
 
-    /// A plain oracle: the errors of a sine that meets its steps everywhere.
+    /// Reference: rounding errors of a sine, which are uniform within a step.
     #[test]
     fn rounding_scatters_by_a_step_over_the_root_of_twelve() {
         let errors: Vec<f64> =

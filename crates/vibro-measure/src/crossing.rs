@@ -30,15 +30,15 @@ pub struct Crossing {
     pub frequency: f64,
     /// Standard uncertainty of the frequency in Hz; `None` where that of an amplitude is not known.
     pub frequency_std: Option<f64>,
-    /// Whether the second curve is the larger one above.
+    /// Whether the second curve is the larger one above this frequency.
     pub second_above: bool,
 }
 
-/// Where two curves over frequency cross. Each is given by its points in any order;
-/// between its points it is a straight line in the logarithm, but not across a jump of its own.
+/// Crossings of two curves over frequency. Each curve is given by its points in any order. Between them its
+/// logarithm is interpolated linearly, except across a jump of its own.
 ///
-/// The uncertainty is propagated from the amplitudes through the interpolation. Where the curves change
-/// places at a jump, the crossing is that jump: it lies anywhere between the two points of the jump with
+/// The uncertainty is propagated from the amplitudes through the interpolation. Where the curves cross by a
+/// jump of one of them, the crossing is that jump: it lies anywhere between the two points of the jump with
 /// equal probability.
 pub fn crossings(mut first: Vec<Point>, mut second: Vec<Point>, jumps: &[Jump]) -> Vec<Crossing> {
     first.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -69,15 +69,15 @@ pub fn crossings(mut first: Vec<Point>, mut second: Vec<Point>, jumps: &[Jump]) 
             let (low, high) = (&w[0], &w[1]);
             let (width, turn) = (high.0 - low.0, low.1 - high.1);
             let second_above = high.1 > 0.0;
-            // A jump belongs to the stretch that holds more than half of its width: both masses seldom have
-            // quite the same frequencies.
+            // A jump counts for the interval that holds more than half of its width: the two curves seldom
+            // have points at exactly the same frequencies.
             let spans = jumps.iter().map(Jump::span);
             let own = spans.filter(|j| j.1.min(high.0) - j.0.max(low.0) > 0.5 * (j.1 - j.0));
             if let Some(jump) = own.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1))) {
                 let frequency_std = Some((jump.1 - jump.0) / f64::sqrt(12.0));
                 return Crossing { frequency: f64::midpoint(jump.0, jump.1), frequency_std, second_above };
             }
-            // Derivatives of the crossing by the two logarithms.
+            // Derivatives of the crossing's frequency with respect to the log ratios at both ends.
             let slopes = [-width * high.1 / (turn * turn), width * low.1 / (turn * turn)];
             let mut variance = 0.0;
             for (which, curve) in curves.iter().enumerate() {

@@ -23,12 +23,12 @@ use vibro_record::{Error, Finding, Result, Trace};
 
 /// Least amplitude of a steady line that is reported, over the strongest amplitude.
 const SEEN: f64 = 0.01;
-/// Largest number of stretches, and the least decay within one, in natural logarithms.
+/// Largest number of stretches, and the least decay within one (logarithm of the amplitude ratio).
 const STRETCHES: (usize, f64) = (5, 1.2);
-/// Probability with which the levels of a mode of constant damping seem to change.
+/// False-alarm probability of the test whether the damping of a mode changes with its amplitude.
 const CHANGED: f64 = 1e-3;
-/// Largest relative standard uncertainty of the damping ratio of a stretch that counts: the ratio is then
-/// more than three of them above 0.
+/// Largest relative standard uncertainty of ζ with which a stretch counts: ζ is then more than three
+/// standard uncertainties above 0.
 const KNOWN: f64 = 0.3;
 
 /// Modes of the free decay that a record holds.
@@ -58,7 +58,7 @@ pub fn decay(trace: &Trace, options: &DecayOptions) -> Result<DecayResult> {
                 .setting("band")
         })?;
         let loss = group.sines[m].decay;
-        // The part is as long as the strongest mode is seen, and no longer.
+        // The part ends where the strongest mode has decayed by [`ENOUGH`].
         let wanted = (part.start + (part.len() as f64 * ENOUGH / loss.max(0.1)) as usize).min(limit);
         let change = wanted.max(part.start + 3 * block) as f64 - part.end as f64;
         // A change of less than a tenth is not worth another fit.
@@ -117,7 +117,7 @@ impl Sines {
         })
     }
 
-    /// The modes that were asked for, and the place of the strongest. Lines that do not decay are no modes.
+    /// The modes within the band, and the index of the strongest. Lines that do not decay are not modes.
     fn modes(
         &self,
         trace: &Trace,
@@ -156,7 +156,7 @@ impl Sines {
         Ok((modes, largest))
     }
 
-    /// The refusal where the strongest line does not decay.
+    /// Error for a record whose strongest line does not decay.
     fn steady(&self, group: &SineGroup, m: usize) -> Error {
         let Damped { periods, decay, .. } = group.sines[m];
         let lost = -(-decay).exp_m1();
@@ -176,7 +176,7 @@ impl Sines {
     /// The strongest mode in stretches of equal length, and its damping ratio from the decrement of their
     /// amplitudes.
     fn levels(&self, part: &[f64], start: f64, unit: &'static str) -> (Vec<Level>, Option<Estimate>) {
-        // A mode fitted together with others is not known well enough to be followed alone.
+        // A mode that is fitted together with others is too uncertain to be followed on its own.
         let alone = self.strongest().filter(|(group, _)| group.sines.len() == 1);
         let Some(own) = alone.map(|(group, m)| group.sines[m]) else { return (Vec::new(), None) };
         let stretches =
@@ -214,7 +214,7 @@ impl Sines {
     }
 }
 
-/// A sine of a part of `n` samples as a mode.
+/// The mode of sine `m` in a part of `n` samples.
 fn mode(group: &SineGroup, m: usize, n: usize, rate: f64, unit: &'static str) -> DecayMode {
     let sine = group.sines[m];
     let duration = n as f64 / rate;
@@ -248,7 +248,7 @@ fn mode(group: &SineGroup, m: usize, n: usize, rate: f64, unit: &'static str) ->
     }
 }
 
-/// Whether frequency and damping depend on the amplitude: χ² of both about their weighted means.
+/// A finding if frequency or damping depend on the amplitude: χ² of both about their weighted means.
 fn changed(levels: &[Level]) -> Option<Finding> {
     let spread = |of: &dyn Fn(&DecayMode) -> &Estimate| {
         let known =

@@ -1,15 +1,16 @@
 //! Hammer drills: a laser on the striker or the bit, and a pulse once a turn of the crank.
 //!
 //! The velocity is the signal of the laser times its sensitivity over cos α, α the angle between beam and
-//! motion. Edges of the reference cut the record into turns; phases are parts of a turn after the edge, which
-//! for a pulse at the upper end of the piston's stroke is the phase after top dead centre. Without a
-//! reference the turns run from impact to impact. Besides the channels a record takes 25 bytes a sample.
+//! motion. Edges of the reference cut the record into turns; a phase is the fraction of a turn after the
+//! edge. If the pulse comes at the upper end of the piston's stroke, this is the phase after top dead
+//! centre. Without a reference the turns run from impact to impact. Besides the channels, an analysis needs
+//! 25 bytes of memory a sample.
 //!
 //! ```
 //! use vibro_measure::drill::{AngleOrigin, Beam, DrillOptions, Edge, Slices, drill};
 //! let rate = 20_000.0;
 //! let turn = |i: u32| f64::from(i) / 400.0; // 50 turns a second
-//! // A volt is 2 m/s; 6 m/s before an impact that leaves −1 m/s, and back to the same place.
+//! // 1 V is 2 m/s; 6 m/s before an impact, −1 m/s after it, and no mean over a turn.
 //! // The pulse begins a turn.
 //! let speed = |s: f64| -1.0 + 7.0 * s - 5.0 * (std::f64::consts::PI * s).sin().powi(2);
 //! let volts: Vec<f64> = (0..20_000).map(|i| 0.5 * speed((turn(i) + 0.4).fract())).collect();
@@ -56,7 +57,7 @@ use train::TurnImpacts;
 use turns::{Turn, Turns};
 use vibro_record::{Error, Finding, Result, median};
 
-/// Turns of the excerpt, which is drawn as measured.
+/// Number of turns in the excerpt, which a figure shows as measured.
 const DRAWN: usize = 3;
 /// Parts into which a record without known turns is cut for the search for impacts.
 const PARTS: usize = 16;
@@ -66,12 +67,13 @@ const PARTS: usize = 16;
 pub struct Slices<'a> {
     /// Sampling rate in Hz.
     pub rate: f64,
-    /// Velocity, reference where the turns come from one, then up to three axes of a handle, in m/s²;
-    /// missing samples are NaN.
+    /// Signal of the laser; reference, only if the turns come from one; then up to three accelerations of a
+    /// handle in m/s². Missing samples are NaN.
     pub channels: Vec<&'a [f64]>,
 }
 
-/// Measures the turns and impacts of a drill; `still` is the velocity channel without motion.
+/// Measures the turns and impacts of a drill; `still` is the velocity channel of a record without motion,
+/// for the noise floor.
 ///
 /// # Errors
 /// If the parameters are impossible; if the velocity is constant or missing, or the same as the reference; if
@@ -136,7 +138,7 @@ pub fn drill_each(
     stroke.std = stroke.std.map(|std| std.hypot(lacking(&cycles.blunted, &groups, reach, rate)));
     let strongest = groups.first();
     let speeds: Vec<f64> = whole.iter().map(|t| rate / (t.end - t.start)).collect();
-    // Over-range makes speeds too small, and displacements with them: no uncertainty is stated.
+    // Over-range biases velocities low, and so displacements: no uncertainty is stated.
     let metres = |mean: Mean, method| {
         let known = mean.std.filter(|_| faults.clipped == 0);
         Estimate::new(mean.value, known, "m", mean.n, method).with_relative(options.clock)
@@ -199,7 +201,7 @@ fn moves(velocity: &ChannelStatistics) -> Result<()> {
     Err(error.hint("check that the laser sees the target").setting("velocity"))
 }
 
-/// Finding on the quantities, of which each is said to wander, that change slowly.
+/// Finding that names the quantities that change slowly; `quantities` has a flag for each.
 fn slow_changes(quantities: [(&str, bool); 4]) -> Option<Finding> {
     let slow = quantities.into_iter().filter(|(_, wanders)| *wanders).map(|(name, _)| name);
     let slow: Vec<&str> = slow.collect();
@@ -207,12 +209,12 @@ fn slow_changes(quantities: [(&str, bool); 4]) -> Option<Finding> {
     (!slow.is_empty()).then(changes)
 }
 
-/// Standard uncertainty in m of a stroke from its two losses: the smoothing, and the travel between an
-/// impact, which reverses the mass at once, and the nearer sample. `reach` in m/s is the largest velocity of
-/// the record.
+/// Standard uncertainty in m of a stroke from two losses: by the smoothing, and by the travel between an
+/// impact, which reverses the mass abruptly, and the nearest sample. `reach` in m/s is the largest velocity
+/// of the record.
 fn lacking(blunted: &[f64], groups: &[Group], reach: f64, rate: f64) -> f64 {
     let corner = |group: &Group| {
-        // An unknown velocity is no more than the largest of the record.
+        // The upper limit of an unknown velocity is the largest of the record.
         let known = |v: f64| if v.is_nan() { reach } else { v.abs() };
         let [before, after] = [&group.before, &group.after].map(|v| known(v.value));
         if before + after > 0.0 { before * after / (before + after) / rate } else { 0.0 }
@@ -260,7 +262,7 @@ impl Marks {
         Pulses { edges, missing: turns.missing, extra, pauses: turns.pauses, std: self.std / rate }
     }
 
-    /// Edges of a reference, in samples of the velocity, which is late by `delay` samples.
+    /// Edges of a reference, as positions in the velocity channel, which lags by `delay` samples.
     fn of_reference(
         reference: &[f64],
         velocity: &[f64],
@@ -280,11 +282,11 @@ impl Marks {
         Ok(Marks { std, sharp: edges.sharp, others: 0, at: edges.at })
     }
 
-    /// The impacts that follow each other at the period of their pattern.
+    /// The impacts that begin the turns: they follow each other at the period of their pattern.
     fn of_impacts(velocity: &[f64], states: &[State], options: &DrillOptions, rate: f64) -> Result<Marks> {
         // A turn is half the record at most.
         options.check_turn(0.5 * velocity.len() as f64 / rate)?;
-        // The largest jump of each part of the record decides which others count there.
+        // In each part of the record, the largest jump sets the threshold for all others.
         let part = velocity.len() as f64 / PARTS as f64;
         let parts = (0..PARTS).map(|k| (k, Turn { start: part * k as f64, end: part * (k + 1) as f64 }));
         let jumps = Jumps::of(velocity, states, options.lengths(rate), parts, None);
@@ -309,8 +311,8 @@ fn excerpt(turns: &[Turn], velocity: &[f64], reference: &[f64], delay: f64) -> (
 mod tests {
     use super::*;
 
-    /// v = −1.3 m/s + 5.5 m/s u^p with no mean: the displacement falls for the part (1.3/5.5)^(1/p) of a
-    /// turn, and its highest point is the impact.
+    /// v = −1.3 m/s + 5.5 m/s u^p with zero mean, where u is the fraction of a turn: the displacement falls
+    /// until u = (1.3/5.5)^(1/p), and its highest point is the impact.
     #[test]
     fn the_stroke_of_a_sharp_impact_lies_within_its_uncertainty() {
         let (back, range, f, rate) = (1.3, 5.5, 44.1, 40_000.0);
@@ -352,7 +354,7 @@ mod tests {
             assert!(edge.is_some_and(|i| i <= 1), "{edge:?} with a delay of {delay} s");
             found.impacts[5].phase
         };
-        // Five of 400 samples a turn.
+        // 5 samples of the 400 in a turn: 0.0125 turns.
         let (right, late) = (found(0, 0.0), found(5, 0.0));
         assert!((late - right - 0.0125).abs() < 1e-9, "{right} {late}");
         assert!((found(5, 5.0 / 20_000.0) - right).abs() < 1e-9);

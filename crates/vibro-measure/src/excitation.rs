@@ -14,8 +14,8 @@ pub struct Excitation {
     pub file: String,
     /// Frequency in Hz.
     pub frequency: f64,
-    /// Standard uncertainty of the frequency in Hz; `None` where it is not known, as beside another line that
-    /// shifts this one.
+    /// Standard uncertainty of the frequency in Hz; `None` if it is not known, for example near another line
+    /// that shifts this one.
     pub std: Option<f64>,
     /// Force amplitude in N; `None` where the frequency was given.
     pub force: Option<f64>,
@@ -90,8 +90,8 @@ fn largest(force: &[f64], window: Option<Window>, first: usize) -> std::result::
     if force[k] == 0.0 {
         return Err("the force spectrum is zero".into());
     }
-    // An offset ends with its lobe. A higher line here belongs to a sine nearer to 0 Hz, unless a cut-off
-    // excludes that sine.
+    // The lines of an offset end with its main lobe. A higher line here belongs to a sine nearer to 0 Hz,
+    // unless a cut-off excludes that sine.
     if !cut && force[first] > force[k] {
         return Err(format!(
             "the lines below line {first}, where a sine cannot be told from an offset, are higher than any above"
@@ -112,16 +112,16 @@ fn largest(force: &[f64], window: Option<Window>, first: usize) -> std::result::
     Ok(bent(found, force, k, window.zip(floor)))
 }
 
-/// Largest deviation of lines from the shape of a sine that noise explains, in standard deviations of one
-/// component.
+/// Largest deviation from the line shape of a sine that noise explains, in standard deviations of its real
+/// or imaginary part.
 const BY_NOISE: f64 = 5.0;
 /// Largest deviation from the shape of a sine, over its amplitude, whose effect can be stated as an
 /// uncertainty.
 const SMALL: f64 = 0.02;
 
 /// Widens the uncertainty of a line around `k` that deviates from the shape of one steady sine by more than
-/// noise, as where it drifts or another sine is near. The deviation shifts position and amplitude by about
-/// its part of the height. Where it is large, no uncertainty is stated.
+/// noise, for example because it drifts or another sine is near. A deviation of x times the height shifts
+/// the position by about x lines and the amplitude by about x. Where it is large, no uncertainty is stated.
 pub(crate) fn bent(line: SubLine, magnitudes: &[f64], k: usize, seen: Option<(Window, f64)>) -> SubLine {
     let off = seen.and_then(|(window, floor)| {
         deviation(magnitudes, k, 2, window).filter(|off| *off > BY_NOISE * floor)

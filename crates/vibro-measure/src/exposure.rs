@@ -9,11 +9,11 @@ use vibro_signal::fft::Transform;
 
 /// Corners of the band limitation in Hz (ISO 5349-1:2001, table A.1).
 const BAND: [f64; 2] = [6.310, 1258.9];
-/// Quality of both corners. Table A.1 prints 0.71; table A.2 of the standard was made with 1/√2.
+/// Quality factor of both corners. Table A.1 prints 0.71; table A.2 of the standard was made with 1/√2.
 const BAND_Q: f64 = std::f64::consts::FRAC_1_SQRT_2;
 /// Transition from acceleration to velocity in Hz (the same table).
 const TRANSITION: f64 = 15.915;
-/// Quality of the transition (the same table).
+/// Quality factor of the transition (the same table).
 const TRANSITION_Q: f64 = 0.64;
 /// Lowest sampling rate in Hz: four times the upper corner, so that the weighting has room to fall.
 const LOWEST_RATE: f64 = 4.0 * 1258.9;
@@ -22,7 +22,7 @@ const SPAN: f64 = 1.0;
 /// Duration in s after which the weighting has settled: its slowest pole falls by e^(−π √2 · 6.31 · t), e⁻¹⁴
 /// in this time.
 const SETTLED: f64 = 0.5;
-/// Least length of the parts that are weighted at once, in [`SETTLED`].
+/// Least length of the parts that are weighted at once, in multiples of [`SETTLED`].
 const PART: usize = 16;
 
 /// The weighting at a frequency in Hz, by the formula of the standard: high-pass, low-pass, transition from
@@ -40,20 +40,21 @@ pub fn weighting(frequency: f64) -> Complex64 {
 struct WeightedAxis {
     /// Mean square in m²/s⁴.
     mean_square: f64,
-    /// Mean square of each whole second.
+    /// Mean square of each whole second, in m²/s⁴.
     seconds: Vec<f64>,
-    /// Largest weighted value.
+    /// Largest weighted value, in m/s².
     peak: f64,
-    /// Largest unweighted deviation from the mean.
+    /// Largest unweighted deviation from the mean, in m/s².
     unweighted_peak: f64,
     /// Evaluated duration in s.
     duration: f64,
 }
 
 /// Weights accelerations by the formula of the standard at each spectral line of overlapping parts: no
-/// frequency is warped at any sampling rate. Before the record is its first value, so that an offset of the
-/// sensor is no shock; behind it, its mirror image about the last value fades to the first. [`SETTLED`] is
-/// left out at either end of a part, where the transform joins its ends.
+/// frequency is warped at any sampling rate. The first value is continued before the record, so that an
+/// offset of the sensor is not a shock. After the record follows its mirror image about the last value,
+/// faded to the first value. [`SETTLED`] is left out at both ends of a part, because the transform treats
+/// the part as periodic.
 ///
 /// # Errors
 /// If the rate is below four times the upper corner of the weighting.

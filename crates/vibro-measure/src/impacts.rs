@@ -1,9 +1,9 @@
 //! Impacts in a trace: a contact circuit, or any signal that jumps at each of them.
 //!
-//! One pipeline: [`detect`] removes mains hum and times each burst above the noise once, its ringing
-//! included, to less than a sample. [`impacts`] numbers the impacts, allowing for missed and doubled ones,
-//! fits their mean interval, and compares them with the excitation. Assumptions and doubts are in
-//! [`Impacts::findings`].
+//! One pipeline: [`detect`] removes mains hum, takes each burst above the noise with its ringing as one
+//! impact, and times it to less than a sample. [`impacts`] numbers the impacts, allowing for missed and
+//! doubled ones, fits their mean interval, and compares them with the excitation. Assumptions and doubts are
+//! in [`Impacts::findings`].
 
 mod background;
 mod bands;
@@ -31,7 +31,7 @@ use interval::{CountedImpacts, count, evened, pattern};
 use serde::Serialize;
 use vibro_record::{Error, Finding, Result, Severity, Trace, median};
 
-/// Intervals that spread by less than this part of their median are regular.
+/// Intervals that spread by less than this fraction of their median are regular.
 pub const REGULAR: f64 = 0.05;
 
 /// Impacts of a trace.
@@ -40,7 +40,7 @@ pub const REGULAR: f64 = 0.05;
 pub struct Impacts {
     /// Number of impacts found.
     pub n: usize,
-    /// Mean time between impacts in s, missed ones counted.
+    /// Mean time between impacts in s; missed impacts are counted.
     pub interval: Estimate,
     /// Impacts a second.
     pub frequency: Estimate,
@@ -51,8 +51,8 @@ pub struct Impacts {
     /// Serial correlation of neighbouring intervals, without the part that a pattern repeats: −0.5 where
     /// onsets are noisy, 0 where intervals jitter.
     pub serial_correlation: Option<f64>,
-    /// Number of impacts after which the intervals repeat, where they differ within that pattern; null where
-    /// there is no pattern.
+    /// Number of impacts after which the intervals repeat, if they differ within this pattern; null without
+    /// a pattern.
     pub pattern: Option<usize>,
     /// Number of impacts missing from intervals that are several times the others.
     pub missed: usize,
@@ -63,8 +63,8 @@ pub struct Impacts {
     pub excitation: Option<f64>,
     /// Impacts per excitation cycle; null where no fraction fits or no excitation is known.
     pub per_cycle: Option<PerCycle>,
-    /// Frequency in Hz by which the impacts miss the fraction of the excitation that they come near to; null
-    /// where they keep it, come near none, or no excitation is known.
+    /// Distance in Hz of the frequency of the impacts from the nearest simple fraction of the excitation.
+    /// Null if the impacts are locked to it, near no fraction, or no excitation is known.
     pub beat: Option<Estimate>,
     /// Whether impacts repeat: a fraction fits; or, without an excitation, intervals spread by less than 5 %
     /// about their mean, or about those of a pattern. Two impacts do not show it.
@@ -85,9 +85,9 @@ pub struct Impacts {
     pub findings: Vec<Finding>,
 }
 
-/// Finds the impacts of `trace`, their mean interval, and the pattern that they repeat. Where the whole
-/// record shows none or loses most in its noise, and no option states how to search, it searches further:
-/// sudden rises, as the sound of an impact has, then the envelope of the octave in which the impacts ring.
+/// Finds the impacts of `trace`, their mean interval, and the pattern that they repeat. Two further searches
+/// follow if the record shows none or most are lost in its noise, and no option states how to search: for
+/// sudden rises, as in the sound of an impact, then in the envelope of the octave in which the impacts ring.
 ///
 /// # Errors
 /// Where the trace has no sampling rate, missing or equal values, or fewer than two impacts; where the
@@ -115,15 +115,15 @@ pub fn impacts(trace: &Trace, options: &ImpactsOptions) -> Result<Impacts> {
     }
 }
 
-/// Whether the record swings as a vibration does. An envelope hides it: that of two beating modes looks like
-/// impacts.
+/// Whether the record is a vibration ([`Swings`]). Its envelope must not be searched: the envelope of two
+/// beating modes looks like impacts.
 fn rings(trace: &Trace) -> bool {
     let level = average(&trace.values);
     let values: Vec<f64> = trace.values.iter().map(|v| v - level).collect();
     trace.sampling_rate().is_ok_and(|rate| Swings::of(&values, rate, &[], 0.0).is_some())
 }
 
-/// Whether the impacts of such a further search are regular, mostly complete and without a doubt.
+/// Whether the impacts of a further search are regular, mostly complete and without a finding of doubt.
 fn repeats(found: &Impacts) -> bool {
     let steady = found.spread.is_some_and(|spread| spread < REGULAR * found.median_interval);
     let sure = found.findings.iter().all(|f| f.severity < Severity::Doubt);
@@ -146,8 +146,8 @@ fn ringing(trace: &Trace, options: &ImpactsOptions) -> Option<Impacts> {
     each.min_by(|a, b| a.0.total_cmp(&b.0)).map(|best| best.1)
 }
 
-/// Fewest sudden rises that show that they repeat: seven intervals within 5 % of their median, where chance
-/// brings one in ten.
+/// Fewest sudden rises that show repetition: their seven intervals lie within 5 % of the median, where at
+/// random one in ten does.
 const ENOUGH: usize = 8;
 
 /// Impacts that must be found for each one missed.
@@ -225,7 +225,7 @@ fn of_detected(trace: &Trace, options: &ImpactsOptions, detected: Detected) -> R
 
 /// Standard uncertainty of an interval from `n` onsets, widened for the fit of a pattern.
 fn widened(std: f64, n: usize, pattern: Option<usize>) -> f64 {
-    // The shift of each place of a pattern is fitted too, and costs a degree of freedom.
+    // The mean shift of each impact of a pattern is fitted too, and costs a degree of freedom.
     let free = |parameters: usize| n.saturating_sub(parameters) as f64;
     (free(2) / free(1 + pattern.unwrap_or(1))).sqrt() * std
 }
@@ -255,7 +255,7 @@ fn without_echoes(times: &mut Vec<f64>, heights: &mut Vec<f64>, findings: &mut V
     }
 }
 
-/// The refusal of bursts without a period; its advice leaves out what the options already do.
+/// Error for bursts without a period; its hint leaves out what the options already set.
 fn without_period(n: usize, options: &ImpactsOptions) -> Error {
     let refused = Error::refused(format!("{n} bursts whose intervals are irregular: no period is in them"));
     match (options.band, options.envelope) {
@@ -271,14 +271,14 @@ fn without_period(n: usize, options: &ImpactsOptions) -> Error {
     }
 }
 
-/// Pause that counts echoes with their impact, over their longest delay.
+/// Pause that joins echoes with their impact, over their longest delay.
 const PAUSE: f64 = 1.2;
 
 /// Fewest intervals that can show that they are irregular.
 const TELLING: usize = 12;
 
-/// Part of the intervals off every multiple of their median, above which they are irregular. Nine in ten
-/// random intervals are off, and in short records somewhat fewer.
+/// Share of the intervals off every multiple of their median, above which they are irregular. At random nine
+/// in ten are off, in short records somewhat fewer.
 const SCATTERED: f64 = 0.85;
 
 /// Whether no more intervals lie near a multiple of their median than by chance: within 5 % on either side

@@ -45,7 +45,7 @@ pub(super) const SIGMA: f64 = 4.0;
 /// A point of a response curve: excitation frequency in Hz, amplitude, and its standard uncertainty.
 pub type Point = (f64, f64, f64);
 
-/// Whether two amplitudes differ by more than noise. Unknown uncertainties count as none.
+/// Whether two amplitudes differ by more than noise. Unknown uncertainties count as 0.
 pub(super) fn differ(a: &Point, b: &Point) -> bool {
     let noise = [a.2, b.2].map(|s| if s.is_finite() { s } else { 0.0 });
     (a.1 - b.1).abs() > SIGMA * noise[0].hypot(noise[1])
@@ -133,7 +133,7 @@ pub(super) fn echo(curve: &[Point], other: &Jump) -> Option<Jump> {
         let std = across.2.hypot((1.0 + stretch) * near.2).hypot(stretch * far.2);
         (excess.abs() > SIGMA_OF_BOTH * std).then_some(excess)
     };
-    // Of a jump the two sides see an excess of opposite sign.
+    // At a jump, the excesses from the two sides have opposite signs.
     let outside = excess(a, b, c)? * excess(d, c, b)? < 0.0;
     let (before, after) = if other.direction == Direction::Up { (b, c) } else { (c, b) };
     outside.then(|| jump([before, after], other.direction))

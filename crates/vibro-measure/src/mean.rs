@@ -7,8 +7,8 @@ use std::f64::consts::PI;
 const FEWEST: usize = 4;
 /// Most cosines: the variance then has an uncertainty of 26 %, and more cosines gain little.
 const MOST: usize = 30;
-/// Least spectral density from the few cosines over that from neighbours alone, which rests on all values:
-/// chance explains a smaller one.
+/// Lower limit of the spectral density from the few cosines, relative to the density from neighbours
+/// ([`density`]), which uses all values. Chance explains a smaller one.
 const LEAST: f64 = 0.6;
 /// One-sided 99 % quantile of the normal distribution, in standard deviations.
 const SURE: f64 = 2.33;
@@ -23,7 +23,7 @@ pub(crate) fn average(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / values.len() as f64
 }
 
-/// Standard deviation; NaN of fewer than two.
+/// Standard deviation; NaN for fewer than two values.
 pub(crate) fn scatter(values: &[f64]) -> f64 {
     let mean = average(values);
     let squares: f64 = values.iter().map(|v| (v - mean).powi(2)).sum();
@@ -105,8 +105,8 @@ impl Mean {
 }
 
 /// Spectral density at frequency 0 of `n` values where only neighbours are correlated: γ₀ + 2γ₁, a positive
-/// γ₁ left out. `squares` is the sum of squares about the mean, `products` that of products of neighbours. 0
-/// where neighbours are clearly anticorrelated, as times between edges are.
+/// γ₁ left out. `squares` is the sum of squares about the mean, `products` that of products of neighbours.
+/// Returns 0 if neighbours are clearly anticorrelated, like intervals between edges.
 fn density(squares: f64, products: f64, n: f64) -> f64 {
     if products < -SURE * squares / n.sqrt() {
         return 0.0;
@@ -114,9 +114,9 @@ fn density(squares: f64, products: f64, n: f64) -> f64 {
     ((squares + 2.0 * products.min(0.0)) / n).max(0.0)
 }
 
-/// Mean density over `count` cosines, over that at frequency 0, of a first-order chain as correlated as the
-/// values; at most 1. And whether independent values are as correlated in more than 1 % of cases: their r is
-/// about −1/n ± 1/√n.
+/// Mean spectral density over `count` cosines, relative to that at frequency 0, for a first-order
+/// autoregressive series with the correlation of the values; at most 1. The second value tells whether
+/// independent values are as correlated in more than 1 % of cases: their r is about −1/n ± 1/√n.
 fn part(squares: f64, products: f64, n: f64, count: usize) -> (f64, bool) {
     let r = if squares > 0.0 { products / squares } else { 0.0 };
     let rho = (r + (1.0 + 3.0 * r) / n).clamp(0.0, CLOSEST);
@@ -155,8 +155,8 @@ mod tests {
         let values = [3.0, -1.0, 4.0, 1.5];
         let mean = Mean::of(&values);
         let squares: f64 = values.iter().map(|x| (x - 1.875f64).powi(2)).sum();
-        // A complete basis but for the constant: s²/n with 3 degrees of freedom, and √3 of Student's
-        // distribution.
+        // Three cosines and the constant are a complete basis: the variance is s²/n with 3 degrees of
+        // freedom. Student's distribution gives the factor √3.
         let expected = 3f64.sqrt() * (squares / 3.0 / 4.0).sqrt();
         assert!((mean.std.unwrap() / expected - 1.0).abs() < 1e-14, "{mean:?} {expected}");
         assert!((mean.value, mean.n) == (1.875, 4));
@@ -170,8 +170,8 @@ mod tests {
         assert_eq!(Mean::of(&[0.1; 50]).std.map(|s| s < 1e-16), Some(true));
     }
 
-    /// Parts of 2000 sequences, seed `n`, in %: whose ± 1.96 standard uncertainties cover the true mean 0,
-    /// and that are reported to wander.
+    /// Two shares of 2000 sequences (seed `n`) in %: those whose ±1.96 standard uncertainties cover the true
+    /// mean 0, and those that are reported to wander.
     fn coverage(n: usize, rho: f64) -> (f64, f64) {
         let mut noise = Noise::new(n as u64);
         let (mut inside, mut told) = (0, 0);
@@ -201,11 +201,12 @@ mod tests {
         ] {
             let (part, told) = coverage(n, rho);
             assert!((92.0..=98.0).contains(&part), "n = {n}, rho = {rho}: {part} %");
-            // Independent values seem to wander in 1 % of cases, which scatters by 0.2 %; four times that.
+            // Independent values are reported to wander in 1 % of cases, which scatters by 0.2 %; four times
+            // that.
             assert!(rho > 0.0 || told < 1.9, "n = {n}: {told} %");
         }
         // 20 or 60 values span too few correlation lengths of a chain of 0.9 to show its correlation: the
-        // coverage is the stated 83 % and 89 %, and most sequences are reported to wander. The part of 2000
+        // coverage is the stated 83 % and 89 %, and most sequences are reported to wander. The share of 2000
         // sequences scatters by 0.8 %, four times that.
         for (n, stated) in [(20, 83.0), (60, 89.0)] {
             let (part, told) = coverage(n, 0.9);

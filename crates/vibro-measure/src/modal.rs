@@ -87,7 +87,7 @@ pub fn modal(measured: &Measured, options: &ModalOptions) -> Result<ModalResult>
     Ok(ModalResult { modes, findings })
 }
 
-/// The refusal of a function without modes.
+/// Error for a function without modes.
 fn without_modes(options: &ModalOptions) -> Error {
     let refused = Error::refused("no peak of the function is supported as a mode");
     match options.band {
@@ -100,7 +100,8 @@ fn without_modes(options: &ModalOptions) -> Error {
 
 /// Gathers `unsupported` peaks, and findings on further peaks without a mode, in one finding.
 fn gather_noise(lines: &Measured, unsupported: &[Peak], findings: &mut Vec<Finding>) {
-    // The highest peaks without a mode keep a finding each. Further ones are noise, and share one finding.
+    // The [`NAMED`] highest peaks without a mode keep a finding each. Further ones are noise, and share one
+    // finding.
     let odd = |found: &Finding| found.get("frequency").filter(|_| found.code == "modal-peak-unsupported");
     let height = |f: &f64| lines.values[lines.frequency.partition_point(|line| line < f)].norm();
     let mut at: Vec<f64> = findings.iter().filter_map(odd).collect();
@@ -186,8 +187,8 @@ mod tests {
             let (of_k, of_f) = (k.std.unwrap() / k.value, mode.frequency.std.unwrap() / mode.frequency.value);
             assert!((of_k / (2.0 * of_f) - 1.0).abs() < 1e-9);
         }
-        // A mode of bandwidth 1.6 Hz has seven lines on 270° of its circle. That circle is exact but for the
-        // part of the other mode.
+        // A mode of bandwidth 1.6 Hz has seven lines on 270° of its circle. That circle is exact except for
+        // the contribution of the other mode.
         let circle = result.modes[0].by.iter().find(|b| b.method == "circle fit").unwrap();
         assert!((circle.frequency.value - 80.3).abs() < 0.02, "{circle:?}");
         assert!((circle.zeta.as_ref().unwrap().value / 0.01 - 1.0).abs() < 0.02, "{circle:?}");
@@ -221,7 +222,7 @@ mod tests {
         assert!(result.modes.iter().all(|m| m.modal_constant.value > 0.0));
     }
 
-    /// Two like modes half a bandwidth of 2 Hz apart show as one peak, and are two.
+    /// Two like modes with a bandwidth of 2 Hz, 1 Hz apart, show one peak and are found as two modes.
     #[test]
     fn a_peak_of_two_modes_is_two_modes() {
         let mut noise = vibro_math::Noise::new(3);
@@ -292,7 +293,8 @@ mod tests {
         measured.values.iter_mut().for_each(|v| *v = Complex64::new(v.norm(), 0.0));
         measured.magnitude_only = true;
         let result = found(&measured, &ModalOptions { band: Some((76.0, 85.0)), ..ModalOptions::default() });
-        // The other mode is no constant over the band: it bends by (4.5/130)² of itself.
+        // The contribution of the other mode is not constant over the band: its curvature is (4.5/130)² of
+        // it.
         assert!((result.modes[0].frequency.value - 80.3).abs() < 0.02, "{result:?}");
         assert!((result.modes[0].zeta.value / 0.01 - 1.0).abs() < 0.03, "{result:?}");
         assert!(says(&result, "modal-magnitudes-only"));

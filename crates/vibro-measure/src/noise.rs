@@ -81,18 +81,17 @@ fn rice_median(height: f64) -> f64 {
 /// Largest probability that the true amplitude lies above the limit.
 const MISSED: f64 = 0.05;
 
-/// The amplitude that a sine stays below with 95 % confidence, from the magnitude of its line and the noise
-/// of one component.
+/// Upper limit (95 % confidence) of the amplitude of a sine, from the magnitude of its line and the noise of
+/// one component.
 ///
 /// The magnitude is Rice distributed (S. O. Rice, Bell Syst. Tech. J. 24 (1945) 46). The limit ν solves P(M
 /// ≤ m | ν) = 0.05 P(M ≤ m | 0) (A. L. Read, J. Phys. G 28 (2002) 2693). The division keeps the limit from
 /// falling to 0 where noise happens to be small: it is never below 2.45 `noise`. The true amplitude lies
 /// above the limit in less than 5 % of all cases.
 ///
-/// These 5 % are of all readings, faint and strong. Where only faint readings get a limit, no more than 5 %
-/// of all readings still exceed theirs, but a strong sine that noise made faint exceeds its limit more
-/// often. `None` where one of the two is not a number, there is no noise, or the magnitude is above 20
-/// `noise`.
+/// These 5 % refer to all readings, faint and strong. If only faint readings get a limit, still no more than
+/// 5 % of all readings exceed it. But a sine whose reading is faint by chance exceeds its limit more often.
+/// `None` where one of the two is not a number, there is no noise, or the magnitude is above 20 `noise`.
 pub fn upper_limit(magnitude: f64, noise: f64) -> Option<f64> {
     let m = magnitude / noise;
     // Far above the noise no limit is needed, and the series below would be long.
@@ -210,8 +209,8 @@ mod tests {
         assert!(judged >= 66, "{judged} of 72");
     }
 
-    /// Number of cases (three places, these windows and levels) that state an uncertainty; asserts that it
-    /// is the scatter.
+    /// Number of cases (three positions between lines, these windows and levels) that state an uncertainty;
+    /// asserts that the observed scatter agrees with it.
     fn judged(windows: &[Window], decibels: &[i32]) -> u32 {
         let mut normal = Noise::new(0x5eed);
         let mut judged = 0;
@@ -258,7 +257,8 @@ mod tests {
 mod limits {
     use super::*;
 
-    /// Slow oracle: midpoint rule over the density x exp(−(x² + ν²)/2) I₀(xν), with I₀ as a mean over angles.
+    /// Slow reference: midpoint rule over the density x exp(−(x² + ν²)/2) I₀(xν), with I₀ as a mean over
+    /// angles.
     fn by_integration(m: f64, nu: f64) -> f64 {
         let (n, angles) = (2000, 64);
         let step = m / f64::from(n);
@@ -288,7 +288,7 @@ mod limits {
 
     #[test]
     fn limits_far_from_and_deep_in_the_noise() {
-        // exp(−ν²/2) = 0.05 where nothing is seen; the m²/8 of the next order is 1e-7.
+        // exp(−ν²/2) = 0.05 for a magnitude of 0; the m²/8 of the next order is 1e-7.
         assert!((upper_limit(0.0, 2.0).unwrap() / 2.0 - (2.0 * 20f64.ln()).sqrt()).abs() < 1e-5);
         // High above the noise the magnitude is normal about √(ν² + 1): 1.645 standard deviations, less 1/2ν.
         let m = 15.0;

@@ -6,11 +6,11 @@ use vibro_math::border;
 /// A maximum of a curve over frequency.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Vertex {
-    /// Frequency of the vertex.
+    /// Frequency of the vertex, in the unit of the points (Hz).
     pub frequency: f64,
     /// Its standard uncertainty.
     pub frequency_std: f64,
-    /// Height of the vertex.
+    /// Height of the vertex, in the unit of the points.
     pub height: f64,
     /// Its standard uncertainty.
     pub height_std: f64,
@@ -52,8 +52,8 @@ pub fn local_maxima(values: &[f64], ratio: f64) -> Vec<Maximum> {
 /// of a parabola through ln a, for the choice of curve; and h²/f for points h apart, for terms beyond the
 /// parabola. A mode itself bends it by half of that, (1 − r²)² = 4δ²(1 + δ + δ²/4) with δ = r − 1, and a
 /// zero or a mode at a distance d adds h²/d. Where a neighbour is below half of the middle point, the curve
-/// is not resolved: the answer is the middle point with an uncertainty of its place, and none (NaN) of its
-/// height.
+/// is not resolved: the answer is the middle point with an uncertainty of its frequency, and none (NaN) of
+/// its height.
 ///
 /// `None` where the middle point is not the highest.
 pub fn vertex(f: [f64; 3], a: [f64; 3], std: [f64; 3]) -> Option<Vertex> {
@@ -166,7 +166,7 @@ fn leaning(vertex: Vertex, f: [f64; 3], a: [f64; 3]) -> Vertex {
     }
 }
 
-/// Place and height of the vertex near point `i` with their uncertainties; `None` where the polynomial
+/// Position and height of the vertex near point `i` with their uncertainties; `None` where the polynomial
 /// through all points has no single vertex.
 fn fitted(points: &[Point], i: usize) -> Option<[(f64, f64); 2]> {
     let beside = (points[i - 1].0, points[i + 1].0);
@@ -334,8 +334,8 @@ mod apices {
         (Box::new(move |f| modes.at(f)), width)
     }
 
-    /// Fractions of the answers whose frequency, and whose height, lie within two standard uncertainties of
-    /// the truth.
+    /// Fractions of the answers with the frequency, and with the height, within two standard uncertainties
+    /// of the truth.
     fn covered(kind: Kind, noise: f64, points: usize) -> [f64; 2] {
         let mut normal = Noise::new(0x70b);
         let (mut within, mut n) = ([0u32; 2], 0u32);
@@ -391,7 +391,8 @@ mod apices {
         let a = f.map(|f| modes.at(f));
         let found = apex(&curve(&f, &a, &[0.0; 5]), 2).unwrap();
         let truth = 5.6 * f64::sqrt(1.0 - 2.0 * 0.02f64.powi(2));
-        // Rounding, over the fourth power of the spacing of the points, by the order of the polynomial.
+        // Rounding, divided by the fourth power of the spacing: the polynomial through five points is of
+        // fourth order.
         assert!((found.frequency - truth).abs() < 1e-11, "{}", found.frequency - truth);
         assert!(found.frequency_std < 1e-11);
     }

@@ -130,7 +130,7 @@ pub fn pulse(trace: &Trace, options: &PulseOptions) -> Result<PulseResult> {
     // A contact cannot return more energy than it took: ξ may be below 0 only by its uncertainty.
     let gains = result.xi.value + 2.0 * result.xi.std.unwrap_or(UNKNOWN) < 0.0;
     let onset = if filter.is_none() { "pulse-low-pass-missing" } else { "pulse-onset-unlike" };
-    // Reasons against spring and damper; they say nothing of a contact that follows another law.
+    // Reasons against spring and damper; they do not count for a contact that follows another law.
     let impossible = [gains.then(|| gained(&result)), widening.is_none().then(|| Finding::doubt(onset))];
     if gains || widening.is_none() {
         result = result.refused();
@@ -168,7 +168,7 @@ pub fn pulse(trace: &Trace, options: &PulseOptions) -> Result<PulseResult> {
     Ok(result)
 }
 
-/// Samples of a pulse above half its height.
+/// Number of samples of a pulse above half its height.
 ///
 /// # Errors
 /// If there are too few for a fit.

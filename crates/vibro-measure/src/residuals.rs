@@ -54,8 +54,8 @@ impl Whiteness {
         self.rejected_among(1)
     }
 
-    /// Whether white noise is rejected for one of `many` records tested: each may pass by chance, so the
-    /// level is divided by their number.
+    /// Whether white noise is rejected for one of `many` records tested. Each may be rejected by chance, so
+    /// the level is divided by their number (Bonferroni).
     pub fn rejected_among(&self, many: usize) -> bool {
         self.p_value.is_some_and(|p| p * (many as f64) < REJECTED)
     }

@@ -167,7 +167,7 @@ impl Curve<'_> {
         if rises { apex(&near, i - low) } else { None }
     }
 
-    /// Factor by which the points around the highest, `i`, scatter more than their uncertainties say; at
+    /// Factor by which the points around the highest, `i`, scatter more than their uncertainties state; at
     /// least 1. A force that varies from step to step moves points that are each correct.
     ///
     /// 1/a² of one mode is a parabola in f², and contact and other modes add a smooth part. So divided
@@ -195,7 +195,7 @@ impl Curve<'_> {
         }
     }
 
-    /// The maximum or minimum at point `i`. Its true place lies with equal chance anywhere between the
+    /// The maximum or minimum at point `i`. Its true frequency lies with equal chance anywhere between the
     /// points on its two `sides`.
     fn point(&self, i: usize, sides: [usize; 2], kind: ResonanceKind) -> Resonance {
         let (frequency, amplitude, _) = self.points[i];
@@ -238,7 +238,8 @@ impl Curve<'_> {
     }
 
     /// Standard uncertainty of the amplitude of a branch that ends in a jump beside point `i`: the slope
-    /// before the jump, extrapolated to the point on its other side, with that of the point itself.
+    /// before the jump, extrapolated to the point on its other side (uniform distribution), combined with
+    /// the uncertainty of the point itself.
     fn std_at_jump(&self, i: usize, jump: &Jump) -> Option<f64> {
         let (f, amplitude, std) = self.points[i];
         let behind = if (jump.from - f).abs() < (jump.to - f).abs() { jump.to } else { jump.from };
@@ -304,9 +305,9 @@ fn partner(curves: &[NamedCurve], i: usize) -> Option<&NamedCurve> {
     curves.iter().find(|c| c.mass != curves[i].mass && c.direction == curves[i].direction)
 }
 
-/// Gives each curve the jumps of the other mass, since a jump of one changes the motion of both: a step there
-/// that the curve's slopes do not predict is added to its jumps, and resonances are searched again with the
-/// jumps of both.
+/// Gives each curve the jumps of the other mass, since a jump of one mass changes the motion of both. A step
+/// there that the curve's slopes do not predict is added to its jumps. Then resonances are searched again
+/// with the jumps of both masses.
 pub fn share_jumps(curves: &mut [NamedCurve]) {
     for i in 0..curves.len() {
         let foreign = partner(curves, i).map_or_else(Vec::new, |other| other.jumps.clone());

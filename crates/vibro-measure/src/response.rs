@@ -1,4 +1,4 @@
-//! Response at the excitation, step by step (the job of the thesis' sinesw3).
+//! Response at the excitation, step by step, as the thesis' script sinesw3 computes it.
 
 mod result;
 mod steady;
@@ -64,8 +64,8 @@ pub fn answerable(mut sweep: Sweep, options: &ResponseOptions) -> Result<Sweep> 
 
 /// Takes the response curve of a sweep.
 ///
-/// Lines are interpolated in the spectrum of the measured signal: where the analyser divided by (2πf)ⁿ that
-/// is undone line by line, and the amplitude is divided by (2πf)ⁿ at the frequency found. So the slope of
+/// Lines are interpolated in the spectrum of the measured signal: a division by (2πf)ⁿ in the analyser is
+/// undone line by line. The amplitude is then divided by (2πf)ⁿ at the frequency found, so that the slope of
 /// 1/fⁿ over the lines of a peak does not bias the result.
 ///
 /// # Errors
@@ -156,8 +156,8 @@ pub(crate) fn read(
 }
 
 impl Response {
-    /// Finds jumps and resonances of the points as a curve. The direction is the one stated, else that of
-    /// the frequencies.
+    /// Finds jumps and resonances of the points as a curve. The direction is as stated, else it follows from
+    /// the order of the frequencies.
     pub(crate) fn curve(mut self, stated: Option<Direction>) -> Response {
         let Response { points, findings, fmin, mass, .. } = &mut self;
         let frequency: Vec<f64> = points.iter().map(|p| p.excitation).collect();
@@ -218,7 +218,7 @@ fn moved_by_force(points: &[ResponsePoint], direction: Direction, curve: &NamedC
     Some(finding.number("least", least).number("largest", largest))
 }
 
-/// The window is doubted where force lines deviate from its shape by more than this fraction of the largest
+/// The window is doubtful if force lines deviate from its shape by more than this fraction of the largest
 /// line (median over steps). A clean sine under Hann deviates more from the shape of any other window.
 const WRONG_SHAPE: f64 = 0.02;
 
@@ -243,7 +243,7 @@ pub(crate) fn wrong_window(sweep: &Sweep, excitations: &[Excitation], df: f64) -
     })
 }
 
-/// Caution where steps share a file or hold the same values: a name was typed twice.
+/// Caution if steps share a file or hold the same values: probably a name was typed twice.
 pub(crate) fn repeated(sweep: &Sweep) -> Option<Finding> {
     let points = &sweep.points;
     let same = |a: &SweepPoint, b: &SweepPoint| {

@@ -1,7 +1,7 @@
 //! Coefficient of restitution: speed of separation over speed of approach.
 //!
-//! Each method that the data allow gives its own answer. Where answers differ by more than their
-//! uncertainties, that is the result: nothing is averaged.
+//! Each method that the data allow gives its own answer. If answers differ by more than their uncertainties,
+//! the result is null and a finding reports it; nothing is averaged.
 
 mod drop;
 mod fit;
@@ -113,7 +113,8 @@ pub fn restitution(measured: &Measured) -> Result<Restitution> {
                 [first, .., last] => Some(1e-3 * (1.0 / last - 1.0 / first) / (t.intervals.len() - 1) as f64),
                 _ => None,
             };
-            // Without an answer by flight times there is no bias of it: both lists match.
+            // Without an answer by flight times no bias is added, so that `bias` and `by` have the same
+            // length.
             bias.extend(way.iter().map(|_| average(&trains.iter().filter_map(of).collect::<Vec<f64>>())));
             by.extend(way);
         }
@@ -173,7 +174,7 @@ fn widen_by_contact(
     }
 }
 
-/// The refusal where nothing that was measured gives restitution.
+/// Error for measurements from which no restitution follows.
 fn without_answer(measured: &Measured) -> Error {
     let none = if measured.trains.is_empty() {
         Error::usage("nothing from which restitution follows", "what was measured of an impact")
@@ -185,8 +186,8 @@ fn without_answer(measured: &Measured) -> Error {
     settings.into_iter().fold(none.hint(hint), Error::setting)
 }
 
-/// Longest contact in s for which uncertainties allow where none is stated or seen: longer than steel and
-/// most plastics touch.
+/// Longest contact in s that the uncertainties allow for if no contact time is stated or measured: longer
+/// than steel and most plastics touch.
 const LONGEST: f64 = 1e-3;
 
 /// Doubt about a drop where too many flights of a train are longer than its first.
@@ -196,8 +197,8 @@ fn grown(trains: &[Train]) -> Option<Finding> {
     Some(Finding::doubt("drop-flights-grow").count("n", n).count("train", train))
 }
 
-/// A soft ball touches this many times as long. Where that would move R by more than its uncertainty, a
-/// finding asks for the contact time.
+/// A soft ball may touch this many times longer than assumed. If that would change R by more than its
+/// uncertainty, a finding asks for the contact time.
 const LONG_CONTACT: f64 = 5.0;
 
 /// Contact time of an impact and its standard uncertainty in s: as stated, else the mean over the records

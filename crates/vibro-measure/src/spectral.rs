@@ -73,11 +73,11 @@ pub fn spectral(
     Ok(found)
 }
 
-/// Result of a spectrum that an instrument took. Its lines have no uncertainty, since a file does not say
-/// over how many segments they were averaged.
+/// Result for a spectrum that an instrument computed. Its lines have no uncertainty, since a file does not
+/// say over how many segments they were averaged.
 ///
 /// # Errors
-/// If options state how a spectrum is taken, or the values are levels without a reference.
+/// If options state how a spectrum is computed, or the values are levels without a reference.
 pub fn stored(spectrum: &Spectrum, options: &SpectralOptions) -> Result<SpectralResult> {
     options.check()?;
     let SpectralOptions { integrate, fmin, decibel, .. } = *options;

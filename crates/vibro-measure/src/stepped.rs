@@ -3,8 +3,8 @@
 //! The frequency is that of the force ([`sine`]). Both traces are cut into blocks of whole periods, in each
 //! of which a sine of that frequency and a mean are fitted by least squares (IEEE Std 1057, three
 //! parameters). The phasors of the response, relative to the phase of the force in the same block, do not
-//! drift with the force. They are averaged from the block on from which they are settled, and their scatter
-//! gives the uncertainty of amplitude, phase and receptance.
+//! drift with the force. They are averaged from the first settled block on, and their scatter gives the
+//! uncertainty of amplitude, phase and receptance.
 
 use super::answered::answered;
 use super::clipping::clipped;
@@ -27,7 +27,8 @@ use vibro_signal::spectrum;
 
 mod growth;
 
-/// Fewest periods of a step: as blocks, they leave four in its second half, the fewest with an uncertainty.
+/// Fewest periods of a step: as blocks of one period, they leave four in its second half, the fewest with an
+/// uncertainty.
 const PERIODS: f64 = 8.0;
 /// Periods of a block, the first that gives enough blocks: 12 hold whole periods of subharmonics up to the
 /// fourth.
@@ -328,7 +329,7 @@ struct Blocks {
     period: f64,
     /// Periods of a block.
     periods: usize,
-    /// Samples of the trace.
+    /// Number of samples of the trace.
     samples: usize,
 }
 

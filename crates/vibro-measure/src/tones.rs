@@ -50,7 +50,8 @@ const COLOURED: f64 = 1.5;
 /// Fewest and most lines on either side that give the noise at a sine; between these, half of its line
 /// number. Over that range 1/f² noise still changes threefold after the correction for 1/f.
 const AROUND: [usize; 2] = [15, 40];
-/// Distance in spectral lines from which the uncertainty for coloured noise covers what another sine does.
+/// Distance in spectral lines from which the uncertainty for coloured noise covers the effect of another
+/// sine.
 const FAR: f64 = 3.5;
 /// Largest neighbouring line, doubled and over the sine's amplitude, whose effect on the sine is known.
 const SMALL: f64 = 0.02;

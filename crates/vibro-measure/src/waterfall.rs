@@ -1,4 +1,4 @@
-//! All response spectra of a sweep as one matrix (the job of the thesis' sinesw).
+//! All response spectra of a sweep as one matrix, as the thesis' script sinesw computes it.
 
 use super::response::{Response, ResponseOptions};
 use ndarray::Array2;

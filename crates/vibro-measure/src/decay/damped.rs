@@ -117,7 +117,7 @@ impl SineGroup {
         }
         let largest = scale.iter().skip(2).copied().fold(f64::MIN_POSITIVE, f64::max);
         scale.extend([largest; REST]);
-        // A difference quotient moves one parameter, so the exponentials of all other sines are kept.
+        // A numerical derivative changes one parameter, so the exponentials of all other sines are kept.
         let known = RefCell::new(vec![([f64::NAN; 2], Vec::new()); starts.len()]);
         let residuals = |p: &[f64], out: &mut [f64]| {
             let (rest, mut known) = (&p[p.len() - REST..], known.borrow_mut());
@@ -157,7 +157,7 @@ fn sine(p: &[f64]) -> Damped {
     Damped { periods: p[0], decay: p[1], amplitude: Complex64::new(p[2], p[3]) }
 }
 
-/// Place of line `i` of `n`, from −1 to 1.
+/// Position of line `i` of `n`, scaled to −1 … 1.
 fn place(i: usize, n: usize) -> f64 {
     2.0 * i as f64 / (n - 1) as f64 - 1.0
 }
@@ -224,7 +224,7 @@ mod tests {
         let spectrum: Vec<Complex64> = (0..100).map(|k| truth.iter().map(|s| s.line(k, n)).sum()).collect();
         let group = SineGroup::fit(&spectrum, 30..52, n, &[(40.0, 2.0), (41.5, 2.0)]).unwrap();
         for (found, truth) in group.sines.iter().zip(&truth) {
-            // The Jacobian is of central differences, and steps end below 1e-8 of a line.
+            // The Jacobian is from central differences, and the fit ends at steps below 1e-8 of a line.
             assert!((found.periods - truth.periods).abs() < 1e-6 && (found.decay - truth.decay).abs() < 1e-5);
         }
         assert!(SineGroup::fit(&spectrum, 38..42, n, &[(40.0, 2.0), (41.5, 2.0)]).is_err());

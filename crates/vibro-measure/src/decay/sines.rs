@@ -22,12 +22,12 @@ const WORTH: f64 = 10.0;
 const PARTED: f64 = 1.5;
 /// Decay of the strongest mode over a part, in natural logarithms, after which further samples add nothing.
 pub(super) const ENOUGH: f64 = 6.0;
-/// A part this many times as long as its strongest mode is seen is cut before other modes are searched: a
-/// mode then has thousands of lines, which add nothing.
+/// A part that is this many times longer than its strongest mode is visible is cut before other modes are
+/// searched. Otherwise a mode would extend over thousands of lines, which add nothing.
 const LONG: f64 = 4.0;
 /// Standard uncertainties by which a decay must exceed 0.
 const SURE: f64 = 3.0;
-/// Least fall of the residual from one block to the next at the end of a contact.
+/// Least ratio of the residual's RMS values in two successive blocks at the end of a contact.
 const FALL: f64 = 6.0;
 /// Lines on either side whose median is the height of a broad mode.
 const BROAD: usize = 4;
@@ -40,13 +40,13 @@ pub struct Sines {
     /// here.
     band: Range<usize>,
     pub groups: Vec<SineGroup>,
-    /// Lines above the noise that no sine beside the known ones fits.
+    /// Lines above the noise that no further sine fits.
     pub odd: Vec<usize>,
 }
 
 impl Sines {
-    /// Finds the sines of a part, the strongest first. It stops after the strongest where the part is much
-    /// too long for it, and longer than [`LONG`] times `least` samples, or where it does not decay.
+    /// Finds the sines of a part, the strongest first. It stops after the strongest if that does not decay,
+    /// or if the part is much too long for it and longer than [`LONG`] times `least` samples.
     pub fn of(part: &[f64], rate: f64, options: &DecayOptions, least: usize) -> Sines {
         let n = part.len();
         let mean = average(part);
@@ -79,7 +79,8 @@ impl Sines {
             }
             sines.settle(&spectrum);
         }
-        // A line still above the noise beside a sine is beyond the stated number of modes, or is no sine.
+        // A line near a sine that is still above the noise is a mode beyond the requested number, or not a
+        // sine.
         let rest = sines.rest(&spectrum, None);
         let beside = |k: &usize| sines.groups.iter().any(|group| group.lines.contains(k));
         let left: Vec<usize> = sines.next(&rest, band.clone()).into_iter().filter(beside).collect();
@@ -226,8 +227,8 @@ impl Sines {
         }
     }
 
-    /// Samples at the beginning of a part in which another force acts, as in the contact of a blow: the
-    /// residual falls at once after it.
+    /// Number of samples at the beginning of a part in which another force acts, such as the contact of a
+    /// blow. The residual is large in them and falls abruptly afterwards.
     pub fn contact(&self, part: &[f64], block: usize) -> Option<usize> {
         let left = self.left(part);
         let levels = levels(&left, block);
@@ -254,7 +255,7 @@ fn range(sines: &[Damped], all: usize) -> Range<usize> {
     low..high.max(low + 2 * OWN * (sines.len() + 1)).min(all - 1)
 }
 
-/// Whether the decay of a sine is above 0 by more than its uncertainty explains.
+/// Whether the decay of a sine exceeds 0 by more than [`SURE`] standard uncertainties.
 pub fn decays(group: &SineGroup, m: usize) -> bool {
     group.sines[m].decay > SURE * group.std(m, [0.0, 1.0, 0.0, 0.0])
 }

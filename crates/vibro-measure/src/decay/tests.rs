@@ -77,7 +77,7 @@ fn codes(found: &DecayResult) -> Vec<&str> {
     found.findings.iter().map(|f| f.code.as_ref()).collect()
 }
 
-/// A record of one mode with 0.3 % of noise, changed.
+/// Result for a record of one mode with 0.3 % of noise, whose samples `change` modifies.
 fn changed_by(change: impl Fn(usize, f64) -> f64) -> Result<DecayResult> {
     let values = record(6000, 700, &[MODE], 0.003, &mut Noise::new(5));
     found(values.into_iter().enumerate().map(|(i, v)| change(i, v)).collect())
@@ -101,7 +101,7 @@ fn modes_near_and_far_are_parted() {
     }
 }
 
-/// The part is as long as the slow mode is seen, and the fast one ten and more lines wide in it.
+/// The part lasts as long as the slow mode is visible; the fast mode is ten and more lines wide in it.
 #[test]
 fn a_mode_that_is_over_long_before_another_is_found() {
     let mut normal = Noise::new(4);
@@ -156,7 +156,7 @@ fn a_motion_that_does_not_decay_is_refused() {
     assert!(with(|_| 1.0).contains("does not decay: its strongest line, 60.00"));
     assert!(with(|i| (3e-4 * i as f64).exp()).contains("periods of motion lie behind its largest value"));
     assert!(found(noise.clone()).unwrap_err().to_string().contains("no mode is above the noise"));
-    // A mode that noise drives, seen where it happens to be largest.
+    // A mode driven by noise; the part begins where it happens to be largest.
     let mut y = [0.0; 2];
     let driven = noise.iter().map(|force| {
         y = [1.98 * 0.4f64.cos() * y[0] - 0.9801 * y[1] + force, y[0]];
@@ -188,8 +188,8 @@ fn damping_that_changes_with_amplitude_has_no_uncertainty() {
     assert!(zeta.len() > 1 && zeta.is_sorted() && zeta[zeta.len() - 1] > 2.0 * zeta[0], "{zeta:?}");
 }
 
-/// A record a hundred times as long as its motion is seen is cut before further modes are searched, and the
-/// second mode is found all the same.
+/// A record is cut before further modes are searched if it is a hundred times longer than the visible
+/// motion. The second mode is still found.
 #[test]
 fn bounces_in_a_long_record_are_cut_to_the_first() {
     let mut normal = Noise::new(11);

@@ -19,15 +19,15 @@ const BEFORE: usize = 5;
 const SHORTEST: usize = 8;
 /// Periods of the strongest line in a block.
 const PERIODS: f64 = 2.0;
-/// Level of the motion over its largest, at which it ends; noise may end it earlier.
+/// Level of the motion, relative to the largest, at which it ends; noise may end it earlier.
 const LEFT: f64 = 2.5e-3;
-/// Level over that of the noise, below which motion is lost in it.
+/// Level, relative to that of the noise, below which the motion is lost in noise.
 const LOST: f64 = 1.3;
 /// Fewest lines on either side with which a line is compared.
 const LEAST: usize = 8;
 /// Number of the largest lines that are compared.
 const MOST: usize = 80;
-/// Lines below the first of these hold the mean and its drift.
+/// First line that can be a mode: lower lines hold the mean and its drift.
 const LOWEST: usize = 3;
 
 /// Where motion decays, and how long it stays in view.
@@ -41,7 +41,8 @@ pub struct Usable {
     pub findings: Vec<Finding>,
 }
 
-/// Finds the onset as the largest sample of the block that moves most, and the end where its motion is lost.
+/// Finds the onset, at the largest sample near the block of highest level, and the end, where the motion is
+/// lost in noise.
 ///
 /// # Errors
 /// If the trace has no spectrum, no line of the band, or too few periods.
@@ -108,7 +109,7 @@ pub fn usable(trace: &Trace, rate: f64, band: Option<(f64, f64)>) -> Result<Usab
     Ok(Usable { part: start..end, block, limit, findings })
 }
 
-/// The line among these that stands out most from those around it.
+/// The line in the range `among` with the largest ratio to the median of the lines around it.
 ///
 /// # Errors
 /// If none of them is a maximum.

@@ -96,7 +96,7 @@ pub(super) struct Cycles {
 }
 
 impl Cycles {
-    /// Sums at `points` phases of a turn, the first at the edge that begins it; `rate` in Hz.
+    /// Empty sums at `points` phases of a turn, the first at the edge that begins it; `rate` in Hz.
     pub fn new(rate: f64, points: usize) -> Cycles {
         Cycles { rate, points: vec![RunningMoments::default(); points], ..Cycles::default() }
     }
@@ -185,8 +185,8 @@ impl Cycles {
     }
 }
 
-/// Least f₂ over the sampling rate where sampling limits it: of a sine of eight samples a period a first
-/// difference over two samples is 10 % below the derivative, a second difference 5 %.
+/// Least f₂ over the sampling rate at which the sampling limits f₂. For a sine of eight samples a period,
+/// the first difference over two samples is 10 % below the derivative, the second difference 5 %.
 const LIMITED: f64 = 0.125;
 
 /// Displacement in m over the phase of a turn of `period` seconds, from velocities in m/s at equal phases.
@@ -219,13 +219,13 @@ mod tests {
             motion.differentiate(&values, &vec![State::Good; 2000], turn);
             motion.integrate(&values, &values, turn);
         }
-        // Trapezoids of a sine fall short by (2πf/rate)²/12 = 7e-5; the top lies between samples, by
-        // (2πf/rate)²/8.
+        // Trapezoids under a sine are too small by (2πf/rate)²/12 = 7e-5; the crest lies between samples, up
+        // to (2πf/rate)²/8 above them.
         let stroke = 2.0 * amplitude / (TAU * f);
         assert!(motion.stroke.iter().all(|s| (s / stroke - 1.0).abs() < 2e-4), "{:?}", motion.stroke);
         assert!(motion.drift.iter().all(|d| (d * f / 0.02 - 1.0).abs() < 1e-3), "{:?}", motion.drift);
         let bandwidth = motion.bandwidth();
-        // An offset of 0.02 in 3, and the differences short by (2πf/rate)²/6.
+        // The offset adds 0.02 to 3 m/s; the differences are too small by (2πf/rate)²/6.
         assert!(
             (bandwidth.f1 / f - 3.0 / 3.02).abs() < 1e-3 && (bandwidth.f2 / f - 1.0).abs() < 1e-3,
             "{bandwidth:?}"
@@ -293,8 +293,8 @@ mod tests {
                 (1002.0..1112.0).contains(&(edges[1] + phase * (edges[2] - edges[1]))) && counts[k] == 2;
             let (truth, scatter) =
                 if gap { (1.1 * sine, 0.02f64.sqrt() * sine) } else { (1.1 * sine, 0.1 * sine) };
-            // A cubic between samples 2π/900 of a period apart: 1e-9, and kinks of the slope where turns
-            // meet, 0.4·2π/900/8.
+            // Cubic interpolation between samples 2π/900 rad apart is off by 1e-9; at the kinks of the
+            // slope, where turns meet, by 0.4·2π/900/8.
             let near = if k == 0 { 4e-4 } else { 1e-8 };
             assert!((mean - truth).abs() < near, "{phase}: {mean} {truth}");
             assert!((std - scatter.abs()).abs() < near, "{phase}: {std} {scatter}");

@@ -38,12 +38,12 @@ pub struct FaultCount {
     pub clipped: usize,
 }
 
-/// Samples on each side of equal values: most of them differ around a drop-out, and are equal in a signal at
-/// rest.
+/// Samples examined on each side of equal values: around a drop-out most differ, in a signal at rest most
+/// are equal.
 const AROUND: usize = 16;
 /// Longest speckle spike in samples.
 const SPIKE: usize = 3;
-/// Shortest burst of outliers in samples: fewer random values cannot be told from a motion.
+/// Shortest burst of outliers in samples: fewer random values cannot be distinguished from a motion.
 const SHORT_BURST: usize = 8;
 /// Longest burst of outliers in samples: a dark speckle that passes within half a millisecond at 100 kHz.
 const BURST: usize = 48;
@@ -64,8 +64,8 @@ const CALM: usize = 4;
 const SPIKE_NOISE: f64 = 10.0;
 /// Least height of a spike over the range of the channel; smaller ones move neither impacts nor averages.
 const SPIKE_RANGE: f64 = 0.02;
-/// An extreme nearer to the median than this part of the larger excursion is the signal at rest, not the end
-/// of the range.
+/// An extreme nearer to the median than this fraction of the larger excursion is the signal at rest, not the
+/// end of the range.
 const RAIL: f64 = 0.1;
 
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -159,7 +159,7 @@ impl Velocity<'_> {
         }
     }
 
-    /// The fault that equal values from `i` up to `end` are; `None` where they belong to the signal.
+    /// The kind of fault of the equal values from `i` up to `end`; `None` if they belong to the signal.
     fn flat(&self, i: usize, end: usize) -> Option<FaultKind> {
         let ChannelStatistics { low, high, median, quantum, longest_by_chance } = *self.survey;
         let v = self.raw[i];

@@ -18,7 +18,7 @@ pub struct NoiseFloor {
     pub frequency: Vec<f64>,
     /// Level of the motion in dB: RMS of a line against 1 m/s.
     pub motion: Vec<f64>,
-    /// Level of the record without motion, in dB likewise.
+    /// Level of the record without motion, in dB: RMS of a line against 1 m/s.
     pub noise: Vec<f64>,
     /// Margin in dB that the motion must have.
     pub margin: f64,
@@ -48,8 +48,8 @@ impl NoiseFloor {
     pub(super) fn new(motion: Vec<f64>, noise: Vec<f64>, rate: f64, margin: f64) -> Option<NoiseFloor> {
         let ((motion, width), (noise, _)) = (lines(motion, rate)?, lines(noise, rate)?);
         let step = rate / SEGMENT as f64;
-        // Single lines scatter, and between the harmonics of the speed there is no motion: means over some
-        // lines decide.
+        // Single lines scatter, and between the harmonics of the rotation there is no motion. Therefore
+        // means over 17 lines are compared.
         let mean = |lines: &[f64], k: usize| {
             let part = &lines[k.saturating_sub(SMOOTH)..(k + SMOOTH + 1).min(lines.len())];
             (part.iter().map(|v| v * v).sum::<f64>() / part.len() as f64).sqrt()
@@ -91,8 +91,8 @@ mod tests {
         assert_eq!(floor.frequency[499], 500.0);
         // 2/√2 m/s; noise, 40 dB and more below, adds nothing visible.
         assert!((floor.motion[499] - 20.0 * 2f64.sqrt().log10()).abs() < 0.01);
-        // Power of uniform noise, 1e-4/12, over 4096 lines, a line 1.5 wide; 46 segments scatter by 0.7 dB a
-        // line, the mean of 3000 lines by 0.02 dB.
+        // Uniform noise has the power 1e-4/12, spread over 4096 lines; a line is 1.5 lines wide (Hann). With
+        // 46 segments a line scatters by 0.7 dB, the mean of 3000 lines by 0.02 dB.
         let mean = floor.noise[1000..4000].iter().map(|l| 10f64.powf(l / 10.0)).sum::<f64>() / 3000.0;
         assert!((10.0 * (mean / (1e-4 / 12.0 / 4096.0 * 1.5)).log10()).abs() < 0.1);
         assert_eq!(floor.bands.len(), 1);

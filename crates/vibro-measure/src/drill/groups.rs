@@ -18,21 +18,22 @@ const DIRECTED: f64 = 3.0;
 const CLEAR: f64 = 6.0;
 /// Largest phase in turns, from rounding, of impacts that begin their turns.
 const ROUNDING: f64 = 1e-6;
-/// Largest offset of the velocity over the speed at an impact that an instrument has.
+/// Largest plausible offset of an instrument, relative to the speed at an impact.
 const LARGEST: f64 = 0.1;
 /// Findings about the velocities at impacts.
 const OF_VELOCITIES: [&str; 3] = ["drill-lack-of-fit", "drill-not-striking", "drill-restitution-impossible"];
 /// Largest velocity that a parabola, continued to the middle of a contact, may give, over the largest of the
 /// record.
 const EXTRAPOLATED: f64 = 1.3;
-/// Largest distance, over the mean one, at which an impact follows another closely: of impacts at random
-/// phases 3 % do.
+/// Largest interval, relative to the mean one, at which an impact follows another closely. Of impacts at
+/// random phases, one a turn, 3 % do.
 const CLOSE: f64 = 0.25;
-/// Largest part of the impacts that follow another closely by accident; more are ringing.
+/// Largest share of impacts that may follow another closely by chance; a larger share means ringing.
 const ACCIDENTS: f64 = 0.1;
 /// Least gap between the phases of two groups of impacts, over the widest within a group.
 const PARTED: f64 = 3.0;
-/// Standard uncertainties by which the mean velocities of two blows of a turn differ where they are unlike.
+/// Number of standard uncertainties by which the mean velocities of two blows a turn must differ to be
+/// unlike.
 const UNLIKE: f64 = 4.0;
 /// Standard uncertainties beyond which a restitution outside 0 to 1 is impossible, not chance.
 const BEYOND: f64 = 2.0;
@@ -48,7 +49,7 @@ pub struct Impact {
     pub time: f64,
     /// Standard uncertainty of the time, in s.
     pub time_std: f64,
-    /// Part of the turn after its beginning, 0 to 1.
+    /// Fraction of the turn after its beginning, 0 to 1.
     pub phase: f64,
     /// Standard uncertainty of the phase, in turns.
     pub phase_std: f64,
@@ -64,8 +65,8 @@ pub struct Impact {
     pub after: f64,
     /// Standard uncertainty of this velocity, in m/s.
     pub after_std: f64,
-    /// Whether samples of the fits or of the contact are over-range: then the speeds are too small, and the
-    /// impact is in no mean.
+    /// Whether samples of the fits or of the contact are over-range. The speeds are then biased low, and the
+    /// impact is left out of the means.
     pub clipped: bool,
 }
 
@@ -90,25 +91,25 @@ impl Offset {
 
 /// Impacts of one direction, by the sign of the jump of the velocity, and their means.
 ///
-/// A striker that hits the bit in front and is caught behind has two groups, as have two unlike blows a turn:
-/// a mean over both would describe no impact. The first group is the strongest of the direction with the
-/// largest sum of squared jumps over the record.
+/// A striker that hits the bit in front and a stop at the rear has two groups. Two unlike blows a turn are
+/// two groups as well: a mean over both would describe neither. The first group is the strongest of the
+/// direction with the largest sum of squared jumps over the record.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct Group {
     /// Number of impacts.
     pub n: usize,
-    /// Impacts of the group that are over-range: they are in no mean, unless all are.
+    /// Impacts of the group that are over-range: they are left out of the means, unless all are.
     pub clipped: usize,
     /// Impacts per measured turn: 1 where each turn has one.
     pub share: f64,
-    /// Mean phase in turns after the edge, on the circle; no uncertainty where impacts come all round the
-    /// turn.
+    /// Mean phase in turns after the edge, on the circle; no uncertainty if the impacts are spread over the
+    /// whole turn.
     pub phase: Estimate,
     /// Mean velocity at first contact, in m/s.
     pub first_contact: Estimate,
-    /// Mean velocity of approach, continued to the middle of the contact, in m/s: momentum and energy balance
-    /// at one instant.
+    /// Mean velocity of approach, continued to the middle of the contact, in m/s: the balances of momentum
+    /// and energy need both velocities at one instant.
     pub before: Estimate,
     /// Mean velocity of separation, continued back to the middle of the contact, in m/s.
     pub after: Estimate,
@@ -126,9 +127,9 @@ pub struct Group {
     pub(super) wanders: bool,
 }
 
-/// Groups of impacts found in `turns` turns, the strongest first; sets the group of each impact. Velocities
-/// are already without the `offset`. `residuals` are those of the fits, which end `gap` samples from the
-/// middle of the contact.
+/// Groups of impacts found in `turns` turns, the strongest first; sets the group of each impact. The
+/// `offset` is already subtracted from the velocities. `residuals` are those of the fits before and after
+/// each impact, which end `gap` samples from the middle of the contact.
 pub(super) fn groups(
     impacts: &mut [Impact],
     residuals: &[[Vec<f64>; 2]],
@@ -166,9 +167,9 @@ pub(super) fn groups(
     members.iter().enumerate().map(group).collect()
 }
 
-/// The impacts of one direction at each of the phases at which a turn has one, in the order of time, where
-/// their velocities differ; all of them otherwise. A turn with two unlike blows has no mean blow. Phases are
-/// parted at their widest gaps on the circle.
+/// Splits the impacts `own` of one direction by phase if a turn has several blows whose mean velocities
+/// differ; otherwise returns them as one part. Each part is in the order of time. The phases are split at
+/// their widest gaps on the circle.
 fn by_phase(impacts: &[Impact], own: Vec<usize>, turns: usize) -> Vec<Vec<usize>> {
     let a_turn = (own.len() as f64 / turns.max(1) as f64).round() as usize;
     if a_turn < 2 {
@@ -202,8 +203,8 @@ fn by_phase(impacts: &[Impact], own: Vec<usize>, turns: usize) -> Vec<Vec<usize>
 }
 
 impl Group {
-    /// Adds the uncertainty of the offset, which all impacts share. Where the offset is larger than an
-    /// instrument has, no uncertainty is stated.
+    /// Adds the uncertainty of the offset, which all impacts share. If the offset is larger than that of an
+    /// instrument ([`LARGEST`]), no uncertainty is stated.
     fn allowing(mut self, offset: &Offset) -> Group {
         let (before, after) = (self.before.value, self.after.value);
         let doubted = offset.value.abs() > LARGEST * before.abs().max(after.abs());
@@ -224,8 +225,8 @@ impl Group {
         self
     }
 
-    /// The group without velocities where those of the fits exceed the largest of the record, `reach` in m/s,
-    /// by far: the motion beside these contacts is no parabola.
+    /// Drops the velocities of the group if those of the fits exceed the largest of the record, `reach` in
+    /// m/s, by far: the motion near these contacts is not a parabola.
     pub(super) fn within(mut self, reach: f64) -> Group {
         let largest = self.before.value.abs().max(self.after.value.abs());
         if largest.is_nan() || largest <= EXTRAPOLATED * reach {
@@ -254,7 +255,7 @@ impl Group {
             members.iter().copied().filter(|(i, _)| used(i)).unzip();
         let mean = |of: &dyn Fn(&Impact) -> f64| Mean::of(&own.iter().map(|i| of(i)).collect::<Vec<f64>>());
         let (before, after, first) = (mean(&|i| i.before), mean(&|i| i.after), mean(&|i| i.first_contact));
-        // The length of the contact is as uncertain for all impacts.
+        // The uncertainty of the contact's length is the same for all impacts and does not average out.
         let shared = |i: &Impact| (i.first_contact_std.powi(2) - i.before_std.powi(2)).max(0.0).sqrt();
         let first = Mean { std: first.std.map(|std| std.hypot(mean(&shared).value)), ..first };
         let mut findings = Vec::new();
@@ -341,7 +342,7 @@ fn lack_of_fit(residuals: &[&[Vec<f64>; 2]], side: usize, mean: &Mean, gap: usiz
     lack.filter(|l| mean.std.is_some_and(|std| l.bias > BIAS * std))
 }
 
-/// Mean phase of impacts on the circle, and whether they have a direction there.
+/// Mean phase of impacts on the circle, and whether they cluster around it.
 fn mean_phase(own: &[&Impact]) -> (Mean, bool) {
     // Count phases from the point opposite to the mean direction, so that the mean does not wrap.
     let vectors = own.iter().map(|i| (TAU * i.phase).sin_cos());
@@ -352,13 +353,14 @@ fn mean_phase(own: &[&Impact]) -> (Mean, bool) {
     (Mean { value: (from + along.value).rem_euclid(1.0), ..along }, !undirected)
 }
 
-/// Number of impacts that follow another one closely; 0 where accidents explain them. A velocity that rings
-/// has several jumps an impact.
+/// Number of impacts that follow another one closely; 0 if chance explains them. A velocity that rings shows
+/// several jumps for each impact.
 fn followed(impacts: &[&Impact]) -> usize {
     let ([first, .., last], gaps) = (impacts, impacts.windows(2).map(|w| w[1].time - w[0].time)) else {
         return 0;
     };
-    // Turns with an impact; a turn without one, as in a pause, does not count in the distance.
+    // Number of turns with an impact; a turn without one, for example in a pause, does not count in the mean
+    // distance.
     let turns = 1 + impacts.windows(2).filter(|w| w[1].cycle > w[0].cycle).count();
     let period = (last.time - first.time) / last.cycle.saturating_sub(first.cycle).max(1) as f64;
     let distance = period * turns as f64 / impacts.len() as f64;
@@ -372,9 +374,9 @@ fn followed(impacts: &[&Impact]) -> usize {
 /// mean of (v₂⁺ − v₁⁺ − R v₁⁻)/mean(v₁⁻), which is the propagated one (delta method). `moved` gives the bias
 /// of a quantity from its derivatives by the velocities before and after.
 ///
-/// No restitution is given where most approaches are consistent with 0, as those of a bit, which is struck;
-/// nor where it is negative or above 1 by more than its uncertainty explains. Without an uncertainty, a value
-/// above 1 stays.
+/// No restitution is given if most approaches are consistent with 0, as for a bit, which is struck. Nor is
+/// it given if it is negative or above 1 by more than its uncertainty explains. Without an uncertainty, a
+/// value above 1 stays.
 fn restitution(
     impacts: &[&Impact],
     front: bool,

@@ -1,10 +1,9 @@
 //! Impacts as jumps of a velocity.
 //!
-//! On both sides of the contact the velocity is fitted by a parabola; both are continued to the middle of the
-//! contact, where the measured velocity passes half way between them. The impact is so treated as an instant:
-//! the speeds right before and after it fit the balance of momentum. A straight line would be more precise in
-//! noise but wrong where the drive accelerates the striker: over 0.5 ms of a 7.5 m/s stroke at 50 Hz by 0.04
-//! m/s.
+//! On both sides of the contact the velocity is fitted by a parabola; both are continued to the middle of
+//! the contact, where the measured velocity passes half way between them. This treats the impact as an
+//! instant, as the balance of momentum requires. A straight line would be more precise in noise, but biased
+//! where the drive accelerates the striker: by 0.04 m/s over 0.5 ms, for a stroke of 7.5 m/s at 50 Hz.
 
 use super::faults::State;
 use super::parabola::{FEWEST, Parabola};
@@ -18,18 +17,19 @@ use vibro_record::median;
 const MOST: usize = 4;
 /// Smallest jump that counts, over the largest of its turn, and over the median of these largest jumps.
 const PART: f64 = 0.25;
-/// Part of the height of a jump that lies between two neighbouring samples, above which the jump takes no
-/// longer than one sample.
+/// Share of a jump's height between two neighbouring samples above which the jump counts as shorter than one
+/// sample.
 const AT_ONCE: f64 = 0.8;
-/// Least height of a jump over its uncertainty: a turn has some thousand places, and chance reaches it at
-/// none.
+/// Least height of a jump over its standard uncertainty: noise at the thousand or so samples of a turn does
+/// not reach it.
 const CLEAR: f64 = 6.0;
-/// Part of a jump whose time shows how long a contact takes.
+/// Fraction of a jump's height. The time from it to half the height shows how long the contact takes.
 const BEGUN: f64 = 0.1;
-/// Time from first contact to half the jump, over that from [`BEGUN`] to half: ½/(½ − acos(0.8)/π) of a force
-/// like half a sine.
+/// Time from first contact to half the jump, over the time from [`BEGUN`] to half: ½/(½ − acos(0.8)/π) for a
+/// half-sine contact force.
 const HALF: f64 = 1.694;
-/// Standard uncertainty of [`HALF`]: of a constant force it is 1.25, and all between are as likely.
+/// Standard uncertainty of [`HALF`]: for a constant force the ratio is 1.25, and all values between are
+/// equally likely.
 const SHAPE: f64 = 0.13;
 
 /// A jump, kept until all are known.
@@ -37,16 +37,16 @@ const SHAPE: f64 = 0.13;
 struct Jump {
     cycle: usize,
     turn: Turn,
-    /// Place of the impact in samples.
+    /// Position of the impact in samples.
     at: f64,
     /// Fits before and after the contact.
     sides: [Parabola; 2],
-    /// Step between the two samples around the place, in the unit of the velocity.
+    /// Step between the two samples around this position, in the unit of the velocity.
     step: f64,
-    /// Part of the interval between these two samples that lies before the place.
+    /// Fraction of the interval between these two samples that lies before this position.
     share: f64,
     clipped: bool,
-    /// Samples from [`BEGUN`] of the jump to half of it; NaN where it lies before the contact.
+    /// Samples from [`BEGUN`] of the jump to half of it; NaN if [`BEGUN`] is not crossed within the contact.
     rise: f64,
 }
 
@@ -123,7 +123,7 @@ impl<'a> Jumps<'a> {
         self.largest.extend(largest);
     }
 
-    /// Number of samples of each of the two means whose difference shows candidates.
+    /// Number of samples in each of the two means of [`Jumps::step`].
     fn averaged(&self) -> usize {
         (self.length / 4).max(3)
     }
@@ -189,11 +189,12 @@ impl<'a> Jumps<'a> {
         let noise = [0, 1].map(|k| {
             let sides = || self.found.iter().map(|j| &j.sides[k]);
             let variance = sides().map(|s| s.squares).sum::<f64>() / sides().map(|s| s.freedom).sum::<f64>();
-            // A laser's decoder limits the bandwidth of its noise, so neighbours depend on each other.
+            // A laser's decoder limits the bandwidth of its noise, so neighbouring samples are correlated.
             let residuals: Vec<&[f64]> = sides().map(|s| s.residuals.as_slice()).collect();
             (variance, variance * Whiteness::of(&residuals).inflation.powi(2))
         });
-        // From first contact to its middle, in samples; contacts of one machine are alike.
+        // Time from first contact to the middle of the contact, in samples. One median serves all impacts:
+        // contacts of one machine are alike.
         let rise = median(self.found.iter().map(|j| j.rise).filter(|rise| rise.is_finite()));
         let (half, half_std) = (HALF * rise, (SHAPE * rise).hypot(1.0 / 12f64.sqrt()));
         let impact = |j: &Jump| {
@@ -273,8 +274,8 @@ mod tests {
                 (i.first_contact - 7.44).abs() < i.first_contact_std && i.first_contact_std < 0.01,
                 "{i:?}"
             );
-            // The cubic between samples of the sine: (π/6)⁴·4.5·9/16/24 = 0.008 off at a slope of 2.3 a
-            // sample.
+            // The cubic between samples of the sine is off by (π/6)⁴·4.5·9/16/24 = 0.008 m/s, at a slope of
+            // 2.3 m/s a sample.
             assert!((i.time * 1e5 - at).abs() < 4e-3, "{i:?}");
             assert!((i.phase - (at - 100.0) / 1800.0).abs() < 3e-6 && i.cycle == 4);
         }
@@ -299,7 +300,7 @@ mod tests {
         states[685..688].fill(State::Clipped);
         let (impacts, hidden) = one(&values, &states);
         assert!(impacts.len() == 1 && impacts[0].clipped && hidden == 0);
-        // Before the fits, which reach 60 samples back.
+        // Clipped samples before the fits, which begin 60 samples before the impact, do not count.
         states.fill(State::Good);
         states[500..600].fill(State::Clipped);
         assert!(!one(&values, &states).0[0].clipped);

@@ -13,14 +13,14 @@ const MOST_POINTS: usize = 100_000;
 /// Smallest cosine of the angle between beam and motion, that of 89°: there a tenth of a degree changes the
 /// velocity by a tenth.
 const SQUARE: f64 = 0.0175;
-/// Lowest corner of the low-pass chosen from the data, over the speed, however few phases the average has.
-/// The tenth harmonic then lacks (10/50)⁴ = 0.2 % of its amplitude, a stroke still less.
+/// Lowest corner of the low-pass chosen from the data, over the rotation frequency, even for an average of
+/// few phases. The tenth harmonic then loses (10/50)⁴ = 0.2 % of its amplitude, the stroke still less.
 const HARMONICS: f64 = 50.0;
 /// Highest corner over the sampling rate. Differences of samples show too little above it: at a quarter of
 /// the rate a central difference gives 2/π of a slope.
 const HIGHEST: f64 = 0.25;
 
-/// From where the angle of the beam is counted.
+/// Direction from which the angle of the beam is counted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum AngleOrigin {
@@ -50,8 +50,8 @@ impl Beam {
     /// A beam at `degrees`, counted `from` the normal or from the axis of the motion.
     ///
     /// # Errors
-    /// If the angle is not between 0° and 90°, or the beam is within 1° of square to the motion, of which it
-    /// then sees nothing.
+    /// If the angle is not between 0° and 90°, or the beam is perpendicular to the motion within 1° and
+    /// measures hardly any of it.
     pub fn new(degrees: f64, from: AngleOrigin) -> Result<Beam> {
         if !(0.0..=90.0).contains(&degrees) {
             let found = format!("a beam angle of {degrees}°");
@@ -71,9 +71,9 @@ impl Beam {
 /// the velocity without smoothing.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum Smoothing {
-    /// A zero-phase low-pass as in [`Smoothing::LowPass`] whose corner comes from the data: half as many
-    /// times the speed as the average has phases, the highest frequency that these can show (50 times at
-    /// least), and at most a quarter of the sampling rate.
+    /// A zero-phase low-pass as in [`Smoothing::LowPass`] whose corner comes from the data: the rotation
+    /// frequency times half the number of phases, which is the highest frequency that the average can show.
+    /// It is at least 50 times the rotation frequency, and at most a quarter of the sampling rate.
     #[default]
     Phases,
     /// None.

@@ -65,7 +65,7 @@ impl Parabola {
         value.is_finite().then_some(Parabola { value, slope, bend, leverage, squares, freedom, residuals })
     }
 
-    /// Value `by` samples from the place to which it is extrapolated.
+    /// Value of the parabola `by` samples after the position to which it is extrapolated.
     pub fn beside(&self, by: f64) -> f64 {
         self.value + by * (self.slope + by * self.bend)
     }

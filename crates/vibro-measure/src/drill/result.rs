@@ -42,13 +42,13 @@ pub struct Drill {
     pub energy: Option<Estimate>,
     /// Mean energy that the impacts take out of the mass, in J.
     pub energy_given: Option<Estimate>,
-    /// Restitution from the balance of momentum; without a stated struck mass, that mass is taken not to
+    /// Restitution from the balance of momentum; without a stated struck mass, that mass is assumed not to
     /// move.
     pub restitution: Option<Estimate>,
     /// Number of turns whose impact lies in a fault of the velocity.
     pub hidden: usize,
-    /// Number of impacts whose fits reach the end of the range; they are in no mean unless there are no
-    /// others.
+    /// Number of impacts whose fits reach the end of the range; they are left out of the means unless there
+    /// are no others.
     pub clipped: usize,
     /// Mean velocity over the phase.
     pub average: Phases,
@@ -94,7 +94,7 @@ pub struct Pulses {
     pub edges: usize,
     /// Missing edges.
     pub missing: usize,
-    /// False edges, which were ignored; further impacts of the same direction.
+    /// False edges, which were ignored, or further impacts of the same direction.
     pub extra: usize,
     /// Stretches without edges.
     pub pauses: usize,
@@ -118,8 +118,7 @@ const DRIFTING: f64 = 0.1;
 /// Relative change of velocities for one degree of error in the beam angle, above which a finding is added.
 const STEEP: f64 = 0.005;
 
-/// Largest part of a velocity without an uncertainty by which the removed mean may change it without a
-/// finding.
+/// Largest removed mean, relative to a velocity without an uncertainty, that gives no finding.
 const SMALL: f64 = 0.01;
 
 /// One turn in this many may lack an impact without a finding.

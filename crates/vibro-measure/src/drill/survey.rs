@@ -33,7 +33,7 @@ impl ChannelStatistics {
         let steps = || values.windows(2).map(|w| (w[1] - w[0]).abs());
         let n = values.len().max(1) as f64;
         let equal = steps().filter(|d| *d == 0.0).count() as f64;
-        // One more than was seen: none among a few thousand does not prove a probability of 0.
+        // One more equal pair than was found: none among a few thousand does not prove a probability of 0.
         let p = ((equal + 1.0) / (n + 1.0)).min(0.999);
         let needed = ((1e-3 / n).ln() / p.ln()).ceil() + 1.0;
         ChannelStatistics {
@@ -75,18 +75,18 @@ pub(crate) fn levels(values: &[f64]) -> Option<(f64, f64)> {
     Some((side(false), side(true)))
 }
 
-/// Part of the distance of two levels within which a value is on one of them.
+/// A value is on a level if it is within this fraction of the distance of both levels.
 const AT_LEVEL: f64 = 0.1;
 
-/// A pulse is on one of its two levels for more than this part of the time; a sine is within [`AT_LEVEL`] of
-/// the medians of its halves for a quarter.
+/// A pulse is on one of its two levels for more than this fraction of the time; a sine is within
+/// [`AT_LEVEL`] of the medians of its halves for a quarter.
 const PULSED: f64 = 0.8;
-/// Largest median change from one turn of a shaft to the next, over a turn. Edges of a vibration come at any
-/// distance.
+/// Largest median change from one turn of a shaft to the next, over a turn. Edges of a vibration are
+/// unevenly spaced.
 const UNEVEN: f64 = 0.2;
 
-/// Refuses a reference that is no pulse: the velocity in its place, or a vibration. The `reference` comes
-/// with its two levels; `edges` are its edges in samples.
+/// Refuses a reference that is not a pulse signal: the velocity in its place, or a vibration. The
+/// `reference` comes with its two levels; `edges` are its edges in samples.
 ///
 /// # Errors
 /// If the reference does not rest on two levels, while the velocity does or the edges are uneven.

@@ -10,17 +10,18 @@ const PATTERN: f64 = 8.0;
 /// Largest strength of an impact in the search, over the median strength: the strongest may be a fault of the
 /// instrument.
 const OUTLIER: f64 = 2.0;
-/// An impact repeats where another comes one period later, within this part of the period …
+/// An impact repeats if another comes one period later, within this fraction of the period.
 const NEAR: f64 = 0.1;
-/// … and within this part of the median interval.
+/// The repeated impact must also come within this fraction of the median interval.
 const BETWEEN: f64 = 0.25;
-/// Standard deviations of chance that are subtracted from an agreement, as many lags are tried.
+/// Standard deviations of chance that are subtracted from an agreement, because many lags are tried.
 const CHANCE: f64 = 2.0;
 /// Least agreement of a common period: one in a hundred trains at random reaches it.
 const COMMON: f64 = 0.4;
-/// The period is the first lag with this part of the best agreement: multiples of the period agree as well.
+/// The period is the first lag with this fraction of the best agreement: multiples of the period agree as
+/// well.
 const FIRST: f64 = 0.9;
-/// Neighbours in a train are whole periods apart, within this part of a period.
+/// Neighbours in a train are whole periods apart, within this fraction of a period.
 const UNEVEN: f64 = 0.2;
 /// Neighbours more than this many periods apart lie before and after a pause of the machine.
 const PAUSE: f64 = 4.0;
@@ -36,7 +37,7 @@ pub(super) struct TurnImpacts {
 
 impl TurnImpacts {
     /// Selects, from all impacts of a record sampled `rate` times a second, those of the stronger direction
-    /// that follow each other by their period.
+    /// that follow each other at multiples of their period.
     ///
     /// # Errors
     /// If there are too few, or they have no common period.
@@ -72,9 +73,9 @@ impl TurnImpacts {
     }
 }
 
-/// Part of the strength of the events (instant, strength) that comes again one `lag` later, beyond that of as
-/// many at random: near 1 where all of many do, below 0 by chance. And the median time in samples to those
-/// that come again.
+/// Share of the strength of the events (instant in samples, strength) that repeats one `lag` in samples
+/// later, beyond the share expected at random: near 1 if all of many events repeat; chance may give less
+/// than 0. The second value is the median time in samples from an event to its repetition.
 fn agreement(events: &[(f64, f64)], lag: f64) -> (f64, f64) {
     let (first, last) = (events[0].0, events[events.len() - 1].0);
     let reach = (NEAR * lag).min(BETWEEN * median(events.windows(2).map(|e| e[1].0 - e[0].0)));
@@ -95,11 +96,11 @@ fn agreement(events: &[(f64, f64)], lag: f64) -> (f64, f64) {
     ((again / all - chance - CHANCE * scatter) / (1.0 - chance), median(times))
 }
 
-/// The shortest time in samples after which the pattern of events comes again; `None` where none does.
+/// The shortest time in samples after which the pattern of events repeats; `None` if none repeats.
 fn period(events: &[(f64, f64)]) -> Option<f64> {
     let steps = || events.windows(2).map(|e| e[1].0 - e[0].0).filter(|step| *step > 0.0);
     let shortest = steps().fold(f64::INFINITY, f64::min);
-    // The mean interval, since the median of impacts in bursts is that within the bursts.
+    // The mean interval is used: for impacts in bursts, the median would be the interval within a burst.
     let mean = (events[events.len() - 1].0 - events[0].0) / (events.len() - 1) as f64;
     let longest = (PATTERN * mean).min(0.5 * (events[events.len() - 1].0 - events[0].0));
     let grid = std::iter::successors(Some(shortest), |lag| Some(lag * (1.0 + 0.5 * NEAR)));
@@ -107,13 +108,13 @@ fn period(events: &[(f64, f64)]) -> Option<f64> {
         grid.take_while(|lag| *lag < longest * (1.0 + NEAR)).map(|lag| agreement(events, lag)).collect();
     let best = tried.iter().fold(0.0f64, |best, lag| best.max(lag.0));
     let first = tried.into_iter().find(|lag| lag.0 >= FIRST * best)?;
-    // Repeat at the median time between events that come again.
+    // Compute the agreement again at the median time between repeated events.
     let (agreed, period) = agreement(events, first.1);
     (agreed > COMMON).then_some(period)
 }
 
-/// The strongest chain of events that are whole periods apart, or far apart; an event counts the less the
-/// more unevenly it follows.
+/// Indices of the strongest chain of events that are whole periods apart, or separated by a pause. The
+/// farther an event is from a whole number of periods, the less it counts.
 fn chain(events: &[(f64, f64)], period: f64) -> Vec<usize> {
     // For each event the strength of the best chain that ends with it, and the event before.
     let mut best: Vec<(f64, Option<usize>)> = Vec::with_capacity(events.len());
@@ -181,7 +182,8 @@ mod tests {
             let whole = slowing(&mut noise);
             let kept: Vec<(f64, f64)> = (0..60).filter(|k| k % 9 != 4).map(|k| whole[k]).collect();
             let truth: Vec<f64> = kept.iter().map(|e| e.0).collect();
-            // False ones anywhere, of any strength up to that of the others, and one far above it.
+            // False impacts at any time: of any strength up to that of the others, and one ten times
+            // stronger.
             let wrong = |k| (61_000.0 * noise.uniform(), if k == 0 { -70.0 } else { -7.0 * noise.uniform() });
             let with: Vec<(f64, f64)> = (0..8).map(wrong).chain(kept.iter().copied()).collect();
             let found = train(with).unwrap();

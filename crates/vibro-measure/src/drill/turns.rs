@@ -10,7 +10,7 @@ use vibro_record::{Error, Result, median};
 /// Intervals on each side whose median is the expected interval: a machine that runs up changes little over
 /// them.
 const AROUND: usize = 15;
-/// An interval shorter than this part of the expected one ends in a false edge.
+/// An interval shorter than this fraction of the expected one ends in a false edge.
 const SHORT: f64 = 0.6;
 /// An interval longer than this many expected ones lacks edges.
 const LONG: f64 = 1.5;
@@ -22,7 +22,7 @@ const PAUSE: f64 = 4.0;
 pub(super) struct Turn {
     /// First edge, in samples from the first sample of the record.
     pub start: f64,
-    /// Last edge, in samples likewise.
+    /// Last edge, in samples from the first sample of the record.
     pub end: f64,
 }
 
@@ -33,7 +33,7 @@ impl Turn {
     }
 }
 
-/// Edges numbered as an even series, since a pick-up misses pulses and catches sparks.
+/// Edges numbered as an even series, since a pick-up misses pulses and picks up interference.
 pub(crate) struct Numbered {
     /// Number and time in samples of each edge; a pause begins a new run.
     pub runs: Vec<Vec<(usize, f64)>>,
@@ -45,7 +45,7 @@ pub(crate) struct Numbered {
 
 impl Numbered {
     /// Numbers each edge by the median interval around it. Of two edges within an interval, the one farther
-    /// from its expected place is ignored.
+    /// from its expected time is ignored.
     pub fn new(edges: &[f64]) -> Numbered {
         let intervals: Vec<f64> = edges.windows(2).map(|e| e[1] - e[0]).collect();
         let (mut missing, mut extra) = (0, 0);
@@ -154,20 +154,20 @@ pub enum Edge {
     Falling,
 }
 
-/// Part of the pulse height by which the signal must pass the middle on both sides before an edge counts:
-/// ringing of a pick-up is smaller.
+/// Fraction of the pulse height by which the signal must pass the middle on both sides before an edge
+/// counts: ringing of a pick-up is smaller.
 const HYSTERESIS: f64 = 0.2;
 
-/// Margins of the hysteresis on both sides of the middle that a sharp edge passes between two samples: three
-/// fifths of the height. The samples then give no place between them.
+/// An edge is sharp if two neighbouring samples lie at least this many margins of the hysteresis below and
+/// above the middle: a step of 60 % of the height. The samples do not show where between them it lies.
 const SHARP: f64 = 1.5;
 
 /// Edges of a reference signal, and how well their times are known.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Edges {
-    /// Places in samples from the first.
+    /// Positions in samples from the first sample.
     pub at: Vec<f64>,
-    /// Whether most edges rise between two samples, so that their places in between are unknown.
+    /// Whether most edges rise between two samples, so that their positions in between are unknown.
     pub sharp: bool,
     /// Mean step between the samples around an edge, in the unit of the signal.
     slope: f64,
@@ -183,7 +183,7 @@ impl Edges {
         let sign = if edge == Edge::Rising { 1.0 } else { -1.0 };
         let (middle, margin) = (0.5 * (low + high), HYSTERESIS * (high - low).abs());
         let (mut at, mut sharp, mut slopes) = (Vec::new(), 0, 0.0);
-        // First and last crossing of an edge, and the samples on both sides of the last.
+        // `crossed`: first and last crossing of an edge, and the samples on both sides of the last.
         let (mut armed, mut crossed) = (false, None::<(f64, f64, f64, f64)>);
         for (i, step) in signal.windows(2).enumerate() {
             let (from, to) = (sign * (step[0] - middle), sign * (step[1] - middle));
@@ -229,9 +229,9 @@ fn around(values: &[f64], i: usize) -> Option<[f64; 4]> {
     values.get(i.checked_sub(1)?..i + 3)?.try_into().ok()
 }
 
-/// Place of the crossing of `level` between samples `i` and `i + 1`, on the cubic through the four samples
-/// around it (a straight line beside the ends of the record and missing samples). `None` unless the level
-/// lies between the two samples.
+/// Position in samples of the crossing of `level` between samples `i` and `i + 1`, on the cubic through the
+/// four samples around it (a straight line beside the ends of the record and missing samples). `None` unless
+/// the level lies between the two samples.
 pub(super) fn between(values: &[f64], i: usize, level: f64) -> Option<f64> {
     let (a, b) = (values.get(i)? - level, values.get(i + 1)? - level);
     if !(a.is_finite() && b.is_finite()) || a == b || a * b > 0.0 {
@@ -245,8 +245,8 @@ pub(super) fn between(values: &[f64], i: usize, level: f64) -> Option<f64> {
     Some(i as f64 + border(0.0, 1.0, |s| cubic(four, s) * a > 0.0))
 }
 
-/// Value at a place between samples, on the cubic through the four samples around it; a straight line at the
-/// ends. `None` outside the record.
+/// Value at a position between samples, on the cubic through the four samples around it; a straight line at
+/// the ends. `None` outside the record.
 pub(super) fn value(values: &[f64], at: f64) -> Option<f64> {
     let i = at.floor();
     if i < 0.0 {

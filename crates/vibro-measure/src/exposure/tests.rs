@@ -66,8 +66,8 @@ fn the_weighting_keeps_its_tolerances_at_every_third_octave_centre_and_rate() {
         assert!((row[0] / f - 1.0).abs() < 0.015 && (row[1] / truth - 1.0).abs() < 0.004, "{row:?}");
         for (rate, stated) in rates.into_iter().zip(&row[4..]) {
             let deviation = 100.0 * (steady(rate, f) / truth - 1.0);
-            // Whole periods are no whole number of samples: the sum errs by 1/2n, n = 2 s · rate, 0.005 %;
-            // and half of the last digit that is stated.
+            // The whole periods do not end on a sample: the sum is off by 1/2n with n = 2 s · rate, 0.005 %.
+            // The second term is half of the last digit in the document.
             assert!((deviation - stated).abs() < 0.005 + 0.005, "{f} {rate}: {deviation}");
             assert!(deviation < row[2] && deviation > row[3], "{f} {rate}");
         }
@@ -80,8 +80,8 @@ fn numbers(row: &str) -> Option<Vec<f64>> {
     cells.map(|cell| cell.trim().replace('−', "-").parse().ok()).collect()
 }
 
-/// A slow oracle: the sections of the weighting as differential equations, each step exact for an input on a
-/// straight line.
+/// Slow reference: the sections of the weighting as differential equations, integrated with 64 steps a
+/// sample.
 #[test]
 fn a_shock_is_weighted_as_by_the_differential_equation() {
     let (rate, fine) = (6_400.0, 64);
@@ -114,8 +114,8 @@ fn a_shock_is_weighted_as_by_the_differential_equation() {
     let largest = found.iter().fold(0.0, |top: f64, v| top.max(v.abs()));
     for (i, v) in found.iter().enumerate() {
         let slow = signal[i * fine as usize];
-        // The oracle lags by half a step at each section, 1.5 h; the slope is below twice the largest value
-        // over a millisecond.
+        // The reference lags by half a step at each section, 1.5 h; the slope is below twice the largest
+        // value over a millisecond.
         assert!((v - slow).abs() < 3.0 * h * 1e3 * largest, "{i}: {v} {slow} {largest}");
     }
 }
@@ -128,7 +128,7 @@ fn three_axes_and_half_a_day() {
     };
     let exposure = exposure(rate, &[&axis(30.0), &axis(40.0), &axis(0.0)], Some(2.0)).unwrap();
     let truth = 50.0 / 2f64.sqrt() * weighting(100.0).norm();
-    // What has not settled after half a second, e⁻¹⁴, and the fade behind the end.
+    // Two errors remain: the transient after half a second, e⁻¹⁴, and the faded mirror image after the end.
     assert!((exposure.a_hv.value / truth - 1.0).abs() < 1e-4, "{} {truth}", exposure.a_hv.value);
     assert!((exposure.a8.unwrap().value - 0.5 * exposure.a_hv.value).abs() < 1e-12);
     assert!((exposure.unweighted_peak - 40.0).abs() < 0.03);

@@ -13,10 +13,10 @@ const STEP: f64 = 1.25;
 /// Relative difference up to which two numbers of bursts count as equal.
 const SAME: f64 = 0.02;
 
-/// Bursts of samples further than `reach` from 0, one an impact. With `pause`, stretches that follow within
-/// `pause` samples are joined. Without it, a burst goes on until something rises above the envelope of its
-/// ringing; the second value is then the factor by which the assumed decay of the ringing may change without
-/// changing the number of bursts.
+/// Bursts of samples farther than `reach` from 0, one for each impact. With `pause`, stretches that follow
+/// within `pause` samples are joined. Without it, a burst lasts until the signal rises above the envelope of
+/// its ringing. The second value is then the factor by which the assumed decay of the ringing may change
+/// without changing the number of bursts.
 pub fn bursts(values: &[f64], reach: f64, pause: Option<usize>) -> (Vec<Range<usize>>, Option<f64>) {
     let runs = runs(values, reach);
     let (firsts, stable) = match pause {
@@ -31,9 +31,9 @@ pub fn bursts(values: &[f64], reach: f64, pause: Option<usize>) -> (Vec<Range<us
     (firsts.iter().zip(ends).map(whole).collect(), stable)
 }
 
-/// Stretches of samples beyond the noise limit `reach`. A stretch that rises again from a valley, as an
-/// envelope does that rings until the next impact, is split there; each part ends where it has fallen from
-/// its peak by the factor [`RISE`].
+/// Stretches of samples beyond the noise limit `reach`. An envelope may ring until the next impact: a
+/// stretch that rises again from a valley is split there; each part ends where it has fallen from its peak
+/// by the factor [`RISE`].
 fn runs(values: &[f64], reach: f64) -> Vec<Range<usize>> {
     let beyond: Vec<usize> = (0..values.len()).filter(|i| values[*i].abs() > reach).collect();
     let mut found: Vec<Range<usize>> = Vec::new();
@@ -61,9 +61,9 @@ fn runs(values: &[f64], reach: f64) -> Vec<Range<usize>> {
     found
 }
 
-/// Runs that begin an impact, if ringing decays by e in `decay` samples at least: they rise above an envelope
-/// that follows every peak and falls with that time. Runs that follow within the same time belong to the rise
-/// of the impact.
+/// Indices of the runs that begin an impact, if ringing decays by the factor e in `decay` samples. Their
+/// peaks exceed [`RISE`] times an envelope that follows every peak and decays with that time. Runs that
+/// follow within the same time belong to the rise of the impact.
 fn firsts(values: &[f64], runs: &[Range<usize>], decay: f64) -> Vec<usize> {
     let keep = (-1.0 / decay).exp();
     let (mut envelope, mut at) = (0.0f64, 0);
@@ -86,7 +86,8 @@ fn firsts(values: &[f64], runs: &[Range<usize>], decay: f64) -> Vec<usize> {
     found
 }
 
-/// Impacts for the assumed decay whose choice matters least, and the factor over which it does not matter.
+/// Indices of the runs that begin an impact, for the decay whose choice matters least, and the factor by
+/// which this decay may change without changing their number.
 ///
 /// The envelope follows each peak of the ringing, so it may fall faster than the ringing does. For decays
 /// from a few half waves up to the pause between impacts, the number of bursts is the same. A number that
@@ -128,9 +129,9 @@ pub struct Background {
 
 impl Background {
     /// Background of the envelope of the same samples less their level. The noise of an envelope has
-    /// Rayleigh's distribution: its mean is √(π/2)σ, its variance (2 − π/2)σ², and it exceeds zσ with the
-    /// same bounded probability. Samples of the envelope that lie `apart` samples apart depend little on each
-    /// other.
+    /// Rayleigh's distribution: its mean is √(π/2)σ, its variance (2 − π/2)σ², and its probability to exceed
+    /// zσ has the same bound exp(−z²/2). Samples of the envelope at a distance of `apart` samples are nearly
+    /// independent.
     pub fn of_envelope(self, envelope: &[f64], apart: f64) -> Background {
         let stretch = ((STRETCH * apart) as usize).max(1);
         let power = |part: &[f64]| 0.5 * part.iter().map(|v| v * v).sum::<f64>() / part.len() as f64;
@@ -145,8 +146,8 @@ impl Background {
 
 /// Independent samples of an envelope in a stretch whose mean square is taken.
 const STRETCH: f64 = 4.0;
-/// Part of the stretches that are quiet. Of 4 samples in noise (χ² of 8 degrees of freedom) a tenth has σ
-/// below 0.66 of its value, so that half of it is no chance.
+/// Share of the stretches that count as quiet. In noise, a tenth of all stretches of 4 independent samples
+/// (χ² with 8 degrees of freedom) shows less than 0.66 σ, so chance does not give 0.5 σ.
 const QUIETEST: f64 = 0.1;
 
 /// Lower quartile of |N(0, 1)|.
@@ -226,8 +227,8 @@ mod levels {
         assert!((found.sigma / 0.1 - 1.0).abs() < 0.15, "{found:?}");
     }
 
-    /// Noise of a third of a converter's step: most samples are the level, and those one step away are no
-    /// impact.
+    /// Noise of a third of a converter's step: most samples equal the level, and those one step away are no
+    /// impacts.
     #[test]
     fn the_last_digit_of_a_converter_is_no_impact() {
         let (mut noise, step) = (Noise::new(8), 1.0 / 2048.0);
@@ -235,7 +236,7 @@ mod levels {
             .map(|i| (0.33 * noise.normal()).round() * step + if i % 4000 == 2000 { 1.0 } else { 0.0 })
             .collect();
         let found = background(&values);
-        // Noise of a third of a step reaches two of them.
+        // Noise of a third of a step reaches two steps.
         assert!(found.reach > 2.5 * step && found.reach < 8.0 * step, "{found:?}");
         assert_eq!(bursts(&values, found.reach, None).0.len(), 5);
         // A switch has two values and no noise.

@@ -7,12 +7,12 @@ use vibro_signal::filter::Filter;
 
 /// Order of one pass of a filter.
 const ORDER: usize = 4;
-/// Highest corner as a part of half the sampling rate: the filter needs room for its flank.
+/// Highest corner over half the sampling rate: the filter needs room for its flank.
 const HIGHEST: f64 = 0.9;
 /// Number of bands, each an octave wide and half an octave below the one before.
 const BANDS: i32 = 10;
-/// Least kurtosis of a band with impacts: that of noise is 3, of a tone that comes and goes as a sine 2.9 or
-/// less (J. Antoni, Mech. Syst. Signal Process. 20 (2006) 282).
+/// Least kurtosis of a band with impacts: noise has 3, a tone whose amplitude varies as a sine 2.9 or less
+/// (J. Antoni, Mech. Syst. Signal Process. 20 (2006) 282).
 const IMPULSIVE: f64 = 3.5;
 
 /// Octaves in Hz below half the `rate` in Hz, the highest first.
@@ -21,10 +21,10 @@ pub fn octaves(rate: f64) -> impl Iterator<Item = (f64, f64)> {
     (0..BANDS).map(high).map(|high| (0.5 * high, high))
 }
 
-/// The values filtered to the band between both corners in Hz, without delay.
+/// The values, zero-phase filtered to the band between both corners in Hz.
 ///
 /// # Errors
-/// As those of [`Filter`].
+/// As [`Filter::high_pass`] and [`Filter::zero_phase`].
 pub fn within(values: &[f64], (low, high): (f64, f64), rate: f64) -> Result<Vec<f64>> {
     let above = Filter::high_pass(low, ORDER, rate)?.zero_phase(values)?;
     Filter::low_pass(high, ORDER, rate)?.zero_phase(&above)

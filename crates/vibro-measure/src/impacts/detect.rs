@@ -16,13 +16,13 @@ use vibro_record::units::notation::{counted, quantity, shortest};
 use vibro_record::{Error, Finding, Result, Trace, median};
 use vibro_signal::envelope::envelope;
 
-/// Height of the lowest impact over the median height of all bursts.
+/// Least height of an impact over the median height of all bursts.
 const THRESHOLD: f64 = 0.125;
 /// The assumed decay of the ringing must be able to change by this factor without changing the number of
 /// impacts.
 const STABLE: f64 = 2.0;
-/// Standard deviations of the noise by which the median height must exceed the noise limit: below that chance
-/// loses one impact in 700 or more.
+/// Standard deviations of the noise by which the median height must exceed the noise limit. At 3, noise
+/// hides one impact of median height in 740 (normal distribution); below 3, more.
 const LOST: f64 = 3.0;
 /// A trace is inverted where the median depth of its pulses exceeds their median height by this factor.
 const INVERTED: f64 = 1.2;
@@ -46,7 +46,8 @@ pub struct Detected {
     pub findings: Vec<Finding>,
     /// How the impacts were timed.
     pub(super) method: &'static str,
-    /// Interval in s within which each onset may lie anywhere; `None` where samples on the flanks show it.
+    /// Timing resolution in s: one sampling interval if the flanks are shorter than that; `None` if samples
+    /// on the flanks time the onset.
     pub(super) resolution: Option<f64>,
 }
 
@@ -59,8 +60,8 @@ pub fn detect(trace: &Trace, options: &ImpactsOptions) -> Result<Detected> {
     detect_among(trace, options, None)
 }
 
-/// Chooses the impacts among sounds, which come in the order of time, by the noise limit and the median
-/// height. Returns their places and findings.
+/// Selects the impacts among sounds in the order of time, given the noise limit and the median height in the
+/// unit of the trace. Returns the indices of the impacts, and findings.
 pub type Choose<'a> = &'a dyn Fn(&[Sound], f64, f64) -> Result<(Vec<usize>, Vec<Finding>)>;
 
 /// A sound that may be an impact.
@@ -80,8 +81,8 @@ pub(crate) fn detect_among(
 ) -> Result<Detected> {
     let rate = check(trace, options)?;
     let unit = trace.meta.unit.symbol();
-    // A force, a switch or the voltage of a sensor shows the contact itself. Sound levels have one sign, too,
-    // but last longer than a contact.
+    // Only a force or a voltage (switch or sensor) shows the contact itself. An envelope or a sound level
+    // has one sign, too, but lasts longer than the contact.
     let is_force = matches!(trace.meta.quantity, Quantity::Force | Quantity::Voltage) && !options.envelope;
     let mut findings = Vec::new();
     let (mut values, quiet, hum) = cleared(trace, options, rate, &mut findings)?;
@@ -101,7 +102,8 @@ pub(crate) fn detect_among(
     let low = all.len() - bursts.len();
     let ignored = Finding::note("low-bursts-ignored").count("n", low).number("level", least);
     findings.extend((low > 0).then(|| ignored.name("unit", unit)));
-    // An envelope does not swing. Bounces are searched in a band only where the whole record does not swing.
+    // Refuses a vibration. An envelope does not oscillate and is not checked. With `choose`, a band is not
+    // checked either: it is searched only after the full record passed this check.
     let swings =
         !options.envelope && if choose.is_none() { are_close(&bursts) } else { options.band.is_none() };
     if swings && let Some(swings) = Swings::of(&values, rate, &bursts, quiet.reach) {
@@ -176,7 +178,8 @@ fn in_doubt(
     ringing.into_iter().chain((above < LOST).then_some(lost))
 }
 
-/// The values without mains hum and level, or their envelope; their background, and the removed hum.
+/// The values in their band, less mains hum and level, or the envelope of these; their background; the
+/// removed hum.
 fn cleared(
     trace: &Trace,
     options: &ImpactsOptions,
@@ -198,9 +201,8 @@ fn cleared(
     Ok((values, quiet, hum))
 }
 
-/// The refusal of fewer than two impacts above the noise limit. The hint depends on whether bursts were
-/// ignored as too low (`lower`), a shorter pause separates more (`joined`), or a band is chosen already
-/// (`banded`).
+/// Error for fewer than two impacts above the noise limit. The hint depends on whether bursts were ignored
+/// as too low (`lower`), a shorter pause separates more (`joined`), or a band is chosen already (`banded`).
 fn too_few(
     n: usize,
     values: &[f64],
@@ -228,15 +230,15 @@ fn too_few(
     }
 }
 
-/// A pulse lasts as long as it exceeds this part of its height, or the noise limit where that is higher.
+/// A pulse lasts as long as it exceeds this fraction of its height, or the noise limit where that is higher.
 const FOOT: f64 = 0.1;
-/// A pulse that swings back by this part of its height rings, and is no contact force.
+/// A pulse that swings back by this fraction of its height rings, and is no contact force.
 const BACK: f64 = 0.2;
 
-/// Duration of an impact in s, the median of all. A pulse that is above the part p of its height for a time w
-/// lasts w where its flanks are steep, and πw/(π − 2 asin p) where it is half a sine: the truth is anywhere
-/// between. Slow impacts of round bodies last longer, so the durations seen widen the uncertainty as a
-/// uniform distribution.
+/// Duration of an impact in s, the median of all. A pulse that exceeds the fraction p of its height for a
+/// time w lasts w if its flanks are steep, and πw/(π − 2 asin p) if it is a half-sine; the truth is anywhere
+/// between. Slow impacts of round bodies last longer, so the range of all durations widens the uncertainty
+/// as a uniform distribution.
 fn contact(values: &[f64], bursts: &[Range<usize>], quiet: &Background, rate: f64) -> Option<Estimate> {
     let bounds = |burst: &Range<usize>| {
         let peak = burst.clone().max_by(|a, b| values[*a].total_cmp(&values[*b]))?;
@@ -266,13 +268,13 @@ fn contact(values: &[f64], bursts: &[Range<usize>], quiet: &Background, rate: f6
     Some(Estimate::new(0.5 * (least + most), Some(std), "s", all.len(), "time above a tenth of the height"))
 }
 
-/// A contact is open below this part of its height.
+/// A contact is open below this fraction of its height.
 const OPEN: f64 = 0.2;
-/// A contact is closed above this part of its height.
+/// A contact is closed above this fraction of its height.
 const CLOSED: f64 = 0.8;
 
-/// Finding on contacts of two levels that open and close again within an impact. A burst that swings below
-/// the background rings, and does not count.
+/// Finding on switching contacts, which have two levels, that open and close again within an impact. A burst
+/// that swings below the background is ringing, and does not count.
 fn chatter(values: &[f64], bursts: &[Range<usize>], rate: f64) -> Option<Finding> {
     let again = |burst: &Range<usize>| {
         let values = &values[burst.start.saturating_sub(1)..burst.end];
@@ -296,7 +298,7 @@ fn chatter(values: &[f64], bursts: &[Range<usize>], rate: f64) -> Option<Finding
     (!longest.is_empty()).then(|| found.number("within", within))
 }
 
-/// The values in their band, without delay.
+/// The values, zero-phase filtered to the band of the options.
 fn banded(trace: &Trace, options: &ImpactsOptions, rate: f64) -> Result<Vec<f64>> {
     if let Some((low, high)) = options.band {
         if low.partial_cmp(&high) != Some(Ordering::Less) {
@@ -327,20 +329,21 @@ fn heights(values: &[f64], bursts: &[Range<usize>], sign: f64) -> Vec<f64> {
 /// How impacts are found.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct ImpactsOptions {
-    /// Height of the lowest impact over the median height; 1/8 where `None`.
+    /// Least height of an impact over the median height. Default 1/8.
     pub threshold: Option<f64>,
     /// Shortest pause in s between two impacts. Default: from the pauses of the trace.
     pub refractory: Option<f64>,
-    /// Band in Hz to which the trace is filtered first, without delay. Default: all of it.
+    /// Band in Hz to which the trace is first filtered, with zero phase. Default: no filter.
     pub band: Option<(f64, f64)>,
     /// Whether impacts are searched in the envelope, which joins the swings of a ringing structure. Default
     /// false.
     pub envelope: bool,
     /// Whether mains hum stays in the trace. Default: it is removed.
     pub keep_hum: bool,
-    /// One recorded pulse with the shape of all. Default: the average of the pulses.
+    /// One recorded pulse, whose shape all pulses have. Default: the average of the pulses.
     pub shape: Option<Trace>,
-    /// Whether no impact is missed and none is too many, however uneven the intervals. Default false.
+    /// True if the impacts are known to be complete: every interval counts as one, even if intervals are
+    /// uneven. Default false.
     pub complete: bool,
     /// Frequency of the excitation in Hz, for impacts per cycle.
     pub excitation: Option<f64>,

@@ -4,30 +4,31 @@ use crate::mean::scatter;
 use std::collections::BTreeSet;
 use vibro_record::median;
 
-/// Longest delay of an echo of a room in s: a way of 14 m.
+/// Longest delay of an echo of a room in s: a path of 14 m.
 const LONGEST: f64 = 0.04;
 /// Largest height of an echo over that of its impact.
 pub const QUIETER: f64 = 0.8;
 /// Largest difference of two delays that count as one, in s.
 const SAME: f64 = 3e-4;
-/// Least part of the impacts followed by any quieter burst that have one at this delay.
+/// Of the impacts that any quieter burst follows, the least fraction that must have one at the delay of an
+/// echo.
 const MOST: f64 = 0.6;
-/// Largest part of the impacts that another burst precedes by the same delay: in a train of uneven heights
-/// most are.
+/// Largest fraction of the impacts that another burst precedes by the same delay: in a train of uneven
+/// heights most are preceded so.
 const FEW: f64 = 0.2;
 /// Fewest impacts with an echo.
 const ENOUGH: usize = 4;
 /// Least scatter of the intervals between impacts, over that of the delays, for sure echoes: an echo keeps
 /// its delay however a machine jitters.
 const APART: f64 = 4.0;
-/// Most quieter bursts after each within [`LONGEST`], on average. With more, chance alone puts one at any
-/// delay before more than [`FEW`] of the impacts, and no delay shows an echo.
+/// Most quieter bursts that follow a burst within [`LONGEST`], on average. With more, chance alone puts a
+/// burst at any delay before more than [`FEW`] of the impacts, so no delay can show an echo.
 const CROWD: f64 = FEW * LONGEST / (2.0 * SAME);
 
 /// Bursts that repeat impacts.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Echoes {
-    /// Their places in the list of bursts, in order.
+    /// Their indices in the list of bursts, in order.
     pub places: Vec<usize>,
     /// Longest of their delays in s.
     pub delay: f64,

@@ -1,5 +1,5 @@
-//! Impacts against their excitation: their phases, the fraction of impacts per cycle that they keep, or the
-//! beat by which they miss it.
+//! Impacts against their excitation: their phases, the fraction of impacts per cycle to which they are
+//! locked, or the beat by which they miss it.
 
 use super::interval::CountedImpacts;
 use super::interval::interval;
@@ -89,16 +89,16 @@ pub fn compare(
     Ok(())
 }
 
-/// A multiple of a fraction, as 2/2 of 1/1, counts where its phases scatter by less than this part of the
-/// scatter about the fraction itself.
+/// A multiple of a fraction, as 2/2 of 1/1, counts where its phases scatter by less than this fraction of
+/// the scatter about the fraction itself.
 const DOUBLED: f64 = 0.5;
 /// Most impacts, and most cycles, of a pattern.
 const LARGEST: usize = 8;
 /// Largest scatter of a pattern in cycles (root mean square): of n impacts about m cycles, and of each phase.
 const REPEATS: f64 = 0.1;
-/// Largest distance of a kept fraction from the rate, in standard uncertainties.
+/// Largest distance of a locked fraction from the rate (impacts per cycle), in standard uncertainties.
 const AGREES: f64 = 3.0;
-/// Largest relative distance from the rate of a fraction that is a candidate.
+/// Largest relative distance of a candidate fraction from the rate (impacts per cycle).
 const FITS: f64 = 0.02;
 
 /// Standard uncertainty in Hz of a stated frequency: anywhere within half a unit of its last digit.
@@ -110,7 +110,7 @@ fn last_digit(frequency: f64) -> f64 {
 /// Relation of the impacts to the excitation.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Locking {
-    /// They keep this fraction of impacts per cycle.
+    /// They are locked to this fraction of impacts per cycle.
     Locked(PerCycle),
     /// They come close to a fraction, but slip by this many impacts a cycle of the excitation (negative: too
     /// few).
@@ -165,7 +165,7 @@ fn locking(cycles: &[f64], index: &[usize], part: f64) -> Locking {
 
 /// Rising edges of a reference channel, one a cycle.
 struct Reference {
-    /// Cycle that each rising edge begins, and its place in samples; at least two.
+    /// Number of the cycle that each rising edge begins, and its position in samples; at least two edges.
     edges: Vec<(usize, f64)>,
     /// Number of missing edges.
     missing: usize,
@@ -218,7 +218,7 @@ impl Reference {
     }
 }
 
-/// Phases of the places of a pattern in cycles: circular mean and standard deviation (Mardia 1972) on a
+/// Phases of the impacts of a pattern, in cycles: circular mean and standard deviation (Mardia 1972) on a
 /// circle of all cycles of the pattern.
 fn phases(cycles: &[f64], index: &[usize], pattern: PerCycle) -> Vec<Phase> {
     let length = pattern.cycles as f64;

@@ -30,13 +30,12 @@ const FASTER: f64 = 1.5 * HARMONICS as f64;
 /// Largest noise between impacts after the removal of hum, over that before; with more it was no hum.
 const WORTH: f64 = 0.8;
 
-/// Removes the hum from `values` in a `unit`, sampled at `rate` in Hz, where there is any that matters, and
-/// returns it.
+/// Removes the hum from `values` in a `unit`, sampled at `rate` in Hz, if it is significant, and returns it.
 ///
 /// Each piece of at least five cycles is fitted by least squares with bisquare weights (Beaton and Tukey
-/// 1974), so impacts do not count. Nothing is removed where that lowers the noise between impacts by less
-/// than a fifth. Where impacts come as often as the hum or half as often, a sine with its harmonics fits them
-/// as well: the hum stays, and a finding reports it.
+/// 1974), so impacts get no weight. Nothing is removed where that lowers the noise between impacts by less
+/// than a fifth. Where impacts come as often as the hum or half as often, a sine with its harmonics fits
+/// them as well: the hum stays, and a finding reports it.
 pub fn remove(values: &mut [f64], (rate, unit): (f64, &str), findings: &mut Vec<Finding>) -> Option<Hum> {
     let piece = (PIECE * rate).min(values.len() as f64) as usize;
     if (piece as f64) < 0.1 * rate || piece < 32 {

@@ -25,9 +25,10 @@
 //! jitter of r = 7/n, which n impacts hardly show, more than doubles the uncertainty of a straight line.
 //!
 //! Neither noise of the onsets nor jitter makes neighbouring intervals positively correlated; a speed that
-//! wanders does. Where they are, u is at least the standard uncertainty of the mean of serially correlated
-//! values (Müller 2007). For 60 intervals with a correlation of 0.3, 0.5 and 0.7, ±1.96 u then covers T in
-//! 93.8, 93.8 and 92.6 %; with 0.9 in 89 %, and most of these are reported to wander.
+//! wanders does. Where neighbouring intervals are positively correlated, u is at least the standard
+//! uncertainty of the mean of serially correlated values (Müller 2007). For 60 intervals with a correlation
+//! of 0.3, 0.5 and 0.7, ±1.96 u then covers T in 93.8, 93.8 and 92.6 %; with 0.9 in 89 %, and most of these
+//! are reported to wander.
 
 use crate::mean::{Mean, average, mixture};
 use crate::residuals::widened;
@@ -77,7 +78,8 @@ pub fn interval(times: &[f64], indices: &[usize]) -> Option<Interval> {
 const JITTER_ALONE: f64 = 0.75;
 /// Prior median of the ratio of jitter to onset noise, where both are present.
 const SCALE: f64 = 0.5;
-/// Number of finite ratios above 0: this few average like thousands do, within 1 % of the uncertainty.
+/// Number of finite ratios above 0: so few give the same average as thousands, within 1 % of the
+/// uncertainty.
 const RATIOS: usize = 23;
 /// Largest finite ratio: beyond it onset noise does not show in the mean.
 const LARGEST: f64 = 30.0;
@@ -173,7 +175,7 @@ fn gls(d: &[f64], m: &[f64], angle: f64) -> Gls {
 
 /// Impacts that count, numbered as if none were missed.
 pub struct CountedImpacts {
-    /// Impacts that count, as places in the list of all.
+    /// Indices of the impacts that count, in the list of all.
     pub kept: Vec<usize>,
     /// Their numbers in the train; missed impacts leave gaps.
     pub index: Vec<usize>,
@@ -185,7 +187,7 @@ pub struct CountedImpacts {
 
 /// Robust standard deviations from the median beyond which the length of an interval is not chance.
 const OUTSIDE: f64 = 5.0;
-/// Largest part of odd intervals that passes for missed or doubled impacts. More belong to the motion: two
+/// Largest share of odd intervals that counts as missed or doubled impacts. More belong to the motion: two
 /// impacts a cycle at uneven distances make half of the intervals odd.
 const ACCIDENTS: f64 = 0.4;
 
@@ -219,14 +221,14 @@ pub fn count(times: &[f64], steps: &[f64], complete: bool) -> CountedImpacts {
     counted
 }
 
-/// Intervals are alike where they differ by less than this part of the shorter.
+/// Intervals are alike where they differ by less than this fraction of the shorter.
 const ALIKE: f64 = 0.1;
 /// Most impacts in one round of a pattern.
 const LONGEST: usize = 8;
 /// Fewest rounds of a pattern in a record.
 const SEEN: usize = 3;
-/// One unlike interval in a round of p makes 2/p of all neighbours unlike. A pattern needs this part of that
-/// number, as the ends of a record may lack one.
+/// One unlike interval in a round of p makes 2/p of all neighbours unlike. A pattern needs this fraction of
+/// that number, as the ends of a record may lack one.
 const UNLIKE: f64 = 0.8;
 
 /// Number of impacts after which all intervals repeat although neighbours differ, as for two impacts a cycle;
@@ -241,7 +243,7 @@ pub fn pattern(steps: &[f64]) -> Option<usize> {
     (2..=LONGEST).take_while(|p| steps.len() >= SEEN * p).find(repeats)
 }
 
-/// Times without the mean shift of each place in a pattern of `length` impacts: an even train.
+/// Times less the mean shift of each impact within a pattern of `length` impacts: an even train.
 pub fn evened(times: &[f64], length: usize) -> Vec<f64> {
     let rounds: f64 = times.windows(length + 1).map(|w| w[length] - w[0]).sum();
     let interval = rounds / (length * (times.len() - length)) as f64;
@@ -341,7 +343,8 @@ mod tests {
         }
     }
 
-    /// Mean and standard uncertainty over even steps of the prior probability, ratios from 0 to ∞.
+    /// Reference: mean and standard uncertainty, averaged over even steps of the prior probability of ratios
+    /// from 0 to ∞.
     fn plain(d: &[f64], m: &[f64], steps: usize) -> (f64, f64) {
         let mut fits = vec![(0.75, gls(d, m, FRAC_PI_2))];
         for i in 0..steps {
@@ -402,7 +405,8 @@ mod counts {
         assert_eq!(pattern(&[0.1; 30]), None);
         for seed in 0..500 {
             let mut noise = Noise::new(seed);
-            // First one impact in five missed by chance; then intervals of any length.
+            // First case: one impact in five is missed by chance. Second case: exponentially distributed
+            // intervals.
             let missing: Vec<f64> = (0..40).map(|_| if noise.uniform() < 0.2 { 0.2 } else { 0.1 }).collect();
             assert_eq!(pattern(&missing), None, "seed {seed}");
             let any: Vec<f64> = (0..40).map(|_| -noise.uniform().max(1e-9).ln()).collect();

@@ -16,16 +16,16 @@ pub struct Onset {
     pub height: f64,
 }
 
-/// A flank is sharp where the samples before and after half height lie within this part of the height from
-/// background and top.
+/// A flank is sharp if the last sample below half height lies within this fraction of the height above the
+/// background, and the next sample within this fraction below the top.
 const SHARP: f64 = 0.1;
 /// Fewest impacts whose average pulse is used.
 const ENOUGH: usize = 8;
-/// Pulses of a trial whether all are like their average: the share of like ones then has a standard deviation
-/// of 3 %.
+/// Number of pulses in a first test whether the pulses are like their average: the share of like pulses then
+/// has a standard deviation of 3 %.
 const TELLING: usize = 256;
 
-/// First lobe of a burst, as its flanks show it.
+/// First lobe of a burst, with the times and the height that its flanks give.
 struct Lobe {
     /// Its time is NaN where the record cuts the rising flank.
     onset: Onset,
@@ -47,9 +47,9 @@ pub struct Onsets {
     pub sharp: bool,
 }
 
-/// Onsets of the bursts of `values`, whose background has the level 0 and the noise `sigma`. With a known
-/// shape each pulse is matched to it; eight like pulses or more are matched to their average; otherwise each
-/// rising flank is interpolated at half its height.
+/// Onsets of the bursts of `values`, whose background has the level 0 and the noise `sigma`. If the shape of
+/// the pulses is known, each pulse is matched to it. Otherwise eight or more pulses of like shape are
+/// matched to their average. Else each rising flank is interpolated at half its height.
 pub fn onsets(values: &[f64], bursts: &[Range<usize>], sigma: f64, known: Option<&PulseShape>) -> Onsets {
     let lobes: Vec<Lobe> = bursts.iter().filter_map(|b| lobe(values, b, sigma)).collect();
     let whole: Vec<&Lobe> = lobes.iter().filter(|l| l.onset.time.is_finite()).collect();
@@ -77,15 +77,14 @@ fn by_average(values: &[f64], lobes: &[Lobe], whole: &[&Lobe], sigma: f64) -> Op
     }
     let width = median(&widths).max(1.0);
     let span = -2.0 * width.max(1.5)..1.5 * width.max(1.5);
-    // Where a record begins within an impact, its flank is expected as long before the peak as the others
-    // have theirs.
+    // If the record begins within an impact, its flank is assumed at the median distance before the peak.
     let rise = median(whole.iter().map(|l| l.peak as f64 - l.onset.time));
     let expected = |l: &Lobe| Onset { time: l.peak as f64 - rise, ..l.onset };
     let flanks: Vec<Onset> =
         lobes.iter().map(|l| if l.onset.time.is_finite() { l.onset } else { expected(l) }).collect();
     let near = |(m, flank): (&Option<Matched>, &Onset)| m.filter(|m| (m.time - flank.time).abs() < width);
-    // Residual of a pulse over the limit for a like one, the larger of twice the noise and a tenth of its
-    // height.
+    // Residual of a pulse over the limit for likeness, which is the larger of twice the noise and a tenth of
+    // its height.
     let residual =
         |m: &Matched| (m.variance.sqrt() / (2.0 * sigma)).min(m.variance.sqrt() / (0.1 * m.height));
     let alike = |flanks: &[Onset]| {
@@ -94,7 +93,7 @@ fn by_average(values: &[f64], lobes: &[Lobe], whole: &[&Lobe], sigma: f64) -> Op
         let residuals = own.iter().map(|m| m.as_ref().map_or(f64::MAX, residual));
         (median(residuals) <= 1.0).then_some((matched, own))
     };
-    // If a sample of the pulses differs from its average, spare the matching of all.
+    // If the pulses of a subset differ from their average, do not match all pulses.
     if flanks.len() > TELLING {
         let few = (0..TELLING).map(|k| flanks[k * flanks.len() / TELLING]);
         alike(&few.collect::<Vec<Onset>>())?;
@@ -131,9 +130,9 @@ fn lobe(values: &[f64], burst: &Range<usize>, sigma: f64) -> Option<Lobe> {
     let time = below as f64 + part;
     let near = SHARP * height;
     let sharp = values[below] < near && values[below + 1] > height - near;
-    // Noise of both neighbours and of the level; and the error of the chord, which depends on where the
-    // samples lie on a flank of p samples. For half a sine the chord is off by (π/2p)² sin 30°/8 over a slope
-    // of 1.36/p, the highest sample by as much: 0.05/p, root mean square.
+    // Noise of both neighbours and of the level, and the error of linear interpolation. That depends on
+    // where the samples lie on a flank of p samples. For a half-sine the chord is off by (π/2p)² sin 30°/8
+    // at a slope of 1.36/p, and the highest sample is too low by as much: together 0.05/p (RMS).
     let noise = sigma * (part.powi(2) + (1.0 - part).powi(2) + 0.25).sqrt() / slope;
     let std = noise.hypot(0.05 / (peak as f64 - time).max(0.5));
     let falls = (peak + 1..values.len()).find(under).map_or(f64::NAN, |above| {
@@ -162,7 +161,7 @@ const OUTLYING: f64 = 4.0;
 
 /// Most knots of an average pulse.
 const KNOTS: usize = 48;
-/// Most knots of a recorded pulse: as many as a pulse has features, and its spline takes a tenth of a second.
+/// Most knots of a recorded pulse: enough for its features, and its spline is fitted within 0.1 s.
 const RECORDED: usize = 400;
 /// Most rounds of averaging and matching.
 const ROUNDS: usize = 20;
@@ -173,8 +172,8 @@ const CONVERGED: f64 = 1e-3;
 /// origin are those of the heights and of the median time of the onsets. `None` where the pulses determine no
 /// average.
 pub fn averaged(values: &[f64], onsets: &[Onset], span: &Range<f64>) -> Option<Vec<Option<Matched>>> {
-    // Knots lie no closer than samples: a shape that may bend from sample to sample follows any error of the
-    // times that depends on their fraction of a sample.
+    // Knots are no closer than samples. A shape with finer knots would follow errors of the times that
+    // depend on their position between two samples.
     let knots = ((span.end - span.start).floor() as usize).clamp(4, KNOTS);
     let mut at: Vec<(f64, f64)> = onsets.iter().map(|o| (o.time, o.height)).collect();
     let mut matched = Vec::new();
@@ -362,7 +361,7 @@ mod shapes {
         let times: Vec<f64> = (0..20).map(|k| 20.0 + 30.37 * f64::from(k)).collect();
         let values: Vec<f64> =
             (0..640).map(|i| times.iter().map(|t| gauss(f64::from(i) - t)).sum::<f64>()).collect();
-        // Starts that are off by up to 0.3 samples, as flanks of coarse samples are.
+        // Starting times are off by up to 0.3 samples, like those from coarsely sampled flanks.
         let rough: Vec<f64> =
             times.iter().enumerate().map(|(k, t)| t + 0.3 * (k as f64 * 2.4).sin()).collect();
         let onsets: Vec<Onset> = rough.iter().map(|t| Onset { time: *t, std: 0.0, height: 1.0 }).collect();

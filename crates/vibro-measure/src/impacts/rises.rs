@@ -8,23 +8,24 @@ const RISE: f64 = 3.0;
 /// Least height of a sound over the noise limit: ringing that falls through the limit rises above it again by
 /// chance.
 const CLEAR: f64 = 1.5;
-/// Span in s in which a level rises at once: longer than the contact of metals and hard plastics (below 1
-/// ms), than half a swing of a plate of 170 Hz or more, and than the loudest part of their sound.
+/// Duration in s of a sudden rise: longer than the contact of metals and hard plastics (below 1 ms), than
+/// half a swing of a plate of 170 Hz or more, and than the loudest part of their sound.
 const SPAN: f64 = 3e-3;
 
 /// Stretches of one span, each from where a sound has risen to half of its largest value. That value exceeds
-/// the noise limit `reach` by [`CLEAR`], and the largest of the span before by [`RISE`] where that is above
-/// the noise limit.
+/// the noise limit `reach` by the factor [`CLEAR`]. It also exceeds the largest value of the span before by
+/// the factor [`RISE`], unless that is below the noise limit.
 pub fn rises(values: &[f64], reach: f64, rate: f64) -> Vec<Range<usize>> {
     let span = ((SPAN * rate) as usize).max(2);
     let ahead = largest_ahead(values, span);
     let mut found: Vec<Range<usize>> = Vec::new();
     let mut i = 0;
     while i < values.len() {
-        // A record that begins loud begins within a sound, and not with an impact.
+        // A record that begins loud begins within a sound, not with an impact: a quarter of a span counts as
+        // before.
         let known = i.max(span / 4).min(values.len());
         let before = if i < span { largest(&values[..known]) } else { ahead[i - span] };
-        // A level below the noise limit is noise, not a sound to rise from.
+        // A level before that is below the noise limit is noise: the rise above it is not tested.
         if ahead[i] <= CLEAR * reach || before > reach && ahead[i] <= RISE * before {
             i += 1;
             continue;
@@ -44,7 +45,7 @@ pub fn largest(values: &[f64]) -> f64 {
 /// Largest absolute value of the span that begins at each sample.
 fn largest_ahead(values: &[f64], span: usize) -> Vec<f64> {
     let mut all = vec![0.0; values.len()];
-    // Places of values larger than all values between sample `i` and them, the largest first.
+    // Indices of the values that exceed all values between sample `i` and them, the largest first.
     let mut kept: VecDeque<usize> = VecDeque::new();
     for i in (0..values.len()).rev() {
         while kept.back().is_some_and(|k| values[*k].abs() <= values[i].abs()) {
@@ -66,8 +67,8 @@ mod tests {
 
     #[test]
     fn a_record_that_begins_in_a_sound_does_not_begin_with_an_impact() {
-        // A ring of 2 kHz that fades within 10 ms, and an impact that rings so after 50 ms; sampled at 20
-        // kHz.
+        // Ringing at 2 kHz that fades within 10 ms, and an impact after 50 ms that rings in the same way;
+        // sampled at 20 kHz.
         let ring =
             |t: f64| if t < 0.0 { 0.0 } else { (-t / 2e-3).exp() * (4e3 * std::f64::consts::PI * t).sin() };
         let values: Vec<f64> =

@@ -215,7 +215,7 @@ fn edges_within_one_sample_leave_the_interval_unsure() {
             cases += 1;
         }
     }
-    // Of 72 cases, 95 % but for two standard deviations of 1.8.
+    // 95 % of 72 cases, less two standard deviations of 1.8 cases.
     assert!(inside * 100 >= cases * 90, "seed {seed}: {inside} of {cases}");
     // An excitation wrong by more than the samples hide gives a drift with a stated beat.
     let mut values = vec![0.0; 4400];
@@ -280,9 +280,9 @@ fn ball_passages_in_the_sound_of_a_machine() {
     }
 }
 
-/// Ticks of a clock in a room: each begins at once and dies away as noise does, with peaks of any height.
-/// Half of the largest of 48 samples of noise, 2.3σ, is passed by one in four: an onset scatters by 3.5
-/// samples, and ten intervals of 0.5 s by √2·3.5/16 000/10 s.
+/// Ticks of a clock in a reverberant room: each is noise that begins abruptly and decays. The largest of 48
+/// samples of noise is 2.3σ, and one sample in four passes half of that. An onset therefore scatters by 3.5
+/// samples, the mean of ten intervals of 0.5 s by √2·3.5/16 000/10 s.
 #[test]
 fn ticks_in_a_room_that_reverberates_are_counted_once() {
     let (mut noise, rate) = (Noise::new(31), 16_000.0);
@@ -315,8 +315,8 @@ fn what_has_no_period_is_refused() {
     assert!((found.n as f64 - 100.0).abs() < 12.0, "{}", found.n);
 }
 
-/// A train of bursts at 25.6 kHz that ring at 3 kHz and decay by e within this part of their period, in noise
-/// of 1/200 of their height.
+/// A train of bursts sampled at 25.6 kHz. They ring at 3 kHz, decay by the factor e within `part` of their
+/// period, and lie in noise of 1/200 of their height.
 fn ringing(part: f64, offset: f64) -> Trace {
     let (rate, n, period) = (25_600.0, 25_600, 0.0123);
     let mut noise = Noise::new(12);
@@ -351,7 +351,7 @@ fn an_envelope_that_rings_until_the_next_impact_has_them_all() {
     }
 }
 
-/// The hint of a refusal is tried: with it the impacts are found.
+/// Each hint of an error, when followed, finds the impacts.
 #[test]
 fn the_hints_of_a_refusal_find_the_impacts() {
     let plain = ImpactsOptions::default();
@@ -376,8 +376,8 @@ fn the_hints_of_a_refusal_find_the_impacts() {
     let hiss = trace((0..25_600).map(|_| noise.normal()).collect(), 25_600.0);
     let why = impacts(&hiss, &beside).unwrap_err().to_string();
     assert!(why.contains("another band"), "{why}");
-    // A pause longer than the period joins all impacts. Where a record has one impact alone, the hint does
-    // not blame the pause.
+    // A pause longer than the period joins all impacts. For a record with only one impact, the hint does not
+    // suggest a shorter pause.
     let long = ImpactsOptions { refractory: Some(0.1), ..plain.clone() };
     let why = impacts(&ringing(0.05, 0.0), &long).unwrap_err().to_string();
     assert!(why.contains("shorter pause"), "{why}");
@@ -387,7 +387,7 @@ fn the_hints_of_a_refusal_find_the_impacts() {
     assert!(!why.contains("pause"), "{why}");
 }
 
-/// Impacts of a machine of about 80 ms that jitter by a part of it, each with two echoes.
+/// Impacts of a machine every 80 ms, with a jitter of `jitter` times 80 ms. Two echoes follow each.
 fn echoing(seed: u64, jitter: f64, echo: f64) -> (Trace, Vec<f64>) {
     let (rate, mut noise) = (20_000.0, Noise::new(seed));
     let times: Vec<f64> = (0..40).map(|k| 0.05 + 0.08 * (f64::from(k) + jitter * noise.normal())).collect();
@@ -414,8 +414,8 @@ fn echoes_are_no_impacts() {
             // Four of the stated standard uncertainties.
             assert!((found.interval.value - 0.08).abs() < 4.0 * found.interval.std.unwrap(), "{mean}");
         }
-        // A machine without jitter may as well strike thrice: the result is in doubt, and the pause that the
-        // finding names removes the echoes.
+        // Without jitter, the bursts may also be three impacts a cycle. The finding expresses this doubt,
+        // and the pause that it names removes the echoes.
         let (record, _) = echoing(9, 0.0, echo);
         let found = impacts(&record, &ImpactsOptions::default()).unwrap();
         let doubt = found.findings.iter().find(|f| f.code == "impacts-or-echoes");
@@ -474,15 +474,16 @@ fn the_fault_of_an_outer_race_is_found_in_the_band_in_which_it_rings() {
         println!("bearing {seed}: {} Hz ± {std}, {off:.2} std, {} impacts", found.frequency.value, found.n);
         answered += 1;
         within += usize::from(off < 2.0);
-        // A plausible wrong period, as of every second impact or of the shaft, is thousands of these away.
+        // A plausible wrong period, such as that of every second impact or of the shaft, is thousands of
+        // uncertainties away.
         assert!(off < 4.0, "{seed}: {:?} {:?}", found.frequency, found.findings);
     }
     // Of five, 4.75 within two standard uncertainties.
     assert!(answered >= 4 && within + 1 >= answered, "{answered} {within}");
 }
 
-/// A free decay of 9.6 Hz from a pluck, at several rates and dampings: its swings are no impacts, however
-/// they are searched.
+/// A free decay of 9.6 Hz after a pluck, for several sampling rates and damping ratios: no search takes its
+/// swings for impacts.
 #[test]
 fn the_swings_of_a_free_decay_are_no_impacts() {
     for (rate, zeta) in [(500.0, 0.01), (2000.0, 0.003), (2000.0, 0.03), (10_000.0, 0.02)] {

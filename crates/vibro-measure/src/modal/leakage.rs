@@ -53,7 +53,8 @@ impl Leakage {
         self.length * sum.sum::<Complex64>()
     }
 
-    /// A mode `own`, `zeta` at `x` (both angular) with (ix)^`power` before it and a modal constant of 1.
+    /// Response at the angular frequency `x` of a mode with natural angular frequency `own`, damping ratio
+    /// `zeta` and modal constant 1, times (ix)^`power`.
     pub fn mode(&self, x: f64, (own, zeta): (f64, f64), power: i32) -> Complex64 {
         let pole = own * Complex64::new(-zeta, (1.0 - zeta * zeta).max(0.0).sqrt());
         let part = |pole: Complex64| pole.powi(power) * self.inverse(Complex64::new(0.0, x) - pole);
@@ -66,7 +67,7 @@ impl Leakage {
 mod tests {
     use super::*;
 
-    /// r(τ) by sums over the window's samples, and its transform by Simpson's rule.
+    /// Reference: r(τ) and its transform, both by Simpson's rule.
     fn by_sums(window: Window, length: f64, s: Complex64) -> Complex64 {
         let n = 2000;
         let at = |t: f64| -> f64 {
@@ -133,7 +134,7 @@ mod averaged {
     use vibro_record::{Axis, Meta, Record, Trace, Traces};
     use vibro_signal::transfer::Estimator;
 
-    /// A mode under noise: ẍ + 2ζωẋ + ω²x = f, f white, sampled; its impulse response is sin(ω′t)
+    /// A mode driven by white noise f: ẍ + 2ζωẋ + ω²x = f, sampled; its impulse response is sin(ω′t)
     /// exp(−ζωt)/ω′.
     fn records(seed: u64, (own, zeta): (f64, f64), rate: f64, n: usize) -> [Trace; 2] {
         let mut noise = Noise::new(seed);
@@ -181,7 +182,7 @@ mod averaged {
             far[1] += ((mode.frequency.value - own) / mode.frequency.std.unwrap()).powi(2);
             far[2] += ((mode.modal_constant.value - 1.0) / mode.modal_constant.std.unwrap()).powi(2);
         }
-        // χ² of 12: 32.9 is passed by one in a thousand.
+        // χ² with 12 degrees of freedom exceeds 32.9 in one of a thousand cases.
         assert!(far.iter().all(|sum| *sum < 32.9), "{far:?}");
     }
 }

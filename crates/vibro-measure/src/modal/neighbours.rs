@@ -5,7 +5,7 @@ use num_complex::Complex64;
 use vibro_math::Noise;
 use vibro_record::units::Quantity;
 
-/// A receptance with noise of two random modes, half to five bandwidths apart, and those modes.
+/// Noisy receptance of two random modes, half to five bandwidths apart, and these modes.
 fn pair(seed: u64) -> (Measured, [Pole; 2]) {
     let mut noise = Noise::new(seed);
     let zeta = 0.005 * 4f64.powf(noise.between(0.0, 1.0));
@@ -23,9 +23,10 @@ fn pair(seed: u64) -> (Measured, [Pole; 2]) {
     (Measured::new(frequency, values, Quantity::Receptance), modes)
 }
 
-/// Half to five bandwidths apart, 30 to 60 dB above the noise. With the search for modes without a peak 94 %
-/// of the modes are found, and 91 % of their values lie within 1.96 standard uncertainties; the rest are
-/// mostly two modes within a bandwidth that pass for one. Without the search 76 % of the values did.
+/// Pairs of modes half to five bandwidths apart, 30 to 60 dB above the noise (amplitudes). With the search
+/// for modes without a peak 94 % of the modes are found, and 91 % of their values lie within 1.96 standard
+/// uncertainties; the others are mostly two modes within a bandwidth that are found as one. Without the
+/// search 76 % of the values did.
 #[test]
 #[ignore = "Monte Carlo: cargo test --release -- --ignored"]
 fn modes_beside_higher_ones_are_found_and_covered() {

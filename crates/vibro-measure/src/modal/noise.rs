@@ -87,8 +87,8 @@ impl Banded {
     }
 }
 
-/// Grid steps a line, for four segments of time: a mode with a bandwidth of one line decays to exp(−4π) in
-/// them.
+/// Grid steps for each line. The grid then covers a time of four segments, in which a mode with a bandwidth
+/// of one line decays to exp(−4π).
 pub(super) const STEPS: usize = 4;
 
 /// Lines on either side of a line from which leakage is taken: beyond, the transform of a Hann window is
@@ -98,8 +98,8 @@ const REACH: usize = 4;
 /// Steps of the grid before the first line, and after the last.
 pub(super) const MARGIN: usize = REACH * STEPS;
 
-/// Least variance of the noise of a line, over that of the leakage there: no excitation is quite flat, and
-/// the covariance needs an inverse.
+/// Least variance of the noise of a line, over that of the leakage there: no excitation spectrum is quite
+/// flat, and the covariance matrix must have an inverse.
 const LEAST: f64 = 0.02;
 
 /// Noise of H1 over segments under a window. `h` is the function without leakage on a grid; the lines are at
@@ -161,8 +161,9 @@ pub(super) fn of_segments(window: Window, h: &[Complex64], at: &[usize], total: 
     Some(LineNoise { each, factor: Some(factor) })
 }
 
-/// Variance of the noise of the response at each line: what `total` exceeds the leakage by, averaged over
-/// near lines, since noise is smooth, with weights by their uncertainty. At least [`LEAST`] of the leakage.
+/// Variance of the noise of the response at each line: the excess of `total` over the leakage. It is
+/// averaged over near lines, since noise is smooth, with weights by their uncertainty. At least [`LEAST`] of
+/// the leakage.
 fn background(total: &[f64], leakage: &[f64]) -> Vec<f64> {
     let all = |(i, mean): (usize, f64)| {
         let (mut sum, mut weights) = (0.0, 0.0);
@@ -176,8 +177,8 @@ fn background(total: &[f64], leakage: &[f64]) -> Vec<f64> {
     smoothed(total).into_iter().enumerate().map(all).collect()
 }
 
-/// Lines on either side over which the noise by the coherence is averaged. With two averages the noise of
-/// one line has 2 degrees of freedom, that of all 31 has 62: a weight then scatters by 9 %.
+/// Lines on either side over which the noise that the coherence gives is averaged. With two averages the
+/// noise of one line has 2 degrees of freedom, that of all 31 has 62: a weight then scatters by 9 %.
 const NEAR: usize = 15;
 
 fn near(i: usize, n: usize) -> std::ops::Range<usize> {

@@ -47,8 +47,7 @@ struct Scaled<'a> {
     known: RefCell<Vec<([u64; 2], Vec<Complex64>)>>,
 }
 
-/// Smallest sum of squares, unweighted, that modes at `starts` leave of the lines: to choose among first
-/// guesses.
+/// Smallest unweighted sum of squared residuals of modes near `starts`, to choose among first guesses.
 pub(super) fn residual_sum(
     measured: &Measured,
     part: std::ops::Range<usize>,
@@ -384,7 +383,7 @@ fn rivals(
 }
 
 /// Largest standard uncertainty of a damping ratio, over the ratio, of a mode that is determined; beyond it
-/// the peak may be anything.
+/// the fit does not determine the mode.
 const KNOWN: f64 = 0.5;
 
 impl Rational {
@@ -437,8 +436,8 @@ impl Scaled<'_> {
                 let own = re_part * re_part * covariance(re, re) + im_part * im_part * covariance(im, im);
                 (own + 2.0 * re_part * im_part * covariance(re, im)).sqrt()
             };
-            // |a| moves with its real part by cos and with its imaginary part by sin of its phase; the phase,
-            // times |a|, by −sin and cos.
+            // Derivatives with respect to the real and the imaginary part of a: for |a| they are cos and sin
+            // of its phase, for the phase times |a| they are −sin and cos.
             let (cos, sin) = (a.re / a.norm(), a.im / a.norm());
             let std = [
                 f * zeta * covariance(4 * m, 4 * m).sqrt(),

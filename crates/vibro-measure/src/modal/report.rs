@@ -10,13 +10,13 @@ use std::f64::consts::TAU;
 use vibro_record::Finding;
 use vibro_record::code;
 
-/// A modal constant has a sign where its phase is within this of 0 or 180°, in degrees.
+/// A modal constant has a sign if its phase is within this angle in degrees of 0° or 180°.
 const IN_STEP: f64 = 45.0;
 /// Bandwidth in lines below which the half-power method is wrong by tens of per cent.
 const LINES_OF_HALF_POWER: f64 = 8.0;
 
-/// Largest residual of a fit, root mean square over the highest line; beyond it these are no modes as
-/// modelled.
+/// Largest residual of a fit, root mean square over the highest line; beyond it the model does not describe
+/// the lines.
 const EXPLAINED: f64 = 0.1;
 
 /// One mode of a group that was fitted.
@@ -77,8 +77,8 @@ impl Candidate<'_> {
         let phase = own.constant.arg().to_degrees();
         let no_sign = !measured.magnitude_only && (IN_STEP..180.0 - IN_STEP).contains(&phase.abs());
         find(no_sign, Finding::caution("modal-constant-no-sign").number("phase", phase));
-        // Without the window's decay the uncertainty of ζωᵣ is the same, and that of the constant changes by
-        // the factor of the constant.
+        // Removing the window's decay keeps the uncertainty of ζωᵣ, and changes that of the constant by the
+        // same factor as the constant.
         std[1] *= pole.frequency / own.frequency;
         std[2] *= own.constant.norm() / pole.constant.norm();
         // A further mode matters within two bandwidths on either side.

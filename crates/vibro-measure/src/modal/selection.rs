@@ -12,7 +12,8 @@ use vibro_record::{Error, Result, Window, median};
 /// Most modes in one group: with more, the parameters outgrow the lines.
 const TOGETHER: usize = 6;
 
-/// First guesses of frequency in Hz and damping ratio for `peaks`, from place and half-power bandwidth.
+/// First guesses of frequency in Hz and damping ratio for `peaks`, from the line and the half-power
+/// bandwidth of each.
 fn starts(lines: &Measured, peaks: &[Peak]) -> Vec<(f64, f64)> {
     let start = |p: &Peak| (lines.frequency[p.at], p.width / (2.0 * lines.frequency[p.at]));
     peaks.iter().map(start).collect()
@@ -33,8 +34,8 @@ pub(super) fn averaging(lines: &mut Measured, groups: &[PeakGroup]) -> bool {
     (without - with).abs() > NO_SUPPORT
 }
 
-/// Fits the peaks of a group that the lines need. The group keeps those; the others are added to
-/// `unsupported`.
+/// Fits those peaks of a group that the lines support as modes. The group keeps them; the others are added
+/// to `unsupported`.
 ///
 /// The highest peaks are fitted at once: without a strong one the others would bend to explain its lines.
 /// Modes that are not determined, or not needed beside the others, are dropped.
@@ -149,8 +150,8 @@ fn narrowed(lines: &Measured, group: &mut PeakGroup, wide: Rational) -> Rational
 }
 
 /// Least drop of Akaike's criterion for an additional mode that shows no peak. Its four parameters then
-/// explain 28 of χ², as chance does in one of 10⁵ peaks; a drop of ten (Burnham & Anderson 2002, 2.6) would
-/// be chance in one of a thousand.
+/// lower χ² by 28, which chance does at one of 10⁵ peaks. A drop of ten (Burnham & Anderson 2002, 2.6)
+/// occurs by chance at one of a thousand.
 const SPLIT: f64 = 20.0;
 
 /// Distances from a mode, in its bandwidths, at which a neighbour without a peak is searched.
@@ -167,7 +168,7 @@ const APART: f64 = 0.25;
 /// A neighbour lower than this fraction of the highest peak of a group is left to the residual terms.
 const LOW: f64 = 0.05;
 
-/// Number of the best places of [`BESIDE_A_MODE`] at which a further mode is fitted.
+/// Number of the best distances of [`BESIDE_A_MODE`] at which a further mode is fitted.
 const TRIED: usize = 3;
 
 /// The best fit of a group with one more mode than `fit`, whether it shows a peak or not; `others` are
@@ -239,7 +240,7 @@ pub(super) fn complete(
             (group.peaks, *fit, sound) = (peaks, more, its);
             continue;
         }
-        // A mode that does not lower the criterion leaves the uncertainties as they are.
+        // A further mode that does not lower the criterion does not change the uncertainties.
         if better <= 0.0 {
             break;
         }
@@ -437,7 +438,7 @@ mod bands {
         let all = groups(&found, None).unwrap();
         let peaks: Vec<usize> = all.iter().flat_map(|g| g.peaks.iter().map(|p| p.at)).collect();
         // A third of 2000 lines are local maxima. Fewer than one line of noise in 3000 passes four
-        // deviations; with deviations that are wrong by a quarter one in 90 does.
+        // deviations; with a standard deviation that is too small by a quarter, one in 90 does.
         assert!(peaks.contains(&1000) && peaks.len() < 22, "{peaks:?}");
         let sizes = measured(true);
         assert!(groups(&sizes, None).unwrap().iter().any(|g| g.peaks.iter().any(|p| p.at == 1000)));

@@ -271,7 +271,7 @@ mod curved {
             let contact = Rebound::power_law(alpha, 1.5, 1.5).unwrap();
             let level = |v: f64| v / alpha - (alpha * v).ln_1p() / (alpha * alpha);
             let (before, after) = (level(1.0), level(-contact.restitution));
-            // As above.
+            // Tolerance as for Hertz.
             assert!((before - after).abs() < 1e-5 * before, "{alpha} {before} {after}");
         }
         assert!(
@@ -279,7 +279,7 @@ mod curved {
         );
     }
 
-    /// With both exponents alike the same balance holds for any; with those of spring and damper the contact
+    /// With equal exponents of any size the same balance holds; with those of spring and damper the contact
     /// is that of [`KelvinVoigt`]; a spring that yields keeps the part R² of its energy.
     #[test]
     fn other_exponents_and_a_yielding_spring_balance_the_energy() {

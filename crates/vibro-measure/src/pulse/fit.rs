@@ -32,9 +32,9 @@ pub(super) struct FittedPulse {
     pub model: ContactModel,
     pub fit: Fit,
     pub whiteness: Whiteness,
-    /// Factor on the uncertainties by the fit's covariance. `None` where the record does not begin as the
-    /// model does, so that the parameters may be anything: coloured residuals are larger around the onset
-    /// than elsewhere, or the onset lies outside the two samples between which the contact begins.
+    /// Factor on the uncertainties by the fit's covariance. `None` if the record does not begin as the model
+    /// does, so that the parameters are meaningless: coloured residuals are larger around the onset than
+    /// elsewhere, or the onset lies outside the two samples between which the contact begins.
     pub widening: Option<f64>,
     /// Index of the first sample inside the contact, where the model begins with a jump.
     first: Option<usize>,
@@ -77,7 +77,7 @@ const AROUND: f64 = 0.1;
 const LIKELY: [(f64, f64); 2] = [(1.5, 0.5), (1.0, 0.75)];
 
 impl Samples<'_> {
-    /// Delay of the low-pass.
+    /// Delay of the low-pass, in lengths of the pulse.
     fn delay(&self) -> f64 {
         self.filter.map_or(0.0, LowPass::delay)
     }
@@ -144,10 +144,10 @@ impl Samples<'_> {
                 Some((at(f64::midpoint(self.times[first - 1], self.times[first])), Some(first)))
             }));
         }
-        // Noise may move the onset beyond the two samples: the sum of squares is then that with the onset
-        // held between them, to first order. An onset beyond them by more than noise explains and by more
-        // than half a sample, or by more than half of the pulse, follows a rise that the model does not
-        // have.
+        // Noise may move the onset beyond the two samples: the sum of squares is then increased, to first
+        // order, to that with the onset fixed at the nearer sample. An onset beyond them by more than noise
+        // explains and by more than half a sample, or by more than half of the pulse, follows a rise that
+        // the model does not have.
         let held = |fit: &FittedPulse| {
             let (onset, std) = (fit.fit.parameters[0], fit.fit.std(0));
             let beyond =
@@ -175,10 +175,11 @@ impl Samples<'_> {
         Ok(best)
     }
 
-    /// Replaces the best of the `fits` whose onsets lie between different samples by the mean over all onsets
-    /// between any of these, each as likely as its sum of squares makes it. For an onset x the others of the
-    /// parameters pᵢ with cofactor C are pᵢ + Cᵢ₀/C₀₀ (x − p₀): the jump of the force tells between which
-    /// samples the contact begins, and this tells more of the onset, and by it of ξ, than the shape does.
+    /// Replaces the best of the `fits` whose onsets lie between different samples by the mean over all
+    /// onsets between any of these, each weighted with its likelihood by the sum of squares. For an onset x
+    /// the other parameters pᵢ with cofactor C are pᵢ + Cᵢ₀/C₀₀ (x − p₀). The jump of the force shows
+    /// between which samples the contact begins. This determines the onset, and with it ξ, better than the
+    /// shape does.
     fn between_samples(&self, fits: &mut [((bool, f64), FittedPulse)]) {
         let Some(((false, _), FittedPulse { fit: best, first: Some(_), .. })) = fits.first() else { return };
         let variance = best.variance().max(self.noise().1.powi(2)).max(f64::EPSILON.powi(2));
@@ -235,8 +236,9 @@ impl Samples<'_> {
         fitted
     }
 
-    /// Adds the rounding of a baseline whose noise is below a step of the converter to the covariance of a
-    /// fit: a flat baseline hides rounding within the pulse, and is off itself by as much at all samples.
+    /// Adds rounding to the covariance of a fit if the noise of the baseline is below a step of the
+    /// converter. Such a flat baseline does not show the rounding noise within the pulse, and has itself a
+    /// rounding error that all samples share.
     fn round(&self, fit: &mut Fit) {
         let (noise, hidden) = self.noise();
         let variance = fit.variance();
@@ -251,7 +253,7 @@ impl Samples<'_> {
     }
 
     /// Standard deviation of the noise well before the pulse, over the pulse's height, at least [`DIGITS`];
-    /// and what rounding adds to the baseline.
+    /// and the error that rounding adds to the mean baseline.
     fn noise(&self) -> (f64, f64) {
         let begins = -0.5 - self.delay();
         let before = &self.values[..self.times.partition_point(|t| *t < begins)];

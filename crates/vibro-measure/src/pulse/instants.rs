@@ -10,8 +10,8 @@ use vibro_record::{Error, Finding, Result};
 /// cases.
 const RESOLVED: f64 = 3.0;
 
-/// Ratio of the frequencies at which a contact behind a low-pass is looked for: 199 of them reach 16 000
-/// times the first.
+/// Ratio of successive trial frequencies in the search for a contact behind a low-pass: 199 steps reach 16
+/// 000 times the first.
 const FINER: f64 = 1.05;
 
 /// A Kelvin–Voigt contact from the time to its largest force and its duration, both in s.
@@ -21,8 +21,9 @@ const FINER: f64 = 1.05;
 /// kg gives stiffness and damping. Every contact of ξ ≥ 1/2 has its peak at the onset: where ρ is not
 /// resolved from 0, no uncertainty is stated.
 ///
-/// Behind a low-pass the contact is the one whose filtered pulse has its peak and its first zero at these
-/// times. Where the low-pass alone is as long, there is no such contact: all values are null.
+/// With a low-pass in the instrument, the contact is the one whose filtered pulse has its peak and its first
+/// zero at these times. If the impulse response of the low-pass is as long, there is no such contact: all
+/// values are null.
 ///
 /// ```
 /// use vibro_measure::pulse::{PulseOptions, two_times};
@@ -81,7 +82,7 @@ fn unfiltered(times: &[f64; 2], std: Option<f64>, mass: Option<f64>) -> Result<P
     let contact = |times: &[f64]| KelvinVoigt::lasting(times[1], damping(times[0] / times[1]));
     let mut found = estimated(times, variance, contact, mass, "closed form from two times")
         .ok_or_else(|| Error::refused("the two times belong to no contact"))?;
-    // Before what ξ says of itself.
+    // Insert this finding before the one on ξ.
     found.findings.splice(1..1, near_zero);
     Ok(found)
 }
@@ -97,7 +98,7 @@ fn behind(filter: &LowPass, times: &[f64; 2], std: Option<f64>, mass: Option<f64
         format!("two times behind a Butterworth low-pass of order {} at {} Hz", filter.order, filter.corner);
     let reach = 2.0 * std.unwrap_or(0.0);
     if times[0] <= peak + reach || times[1] <= end + reach {
-        // No contact is so short that the low-pass would show it shorter than itself.
+        // No filtered pulse is shorter than the impulse response of the low-pass.
         let mut found = estimated(times, f64::NAN, |t| KelvinVoigt::lasting(t[1], 0.0), mass, &method)
             .ok_or_else(|| Error::refused("the two times belong to no contact"))?
             .refused();
@@ -118,13 +119,14 @@ fn behind(filter: &LowPass, times: &[f64; 2], std: Option<f64>, mass: Option<f64
     Ok(found)
 }
 
-/// The contact that `filter` shows with these times of peak and first zero: for each ξ a frequency gives the
-/// zero, and ξ then the peak, which a larger ξ makes earlier. Both are sought from where the pulse is longer
-/// and its peak later, so that no later swing of the low-pass is taken for them.
+/// The contact whose pulse behind `filter` has these times of peak and first zero. For each ξ the time of
+/// the zero gives the frequency; the time of the peak, which is earlier for a larger ξ, then gives ξ. Both
+/// searches begin where the pulse is too long and its peak too late, so that they do not end at a later
+/// swing of the low-pass.
 fn seen(filter: &LowPass, times: &[f64]) -> Option<KelvinVoigt> {
     let &[peak, end] = times else { return None };
     let ending = |xi: f64| {
-        // A contact as long as the pulse behind the low-pass is too long.
+        // The search begins at a contact as long as the filtered pulse, which is too long.
         let slow = KelvinVoigt::lasting(end, xi)?.frequency();
         let still = |f: f64| KelvinVoigt::new(xi, f).is_some_and(|c| c.filtered(filter, end) > 0.0);
         let fast = (1..200).map(|i| slow * FINER.powi(i)).find(|f| !still(*f))?;
@@ -139,7 +141,7 @@ fn seen(filter: &LowPass, times: &[f64]) -> Option<KelvinVoigt> {
     if rises(0.0) { ending(border(0.0, damped, rises)) } else { None }
 }
 
-/// The estimates, with the findings that all pulses of two times have.
+/// The estimates, with the findings that apply to every pulse given by two times.
 fn estimated(
     times: &[f64; 2],
     variance: f64,
@@ -158,7 +160,7 @@ fn estimated(
     Some(found)
 }
 
-/// A refusal that names both times.
+/// An error that names the settings of both times.
 fn impossible(why: String) -> Error {
     let hint = "count both times from the onset of the pulse";
     Error::refused(why).hint(hint).setting("time_to_peak").setting("duration")
@@ -223,7 +225,8 @@ mod tests {
         assert!(two_times(1.0, 3.0, Some(-1.0), &plain()).is_err());
     }
 
-    /// The same runs behind the low-pass of 30 kHz that they were measured with, which ends later than they.
+    /// The same runs with the 30 kHz low-pass of their measurement, whose impulse response is longer than
+    /// their pulses.
     #[test]
     fn a_low_pass_that_is_as_long_leaves_no_contact() {
         for peak in [6.64e-6, 6.25e-6] {
@@ -263,7 +266,7 @@ mod tests {
             let near = found.findings.iter().any(|f| f.code == "pulse-near-corner");
             assert_eq!(near, contact.duration() * 30e3 < 2.0);
         }
-        // A peak in the second half, and one earlier than any contact has it.
+        // A peak in the second half of the pulse, and one earlier than that of any contact.
         for peak in [30e-6, 7e-6] {
             assert_eq!(two_times(peak, 50e-6, None, &through(30e3, 2)).unwrap_err().exit_code(), 1);
         }

@@ -50,8 +50,8 @@ impl LowPass {
         self.parts.iter().map(|(p, _)| -1.0 / p).sum::<Complex64>().re
     }
 
-    /// Times in s of the largest value and of the first zero after it in the response to an impulse: no pulse
-    /// behind this low-pass has them earlier. `None` for order 1, whose response has no zero.
+    /// Times in s of the largest value and of the first zero after it in the response to an impulse: no
+    /// pulse filtered by this low-pass has them earlier. `None` for order 1, whose response has no zero.
     pub fn alone(&self) -> Option<[f64; 2]> {
         if self.order == 1 {
             return None;
@@ -173,7 +173,8 @@ mod tests {
         }
     }
 
-    /// That of order 2 is e^{−at} sin at with a = ω/√2: its peak is at π/4a, its zero at π/a.
+    /// The impulse response of order 2 is proportional to e^{−at} sin at with a = ω/√2: its peak is at π/4a,
+    /// its zero at π/a.
     #[test]
     fn the_response_to_an_impulse_has_its_times() {
         let a = TAU * 30e3 / f64::sqrt(2.0);

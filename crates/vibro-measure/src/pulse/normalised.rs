@@ -69,7 +69,7 @@ impl<'a> Normalised<'a> {
         (place.max(0.0).ceil() as usize).min(self.trace.values.len())
     }
 
-    /// Time in s of the record.
+    /// Converts a scaled time to the time of the record, in s.
     fn seconds(&self, time: f64) -> f64 {
         self.trace.axis.start() + self.found.flanks.0 * self.step + time * self.length
     }
@@ -89,7 +89,8 @@ impl<'a> Normalised<'a> {
     /// does not rest after it; and whether the record comes back to the level before the pulse.
     ///
     /// # Errors
-    /// If there are too few samples, or no contact of spring and damper fits the pulse, as `unlike` says.
+    /// If there are too few samples, or no contact of spring and damper fits the pulse, for which `unlike`
+    /// makes the error.
     pub fn window(
         &self,
         findings: &mut Vec<Finding>,
@@ -260,7 +261,7 @@ pub(super) struct Located {
     pub quantum: f64,
 }
 
-/// Samples by which a flat top must be longer than three round ones.
+/// Number of samples by which a flat top must exceed three times the length of a round one.
 const FLAT: f64 = 3.0;
 
 /// Samples within this many standard deviations of the noise of the largest count as equal to it.

@@ -197,7 +197,7 @@ pub struct PulseCurve {
     pub model: ContactModel,
     /// Time in s and value, closely spaced.
     pub points: Vec<(f64, f64)>,
-    /// Time in s and residual of every sample that was fitted.
+    /// Time in s and residual of every usable sample around the pulse, fitted or not.
     pub residuals: Vec<(f64, f64)>,
 }
 

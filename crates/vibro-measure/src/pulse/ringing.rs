@@ -34,8 +34,8 @@ impl Ringing {
     }
 
     /// Factor on the variances of parameters from `n` samples in a contact whose residuals have this
-    /// `variance`. Half a period of ringing adds up to 2√2/π of its root mean square a sample, noise to the
-    /// root of n. Ringing above [`SHOWS`] times the residuals would show in them.
+    /// `variance`. Over half a period, ringing adds up to 2√2/π times its root mean square for each sample;
+    /// noise of n samples adds up to √n. Ringing above [`SHOWS`] times the residuals would show in them.
     pub fn widening(&self, n: f64, variance: f64) -> f64 {
         let sum = 2.0 * f64::sqrt(2.0) / PI * self.half.min(0.5 * n);
         1.0 + sum * sum / n * (self.rms * self.rms / variance).min(SHOWS * SHOWS)

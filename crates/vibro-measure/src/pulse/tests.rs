@@ -64,7 +64,8 @@ fn all_that_follows_from_a_pulse() {
     assert!(result.fits[1..].iter().all(|f| f.aicc > result.fits[0].aicc + 10.0), "{:?}", result.fits);
 }
 
-/// ξ of draws of 8 bits whose noise is this part of the peak, over their uncertainties.
+/// Errors of ξ over their standard uncertainties, for `draws` records of 8 bits with noise of `part` of the
+/// peak.
 fn of_eight_bits(draws: u64, part: f64) -> Vec<f64> {
     let contact = KelvinVoigt::new(0.18, 10e3).unwrap();
     let peak = contact.unbounded(contact.time_to_peak().unwrap());
@@ -85,7 +86,8 @@ fn of_eight_bits(draws: u64, part: f64) -> Vec<f64> {
     (0..draws).map(draw).collect()
 }
 
-/// The noise is below a step: the baseline is flat, and rounding in the pulse is no other law.
+/// The noise is below a step, so the baseline is flat. Rounding in the pulse must not pass for another
+/// contact law.
 #[test]
 fn a_flat_baseline_of_eight_bits_is_no_doubt_of_the_contact() {
     for part in [0.0, 1e-3] {
@@ -104,8 +106,8 @@ fn uncertainties_of_eight_bits_cover_the_truth() {
     }
 }
 
-/// ξ of draws of 40 samples and noise of 2 % of the peak, in a record without a low-pass: errors, and errors
-/// over their uncertainties.
+/// Errors of ξ, and errors over their uncertainties, for `draws` records without a low-pass: a pulse of
+/// about 40 samples and noise of 2 % of its peak.
 fn of_noisy_edges(draws: u64) -> Vec<(f64, f64)> {
     let contact = KelvinVoigt::new(0.18, 10e3).unwrap();
     let peak = contact.unbounded(contact.time_to_peak().unwrap());
@@ -125,8 +127,8 @@ fn of_noisy_edges(draws: u64) -> Vec<(f64, f64)> {
     (0..draws).filter_map(draw).collect()
 }
 
-/// The force jumps between two samples. By the shape alone ξ scatters by 0.032, where the onset is a free
-/// parameter of a damped sine (300 draws).
+/// The force jumps between two samples, which fixes the onset. With a free onset, from the shape alone, ξ
+/// scatters by 0.032 (300 draws).
 #[test]
 fn without_a_low_pass_the_edge_tells_the_onset_between_two_samples() {
     let off = of_noisy_edges(8);
@@ -243,7 +245,7 @@ fn the_contact_of_hunt_and_crossley_is_preferred_where_it_is_one() {
     assert!(says(&result, "pulse-other-model"), "{:?}", result.findings);
     let alpha = &result.fits[2].parameters["alpha"];
     assert!((alpha.value - 0.3).abs() < 5.0 * alpha.std.unwrap(), "{alpha:?}");
-    // That model leads, and values that only spring and damper states have no uncertainty.
+    // That model leads, and values that only spring and damper gives have no uncertainty.
     let restitution = &result.restitution;
     assert_eq!(restitution.value, result.fits[2].parameters["restitution"].value);
     assert!(
@@ -299,7 +301,8 @@ fn without_the_low_pass_that_is_there_nothing_is_stated() {
     let without = fitted(None).unwrap();
     assert!(nothing(&without), "{without:?}");
     assert!(says(&without, "pulse-low-pass-missing"), "{:?}", without.findings);
-    // A stated corner that is far too high is as bad as none, above half the sampling rate as below.
+    // A stated corner that is far too high gives no more values than none, both above and below half the
+    // sampling rate.
     let beyond = fitted(Some(600e3)).unwrap();
     assert!(nothing(&beyond), "{:?} {:?}", beyond.xi, beyond.findings);
     let high = fitted(Some(450e3)).unwrap();

@@ -60,14 +60,15 @@ fn curves_cross_where_their_logarithms_do() {
     assert!((found[0].frequency - 5.0).abs() < 1e-12 && !found[0].second_above, "{found:?}");
 }
 
-/// Eleven points one apart, of 1 % uncertainty.
+/// Eleven points 1 Hz apart, with an uncertainty of 1 %.
 fn curve(start: f64, height: impl Fn(f64) -> f64) -> Vec<(f64, f64, f64)> {
     (0..11).map(|i| start + f64::from(i)).map(|f| (f, height(f), 0.01 * height(f))).collect()
 }
 
 #[test]
 fn the_uncertainty_of_a_crossing_is_how_the_amplitudes_move_it() {
-    // Each amplitude moved on its own by its uncertainty: linear to 1 % of itself, as the logarithm is.
+    // Each amplitude is moved on its own by its uncertainty of 1 %; over this the logarithm is linear to 1
+    // %.
     for offset in [0.0, 0.3, 0.7] {
         let curves = [curve(0.05, f64::exp), curve(offset, |f| (9.8 - 0.3 * f).exp())];
         let found = crossings(curves[0].clone(), curves[1].clone(), &[]);
@@ -103,8 +104,7 @@ fn a_crossing_at_a_jump_is_as_uncertain_as_the_jump() {
 
 #[test]
 fn a_crossing_beside_a_jump_keeps_its_place_however_the_frequencies_of_the_masses_differ() {
-    // Steps of half a Hz. The second curve jumps from the point at 6.515 + offset to the next; the first goes
-    // on.
+    // Steps of 0.5 Hz. The second curve jumps after the point at 6.515 Hz + offset; the first has no jump.
     let grid = |offset: f64| (0..8).map(move |i| 4.515 + 0.5 * f64::from(i) + offset);
     for offset in [0.0, 1e-9, -1e-9, 0.25, 0.25 + 1e-9, 0.25 - 1e-9, -0.25, -0.1] {
         // They cross at 6.05 on straight lines in the logarithm; after the jump the second lies above, or
@@ -184,9 +184,9 @@ fn oscillator(f: f64, natural: f64, zeta: f64) -> Complex64 {
     Complex64::new(1.0 - r * r, 2.0 * zeta * r).inv()
 }
 
-/// A mass that strikes a stop moves as one on a stiffer spring, until it lets go near the resonance without
-/// the stop. There the amplitude is at most halved, and the curve falls steeply afterwards, but the phase
-/// reverses.
+/// A mass that strikes a stop moves as if on a stiffer spring. Near its resonance without the stop it no
+/// longer reaches the stop. There the amplitude is at most halved, and the curve falls steeply afterwards
+/// anyway, but the phase reverses.
 #[test]
 fn a_motion_that_turns_round_within_a_step_has_jumped() {
     let f: Vec<f64> = (16..27).map(f64::from).collect();
@@ -233,11 +233,11 @@ fn two_modes(f: f64, weight: f64) -> f64 {
 fn a_zero_is_an_antiresonance_and_a_sum_of_tails_a_minimum() {
     let f: Vec<f64> = (0..57).map(|i| 4.0 + 0.1 * f64::from(i)).collect();
     for (size, mass, expected) in [
-        // Poles of the same sign: a zero between them, whichever the mass.
+        // Modal constants of the same sign: a zero lies between the modes, for either mass.
         (1.0, None, ResonanceKind::Antiresonance),
         (0.2, Some(2), ResonanceKind::Antiresonance),
         (1.0, Some(1), ResonanceKind::Antiresonance),
-        // Opposite signs: none.
+        // Opposite signs: no zero between the modes.
         (-0.2, None, ResonanceKind::Minimum),
         (-1.0, Some(2), ResonanceKind::Minimum),
         (-5.0, Some(2), ResonanceKind::Minimum),
@@ -270,8 +270,8 @@ fn a_minimum_in_the_noise_lies_between_what_stands_out() {
     assert!(resonances(&f, &a, &std, &[jump], Some(1)).iter().all(|r| r.kind == ResonanceKind::Resonance));
 }
 
-/// Going down, mass 2 begins to move at 5.5 Hz. Mass 1 falls there by less than would count as a jump alone,
-/// or goes on.
+/// Downward sweep: mass 2 begins to move at 5.5 Hz. There the amplitude of mass 1 falls by less than a jump
+/// needs on its own, or does not change.
 #[test]
 fn where_one_mass_jumps_the_other_does_if_its_slopes_do_not_tell() {
     let f: Vec<f64> = (0..11).map(f64::from).collect();

@@ -1,5 +1,5 @@
-//! Lines that stand still while the excitation moves, such as mains hum: where the excitation passes one, the
-//! two cannot be told apart in the spectrum of that step alone.
+//! Lines of constant frequency, such as mains hum, in the spectra of a sweep. Where the excitation passes
+//! such a line, the spectrum of that step alone cannot separate the two.
 
 use crate::line::interpolate;
 use crate::noise;
@@ -13,11 +13,12 @@ const OWN: f64 = 4.0;
 /// Widest scatter of the positions of one steady line over the steps, in lines: three times the scatter that
 /// noise gives a line of height [`ABOVE`].
 const STILL: f64 = 0.5;
-/// Fewest steps that show a steady line, and the least part of the steps whose excitation is elsewhere.
+/// Fewest steps that show a steady line; and of the steps with the excitation elsewhere, the least fraction
+/// that must show it.
 const STEPS: usize = 5;
 const PART: f64 = 0.5;
 
-/// A line that stands still over a sweep.
+/// A line of constant frequency over a sweep.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct SteadyLine {
     /// Position in lines.
@@ -34,8 +35,8 @@ impl SteadyLine {
         let near = |k: usize| excitations.iter().any(|at| (k as f64 - at).abs() < OWN);
         let count = spectra.iter().map(Vec::len).max().unwrap_or(0);
         let candidates: Vec<usize> = (1..count.saturating_sub(1)).filter(|k| near(*k)).collect();
-        // Position and amplitude of each line that stands out. Of a group within [`STILL`] no two are of one
-        // step: they have a lower line between them.
+        // Position and amplitude of each line that stands out. Two maxima of one step have a lower line
+        // between them, so a group within [`STILL`] has at most one line of each step.
         let mut seen: Vec<(f64, f64)> = Vec::new();
         for (lines, at) in spectra.iter().zip(excitations) {
             let inside = candidates.iter().filter(|k| **k + 1 < lines.len() && (**k as f64 - at).abs() > OWN);

@@ -84,7 +84,8 @@ impl Taker<'_> {
             .filter(|&k| measured[k] >= measured[k - 1] && measured[k] >= measured[k + 1])
             .max_by(|a, b| measured[*a].total_cmp(&measured[*b]));
         let floor = self.floor(measured, at, top.unwrap_or(centre), window);
-        // Neither a hump of noise nor another line beside the excitation, which hides it, is the response.
+        // A hump of noise is not the response. Neither is another line near the excitation, which hides the
+        // response.
         let clear = |p: &SubLine| floor.is_none_or(|f| p.amplitude >= PEAK_ABOVE * f);
         let peak = top.and_then(|k| {
             let line = interpolate(measured, k, window, floor).filter(clear)?;
@@ -143,7 +144,7 @@ impl Taker<'_> {
         // sine.
         let undone =
             Complex64::new(0.0, TAU * self.frequency(k as f64)).powi(self.sweep.analyser_integrated.into());
-        // A steady line is one of the measured signal, before that division.
+        // Steady lines are those of the measured signal, before that division.
         let steady = self.beside(self.position(excitation), window) / undone.norm();
         let (of_x, of_f) = (noise(&point.response.values)?.hypot(steady), noise(&point.force)?);
         let relative = (of_x / x.norm()).hypot(of_f / f.norm());

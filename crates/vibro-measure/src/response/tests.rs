@@ -192,16 +192,17 @@ fn hum_that_the_excitation_passes_is_in_the_uncertainty() {
         "{:?}",
         found.points.iter().map(off).collect::<Vec<_>>()
     );
-    // A random phase gives 0.02/√2 of uncertainty where the two lie on one another; 1.2 lines beside it
-    // Hann's window leaves a third. Away from it the noise of 0.001 remains.
+    // Where the excitation coincides with the hum, its random phase gives an uncertainty of 0.02/√2; at a
+    // distance of 1.2 lines a third of this remains under the Hann window. Far away the noise of 0.001
+    // remains.
     for point in &found.points {
         let (distance, std) = ((point.excitation - 55.1).abs(), point.amplitude.std.unwrap());
         assert!(distance > 1.3 || std > 0.003, "{distance} {std}");
         assert!(distance < 5.0 || std < 0.002, "{distance} {std}");
     }
     let passed = finding(&found, "sweep-passes-line").unwrap();
-    // Found again to a hundredth of a line: noise of 0.001 beside 0.02 is 0.03 lines, the median of 25 a
-    // fifth.
+    // The position is found to 0.01 lines: noise of 0.001 against 0.02 scatters it by 0.03 lines, and the
+    // median of 25 by a fifth of that.
     assert!((passed.get("frequency").unwrap() - 55.1).abs() < 0.03, "{passed:?}");
 }
 

@@ -21,7 +21,7 @@ use crate::mean::{average, mixture};
 use crate::residuals::{student, widened};
 use nalgebra::{DMatrix, DVector};
 
-/// One flight: its place in the train, and the logarithm of its time in s.
+/// One flight: its index in the train, and the logarithm of its time in s.
 #[derive(Clone, Copy)]
 pub(super) struct Flight {
     pub place: usize,
@@ -95,7 +95,8 @@ pub(super) fn fit(trains: &[Timed], fall: bool) -> Option<TrainFit> {
     let onsets_alone = ratios.node(0.0, sigma2, scaled)?;
     if free < 3 {
         let log_r = if scaled { scatter_alone.as_ref()?.log_r } else { onsets_alone.log_r };
-        // All residuals are put down to scatter of R, which bounds the noise of the first flights.
+        // All residuals are attributed to the scatter of R, which gives an upper limit of the noise of first
+        // flights.
         let scatter = |node: Node| widened(free).powi(2) * node.scale;
         let onset = stated.unwrap_or(0.0);
         let noise =

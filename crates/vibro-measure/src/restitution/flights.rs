@@ -10,7 +10,7 @@ use vibro_record::{Error, Finding, Result};
 
 /// A flight longer than the first by this factor is no bounce of the same fall.
 const LONGER: f64 = 1.2;
-/// Most such flights of a train: more cannot be the taps of a hand before and after a drop.
+/// Most such flights of a train: more are not the taps of a hand before and after a drop.
 const HANDLED: usize = 2;
 
 /// Number of flights longer than the first, where they are more than [`HANDLED`]: voices or ringing count as
@@ -50,7 +50,7 @@ pub(super) fn answer(
         return Ok((None, None));
     }
     let own = FlightNoise::mean(&fits.iter().filter_map(|fit| fit.noise).collect::<Vec<_>>());
-    // Whether trains lie farther from this ln R than trains of one body do with the probability `chance`.
+    // Whether the trains lie farther from this ln R than those of one body do with the probability `chance`.
     let apart = |log: f64, noise: Option<FlightNoise>, chance: f64| {
         let noise = noise.filter(|_| fits.len() > 1);
         noise.is_some_and(|noise| misfit(&all, log, noise) > chi_squared_at(chance, fits.len() - 1))

@@ -39,8 +39,8 @@ const FLIGHTS: [f64; 2] = [5e-3, 2.0];
 /// Shortest first flight in s for R = 1, 2√(2h/g) after a fall of h = 5 mm. Bodies are dropped from higher;
 /// the pitch period of a voice, 2 to 13 ms, and its multiples would pass for trains of lower falls.
 pub const LOWEST: f64 = 0.064;
-/// Most sounds of a record that may begin within a train, with a shorter flight: a ball is heard a dozen
-/// times.
+/// A record with at most this many sounds may begin within a train, with a first flight below [`LOWEST`]: a
+/// ball is heard about a dozen times.
 const CLEAN: usize = 16;
 /// Cost, in log-likelihood, of a train that ends although its next impact should be heard: one ball in ten
 /// rolls off.
@@ -197,7 +197,7 @@ impl Pairs<'_> {
         likeliest.map_or((0, 0.0), |(i, odds)| (1 + self.shadowed(i, j), odds))
     }
 
-    /// The train with the most evidence; `None` of fewer than two sounds.
+    /// The train with the most evidence; `None` for fewer than two sounds.
     pub fn best(&self) -> Option<BestTrain> {
         let n = self.sounds.len();
         let all = (0..n).flat_map(|i| (i + 1..n).map(move |j| (i, j)));
@@ -302,7 +302,8 @@ impl Pairs<'_> {
     /// Log-likelihood of the first two impacts with the restitution `r`.
     fn begin(&self, (i, j): (usize, usize), (any, rest): (f64, f64), log_r: f64, r: f64) -> f64 {
         let flight = self.flight(i, j);
-        // Evenly spaced sounds are found whatever their intervals, so that they do not pass for bounces.
+        // This limit does not hold for evenly spaced sounds: they must be found, so that they do not pass
+        // for bounces.
         let shrinks = log_r <= LARGEST.ln();
         if shrinks && self.sounds.len() > CLEAN && flight < LOWEST * r {
             return f64::NEG_INFINITY;

@@ -5,7 +5,7 @@ use crate::impacts::{QUIETER, Sound};
 
 /// Most sounds that are used, the loudest: the effort for trains grows as the square of their number.
 const MOST: usize = 128;
-/// Most even trains that are removed in the search for bounces: a record with more is one of a voice or a
+/// Most even trains that are removed in the search for bounces: a record with more is that of a voice or a
 /// machine.
 const EVEN: usize = 4;
 /// Foreign sounds expected beyond those counted: one record in five has a hand, a latch or a voice.
@@ -28,7 +28,7 @@ pub struct Plausible {
     pub even: bool,
 }
 
-/// The most plausible train of two impacts or more; `None` of fewer than two sounds.
+/// The most plausible train of two impacts or more; `None` for fewer than two sounds.
 pub fn plausible(sounds: &[Sound], heard: FallRecord) -> Option<Plausible> {
     let mut order: Vec<usize> = (0..sounds.len()).collect();
     order.sort_by(|a, b| sounds[*b].height.total_cmp(&sounds[*a].height));
@@ -85,7 +85,7 @@ fn best(sounds: &[Sound], heard: FallRecord) -> Option<BestTrain> {
     Some(BestTrain { release, ..found })
 }
 
-/// How many sounds no louder one precedes within the time of its echoes.
+/// Number of sounds that are not echoes: no louder sound precedes them within [`SHADOW`].
 pub(super) fn alone(sounds: &[Sound]) -> usize {
     let alone = |(i, s): &(usize, &Sound)| {
         let mut before = sounds[..*i].iter().rev().take_while(|b| b.time > s.time - SHADOW);

@@ -40,8 +40,8 @@ fn drops_in_rooms_are_covered_or_refused() {
         let inside = scores.iter().filter(|z| z.abs() < 1.96).count();
         let largest = scores.iter().fold(0.0, |most: f64, z| z.abs().max(most));
         println!("drops, {room:?} room: {n} of {cases} answered, {inside} within 1.96, largest {largest:.1}");
-        // At least this part of the series is answered, less 2.5 standard deviations of a binomial count. Of
-        // these 95 % are covered, less 2.5 standard deviations of 1.1.
+        // At least this fraction of the series is answered, less 2.5 standard deviations of a binomial
+        // count. Of these 95 % are covered, less 2.5 standard deviations of 1.1.
         let count = cases as f64;
         let least = part * count - 2.5 * (count * part * (1.0 - part)).sqrt();
         assert!(n as f64 >= least, "{room:?}: {n}");

@@ -294,9 +294,9 @@ fn two_drops_have_no_uncertainty_and_five_a_bootstrap() {
     let found = drops(&all[..2]);
     assert!(found.restitution.std.is_none() && found.bootstrap_std.is_none(), "{found:?}");
     assert!(finding(&found, "drop-without-uncertainty").is_some(), "{:?}", found.findings);
-    // Three drops: s = 2 ms. With two degrees of freedom, Student's quantile for a coverage c is
-    // c√(2/(1 − c²)), against 1.96 of the normal distribution at c = 0.95. The height adds half of its
-    // 1/570. Quantiles are computed to 1e-9.
+    // Three drops: s = 2 ms. With two degrees of freedom, Student's quantile for a coverage c is c√(2/(1 −
+    // c²)), against 1.96 of the normal distribution at c = 0.95. The height adds half of its relative
+    // uncertainty 1/570. Quantiles are computed to 1e-9.
     let found = drops(&all[..3]).restitution;
     let student = 0.95 * (2.0 / (1.0 - 0.95f64.powi(2))).sqrt();
     let timing = student / 1.959_963_984_540_054 * 2e-3 / 3f64.sqrt() / 0.142;
@@ -616,6 +616,6 @@ fn an_advice_was_tried() {
         meta: trace.meta.clone(),
     };
     let (train, _) = Train::of(&part, &how, None).unwrap();
-    // Onsets lie within a sample or two.
+    // Onsets are timed to a sample or two.
     assert!((train.intervals[1] / train.intervals[0] - 0.7).abs() < 0.005, "{:?}", train.intervals);
 }

@@ -23,10 +23,10 @@ pub struct Train {
 }
 
 impl Train {
-    /// Height of the lowest bounce that counts, over the median one.
+    /// Least height of a bounce that counts, over the median height of the sounds.
     pub const THRESHOLD: f64 = 0.02;
 
-    /// Code of a refusal: the record has sounds of bounces, but does not determine which are those of one
+    /// Code of the error for a record with sounds of bounces that does not determine which are those of one
     /// body.
     pub const UNTOLD: &str = "bounces-untold";
 
@@ -34,8 +34,7 @@ impl Train {
     /// the flight in s that would follow the fall if R were 1, where the height is known.
     ///
     /// # Errors
-    /// As those of [`crate::impacts::impacts`]; also where no train of two impacts is more plausible than all
-    /// others.
+    /// As [`crate::impacts::impacts`]; also if no train of two impacts is more plausible than all others.
     pub fn of(trace: &Trace, options: &ImpactsOptions, full: Option<f64>) -> Result<(Train, Detected)> {
         let untold = RefCell::new(None);
         Train::among(trace, options, full, &untold).map_err(|refused| match untold.take() {
@@ -53,7 +52,7 @@ impl Train {
     ) -> Result<(Train, Detected)> {
         let (start, rate) = (trace.axis.start(), trace.sampling_rate()?);
         let ends = (start, start + trace.values.len() as f64 / rate);
-        // Stays at its largest value where the record is refused before anything is chosen, as one that
+        // Stays at `usize::MAX` if the record is refused before impacts are selected, for example because it
         // rings.
         let heard = Cell::new(usize::MAX);
         let choose = |sounds: &[Sound], reach: f64, median: f64| {
@@ -77,18 +76,18 @@ impl Train {
     }
 }
 
-/// Most sounds above a corner among which a train is sought: in a band of steady noise sounds have no end.
+/// Most sounds above a corner among which a train is searched: with more, the band holds steady noise.
 const FEW: usize = 32;
 
-/// The train of three impacts or more above a high-pass corner. It is from the corner that shows most
-/// impacts; of equal ones from the highest, which times them best.
+/// The train of three impacts or more above a high-pass corner. The corner that shows most impacts is used;
+/// among equal ones the highest, which times them best.
 fn above_hum(trace: &Trace, options: &ImpactsOptions, choose: Choose<'_>) -> Option<Detected> {
     let octaves: Vec<(f64, f64)> = octaves(trace.sampling_rate().ok()?).collect();
     let high = octaves.first()?.1;
     let above = |(low, _): (f64, f64)| {
         let band = (low, high);
         let own = ImpactsOptions { band: Some(band), ..options.clone() };
-        // In a band of steady noise sounds have no end.
+        // Steady noise in a band passes for any number of sounds.
         let few = |sounds: &[Sound], reach: f64, median: f64| {
             if sounds.len() > FEW {
                 Err(Error::refused("too many sounds"))
@@ -103,7 +102,7 @@ fn above_hum(trace: &Trace, options: &ImpactsOptions, choose: Choose<'_>) -> Opt
     octaves.into_iter().rev().filter_map(above).max_by_key(|found| found.times.len())
 }
 
-/// The impacts among sounds, and findings on the other sounds.
+/// Selects the impacts among the sounds. Returns their indices, and findings on the other sounds.
 fn choose(
     sounds: &[Sound],
     heard: FallRecord,
@@ -173,7 +172,8 @@ fn rivalled(train: &Plausible, sounds: &[Sound]) -> Option<String> {
     })
 }
 
-/// Findings on the sounds beside a train, `other` of which are neither before it nor its echoes.
+/// Findings on the sounds that do not belong to a train; `other` of them are neither before it nor its
+/// echoes.
 fn on_others(train: &Plausible, other: usize, sounds: &[Sound]) -> Vec<Finding> {
     let before = train.impacts[0];
     let of = |code, n: usize| (n > 0).then(|| Finding::note(code).count("n", n));

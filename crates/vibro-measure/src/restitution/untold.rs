@@ -32,7 +32,7 @@ pub(super) struct Untold {
 }
 
 impl Untold {
-    /// Adds to a refusal the first advice that finds the bounces when tried.
+    /// Adds to an error the first advice that finds the bounces when tried.
     pub fn advise(&self, refused: Error, read: Read<'_>) -> Error {
         if let Some(threshold) = self.threshold(read) {
             return refused
@@ -74,7 +74,7 @@ impl Untold {
         if self.heard.full.is_some() { 2 } else { 3 }
     }
 
-    /// As [`Untold::is_told`] from a part of the sounds, without a new reading: it costs little.
+    /// As [`Untold::is_told`], but from a part of the sounds without a new reading, which is faster.
     fn may_tell(&self, sounds: &[Sound]) -> Option<Plausible> {
         let told =
             |train: &Plausible| !train.even && train.rival.is_none() && train.impacts.len() >= self.enough();
@@ -128,7 +128,8 @@ impl Untold {
         else {
             return None;
         };
-        // A body that is caught makes one sound more; bounces of which the first two are none make several.
+        // A body that is caught makes one more sound. Several more sounds may be the bounces, and the two
+        // impacts not.
         if alone(&self.sounds[second..]) > 2 {
             return None;
         }
@@ -141,7 +142,7 @@ impl Untold {
     /// The part of the record in s after the first sounds that finds the bounces: three impacts, whose R by
     /// flights agrees with that by the height. Otherwise the first impact may have been cut off.
     fn part(&self, (trace, options, full): Read<'_>) -> Option<(f64, f64)> {
-        // What follows a sound at once is its echo, and goes with it.
+        // A sound within [`SHADOW`] after another is its echo, and is cut off with it.
         let behind = |first: &usize| {
             let gap = self.sounds[*first].time - self.sounds[*first - 1].time;
             gap > SHADOW && self.may_tell(&self.sounds[*first..]).is_some()

@@ -41,10 +41,9 @@ pub struct SpectralOptions {
     pub hammer: bool,
     /// Width of the force window in s.
     pub force_window: Option<f64>,
-    /// Value of the exponential window on the response at the end of a record.
+    /// Value of the exponential window on the response at the end of a record; it is 1 at the beginning.
     pub left_at_end: Option<f64>,
-    /// Time in s by which the response was recorded late, as by the decoder of a vibrometer: its phase is
-    /// corrected.
+    /// Delay in s of the recorded response, such as of a vibrometer's decoder; its phase is corrected.
     pub delay: Option<f64>,
     /// Reference of levels in decibels, in the unit of the trace (of the function, with a reference
     /// channel).

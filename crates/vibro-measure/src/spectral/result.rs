@@ -39,10 +39,10 @@ pub struct SpectralResult {
     pub detrend: &'static str,
     /// Number of segments or blows averaged.
     pub averages: usize,
-    /// What a function has beside its magnitude, such as phase and coherence.
+    /// Data of a function besides its magnitude, such as phase and coherence.
     #[serde(flatten)]
     pub response: Option<FrfDetails>,
-    /// Sines fitted to the whole record, the strongest first; empty where none were asked for.
+    /// Sines fitted to the whole record, the strongest first; empty if none were requested.
     pub tones: Vec<Tone>,
     /// Probability that noise alone shows a peak or a tone; null for functions.
     pub false_alarms: Option<f64>,
@@ -103,7 +103,7 @@ impl SpectralResult {
             }
         };
         findings.extend(function.iter().flat_map(|found| found.findings.iter().cloned()));
-        // Integrated, lines below would be noise divided by the frequency.
+        // After integration, lines below `fmin` would be noise divided by the frequency.
         let below = Finding::note("lines-below-cutoff").number("fmin", fmin);
         findings.extend((options.integrate > 0).then_some(below));
         SpectralResult {

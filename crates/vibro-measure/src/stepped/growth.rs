@@ -1,6 +1,7 @@
 //! A force that grows or falls within its steps.
 //!
-//! A linear response to e^{(iω + ε)t} is H(iω + ε): near a resonance of decay rate h it is off by ε/h.
+//! A linear response to e^{(iω + ε)t} is H(iω + ε): near a resonance of decay rate h (1/s) it differs from
+//! H(iω) by the fraction ε/h.
 
 use super::{Phasor, StepReading};
 use crate::residuals::widened;
@@ -14,8 +15,8 @@ const FEWEST: usize = 4;
 /// Least distance of two frequencies, over the frequency, at which they show a slope.
 const APART: f64 = 1e-5;
 
-/// Relative growth of the sizes of the phasors of blocks, in 1 over the unit of their `length`, by a straight
-/// line through their logarithms; 0 where chance explains it.
+/// Relative growth of the sizes of the phasors of blocks, in the inverse unit of their `length`, by a
+/// straight line through their logarithms; 0 where chance explains it.
 pub(super) fn growth(phasors: &[Complex64], length: f64) -> f64 {
     let n = phasors.len();
     if n < FEWEST {
@@ -32,9 +33,9 @@ pub(super) fn growth(phasors: &[Complex64], length: f64) -> f64 {
     if slope.is_finite() && slope.abs() > SEEN * std { slope } else { 0.0 }
 }
 
-/// Takes H(iω + ε) of each step back to H(iω), by the slope of H over frequency. 1/H is smooth near a
-/// resonance, where it is a parabola in iω, and H near an antiresonance: the one that is straighter over the
-/// step and its neighbours gives the slope, and its bend an uncertainty of it.
+/// Corrects H(iω + ε) of each step to H(iω), by the slope of H over frequency. Near a resonance 1/H is
+/// smooth, a parabola in iω; near an antiresonance H is. The one that is straighter over the step and its
+/// neighbours gives the slope, and its curvature the uncertainty of the slope.
 pub(super) fn without_growth(steps: &mut [StepReading]) {
     let mut all: Vec<(f64, Complex64)> =
         steps.iter().map(|step| (TAU * step.frequency.value, step.ratio.value)).collect();
@@ -52,7 +53,7 @@ pub(super) fn without_growth(steps: &mut [StepReading]) {
     }
 }
 
-/// Place on the axis of ω in rad/s, and the response there.
+/// Angular frequency ω in rad/s, and the response there.
 type At = (f64, Complex64);
 
 /// Factor from H(iω + `growth`) to H(iω), and its standard uncertainty. At an end of the sweep, one neighbour
@@ -100,7 +101,8 @@ mod tests {
             let truth = receptance(Complex64::new(0.0, TAU * f));
             let (factor, unsure) = back(growth, at(f), Some(at(f - 0.4)), Some(at(f + 0.4))).unwrap();
             let (before, after) = ((at(f).1 / truth - 1.0).norm(), (at(f).1 * factor / truth - 1.0).norm());
-            // What is left is within the uncertainty, and 2 % of the error or below 10⁻⁶, ε²/hω.
+            // The remaining error is within the uncertainty, and below 2 % of the uncorrected error or 10⁻⁶
+            // (ε²/hω).
             assert!(
                 after < 2.0 * unsure + 1e-6 && after < 0.02 * before + 1e-6,
                 "{f}: {before} {after} {unsure}"

@@ -45,7 +45,7 @@ fn step(frequency: f64, seconds: f64, transient: f64, noise: (f64, &mut Noise)) 
     }
 }
 
-/// A force that rises over the first quarter of a step, and a stiff structure that follows it at once.
+/// A force that rises over the first quarter of a step, and a stiff structure that follows it without delay.
 #[test]
 fn the_force_is_that_of_the_steady_part() {
     let mut still = step(8.0, 4.0, 0.0, (1e-4, &mut Noise::new(3)));
@@ -103,8 +103,8 @@ fn grown(draws: u64) -> (Vec<f64>, f64) {
 #[test]
 fn a_force_that_grows_gives_the_response_to_a_steady_one() {
     let (off, widest) = grown(2);
-    // Of 52 errors none beyond five uncertainties; 2 % over 4 s are 1.3 ‰ of the bandwidth of the resonance,
-    // which an uncertainty of 2·10⁻⁴ of |H| would not hold.
+    // None of 52 errors exceeds five uncertainties. A growth of 2 % over 4 s is 1.3 ‰ of the decay rate of
+    // the resonance: uncorrected, this error would exceed six uncertainties of 2·10⁻⁴ |H|.
     assert!(off.iter().all(|v| *v < 5.0) && widest < 2e-4, "{widest} {off:?}");
 }
 
@@ -165,8 +165,8 @@ fn counted(draws: u64) -> ([usize; 3], usize, f64) {
 #[test]
 fn amplitude_phase_and_receptance_are_those_of_the_oscillator() {
     let (held, all, worst) = counted(20);
-    // Of 60 values of Student's distribution of eleven degrees of freedom none lies beyond six in more than 1
-    // of 100 runs.
+    // Of 60 values of Student's distribution with eleven degrees of freedom, one lies beyond six in fewer
+    // than 1 of 100 runs.
     assert!(all >= 15 && worst < 6.0 && held.iter().all(|h| *h + 5 >= all), "{held:?} of {all}, {worst}");
 }
 
@@ -175,15 +175,15 @@ fn amplitude_phase_and_receptance_are_those_of_the_oscillator() {
 fn amplitude_phase_and_receptance_are_covered() {
     let (held, all, worst) = counted(600);
     let least = all - all * 77 / 1000;
-    // Three standard deviations of 500 at 95 % are 2.9 %; of the eleven degrees of freedom of few blocks one
-    // value in 1500 lies beyond six.
+    // Three standard deviations of 500 at 95 % are 2.9 %; of 1500 values of Student's distribution with
+    // eleven degrees of freedom (few blocks), one lies beyond six in 1 of 8 runs.
     assert!(all > 500 && held.iter().all(|h| *h > least) && worst < 6.0, "{held:?} of {all}, {worst}");
 }
 
 #[test]
 fn a_transient_is_left_out_and_what_has_not_settled_is_doubted() {
     let mut noise = Noise::new(1);
-    // τ = 1/(ζω) = 0.27 s: after 4 s it is 3e-7 of what it was.
+    // τ = 1/(ζω) = 0.27 s: after 4 s the transient has decayed to 3e-7.
     let found = response_of(&[step(25.0, 8.0, 5.0, (1e-3, &mut noise))]);
     let point = &found.points[0];
     let error = (point.amplitude.value / (3.0 * receptance(25.0).norm()) - 1.0).abs();

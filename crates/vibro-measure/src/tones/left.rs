@@ -5,7 +5,7 @@ use crate::chance::normal_beyond;
 /// Contribution of a sample to a fit. A clipped sample is only known to lie beyond an end of the range (J.
 /// Tobin, Econometrica 26 (1958) 24): its weight is the curvature of its likelihood.
 pub(super) struct Left {
-    /// Weight in the normal matrix, 1 for a whole sample.
+    /// Weight in the normal matrix, 1 for a sample that is not clipped.
     pub weight: f64,
     /// Expected residual from the sines.
     pub mean: f64,

@@ -74,7 +74,8 @@ fn a_small_sine_beside_is_allowed_for() {
                 (&found.tones[0].phase, turn(found.tones[0].phase.value - p)),
             ];
             for (estimate, off) in off {
-                // What is allowed is the most that can be, but for the half that the fit may have taken up.
+                // The uncertainty allows for the largest possible shift, except for the half that the fit
+                // may have absorbed.
                 let std = estimate.std.unwrap();
                 assert!(off.abs() < 3.0 * std, "{apart} lines apart, seed {seed}: {off} with {std}");
             }
@@ -130,7 +131,7 @@ fn the_tone_beside_which_another_is_left_has_no_uncertainty() {
     let all = [&doubtful.frequency, &doubtful.amplitude, &doubtful.phase];
     assert!(all.iter().all(|e| e.std.is_none()), "{found:?}");
     assert!(found.findings.iter().any(|f| f.code == "sine-not-alone"), "{found:?}");
-    // With all three fitted, no sine is left beside any.
+    // With all three fitted, the residual has no sine near any of them.
     let found = tones(&trace, 3).unwrap();
     assert!(found.tones.iter().all(|t| t.frequency.std.is_some()), "{found:?}");
 }
@@ -152,7 +153,7 @@ fn clean_sines_are_exact() {
     assert!(more.tones.len() == 3 && more.findings[0].code == "tones-fewer", "{:?}", more.findings);
 }
 
-/// Clipped at 80 % of its amplitude: the samples in between determine it.
+/// A sine clipped at 80 % of its amplitude: the samples between the limits determine the amplitude.
 #[test]
 fn the_amplitude_of_a_clipped_sine_is_covered() {
     let mut far = [0.0; 2];
@@ -169,12 +170,12 @@ fn the_amplitude_of_a_clipped_sine_is_covered() {
             *far += ((estimate.value - truth) / estimate.std.unwrap()).powi(2);
         }
     }
-    // χ² of 20: 45.3 is passed by one in a thousand.
+    // χ² with 20 degrees of freedom exceeds 45.3 in one of a thousand cases.
     assert!(far.iter().all(|sum| *sum < 45.3), "{far:?}");
 }
 
-/// Root mean square of error over uncertainty of frequency, amplitude and phase of a sine in 1/f noise, near
-/// a line and over `records`.
+/// Root mean square over `records` records of error over uncertainty, for frequency, amplitude and phase of
+/// a sine in 1/f noise. The sine lies within half a line of `line`.
 fn spread_in_pink_noise(line: f64, records: u64) -> [f64; 3] {
     let mut sums = [0.0; 3];
     for seed in 0..records {

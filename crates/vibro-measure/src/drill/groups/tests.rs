@@ -8,7 +8,7 @@ fn options(masses: Option<(f64, f64)>) -> DrillOptions {
     options
 }
 
-/// Impacts of successive turns with (phase, velocity before, velocity after), 1 s apart whatever the phase.
+/// Impacts of successive turns with (phase, velocity before, velocity after), always 1 s apart.
 fn impacts(of: &[(f64, f64, f64)]) -> Vec<Impact> {
     let one = |(cycle, (phase, before, after)): (usize, &(f64, f64, f64))| Impact {
         cycle,
@@ -122,7 +122,7 @@ fn chance_prefers_no_phase() {
         assert!(uniform > 0.92, "{n}: {uniform}");
         let normal = undirected(n, |_| 0.08 * noise.normal());
         assert!(normal < 0.02, "{n}: {normal}");
-        // Half of the impacts half a turn later: the mean phase is that of no impact.
+        // Half of the impacts come half a turn later: the mean phase is far from all of them.
         let two = undirected(n, |k| 0.5 * (k % 2) as f64 + 0.01 * noise.normal());
         assert_eq!(two, 1.0, "{n}");
     }
@@ -140,7 +140,7 @@ fn impacts_beyond_the_range_are_in_no_mean_and_leave_no_uncertainty() {
 
 #[test]
 fn a_ratio_of_sums_and_its_propagated_uncertainty() {
-    // R = 0.2 in every impact, whatever its speed: the ratio does not scatter.
+    // R = 0.2 in every impact, at every speed: the ratio does not scatter.
     let of: Vec<_> = (0..12)
         .map(|k| (0.5, 10.0 + 0.2 * f64::from(7 * k % 12), -0.2 * (10.0 + 0.2 * f64::from(7 * k % 12))))
         .collect();
