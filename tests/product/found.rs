@@ -49,6 +49,39 @@ fn finding<'a>(answer: &'a Value, code: &str) -> Option<&'a Value> {
     answer["findings"].as_array().unwrap().iter().find(|found| found["code"] == code)
 }
 
+/// Frequency in Hz and damping ratio of each mode that `vibro decay` finds in a recording must lie within
+/// four standard uncertainties of the truth, and there must be no other mode. `None` where only the
+/// frequency is known, to 0.5 Hz.
+fn check_decay(name: &str, truth: &[(f64, Option<f64>)]) {
+    let Some((_root, path)) = unpacked(name) else { return };
+    let (code, answer, _) = vibro(&["decay", text(&path)]);
+    assert_eq!(code, 0);
+    let modes = answer["modes"].as_array().unwrap();
+    assert_eq!(modes.len(), truth.len(), "{modes:?}");
+    for (mode, (frequency, zeta)) in modes.iter().zip(truth) {
+        match zeta {
+            Some(zeta) => {
+                assert!(
+                    off(&mode["frequency"], *frequency) < 4.0 && off(&mode["zeta"], *zeta) < 4.0,
+                    "{mode}"
+                );
+            }
+            None => assert!((mode["frequency"]["value"].as_f64().unwrap() - frequency).abs() < 0.5, "{mode}"),
+        }
+    }
+}
+
+#[test]
+fn no_third_mode_stands_beside_one_of_two() {
+    check_decay("decay_third_mode.csv", &[(3.21721, Some(0.063010)), (5.02141, Some(0.017693))]);
+}
+
+/// Hum at 50.020 Hz was listed as a third mode.
+#[test]
+fn steady_hum_is_no_mode() {
+    check_decay("decay_hum_mode.csv", &[(54.2, None), (174.0, None)]);
+}
+
 #[test]
 fn a_dead_step_loses_only_itself() {
     let Some((_root, path)) = unpacked("sweep_dead_step") else { return };

@@ -19,7 +19,7 @@ const BY_CHANCE: f64 = 1e-4;
 const WORTH: f64 = 10.0;
 /// Least distance of two sines in half-widths of the wider one. Nearer ones describe one motion that does not
 /// decay as a mode does.
-const PARTED: f64 = 1.5;
+const PARTED: f64 = 1.0;
 /// Decay of the strongest mode over a part, in natural logarithms, after which further samples add nothing.
 pub(super) const ENOUGH: f64 = 6.0;
 /// A part that is this many times longer than its strongest mode is visible is cut before other modes are
@@ -27,6 +27,9 @@ pub(super) const ENOUGH: f64 = 6.0;
 const LONG: f64 = 4.0;
 /// Standard uncertainties by which a decay must exceed 0.
 const SURE: f64 = 3.0;
+/// Part of its amplitude that steady hum may lose or gain over a record. It adds to the uncertainty of the
+/// decay: mains and machines are steady to a per cent.
+const STEADY: f64 = 0.01;
 /// Least ratio of the residual's RMS values in two successive blocks at the end of a contact.
 const FALL: f64 = 6.0;
 /// Lines on either side whose median is the height of a broad mode.
@@ -78,6 +81,7 @@ impl Sines {
                 }
             }
             sines.settle(&spectrum);
+            sines.part(&spectrum);
         }
         // A line near a sine that is still above the noise is a mode beyond the requested number, or not a
         // sine.
@@ -98,6 +102,32 @@ impl Sines {
                 self.groups[at] = better;
             }
         }
+    }
+
+    /// Removes the weaker of two sines that came too near each other when all were fitted again: the two
+    /// describe one motion that does not decay as a mode does. Its line is noted as odd.
+    fn part(&mut self, spectrum: &[Complex64]) {
+        while let Some((at, m)) = self.one_of_two() {
+            let group = &mut self.groups[at];
+            let odd = group.sines.remove(m);
+            self.odd.push(odd.periods.max(0.0) as usize);
+            if group.sines.is_empty() {
+                self.groups.remove(at);
+            }
+            self.settle(spectrum);
+        }
+    }
+
+    /// Group and index of the weaker of two sines that are too near each other.
+    fn one_of_two(&self) -> Option<(usize, usize)> {
+        let all = || {
+            let groups = self.groups.iter().enumerate();
+            groups.flat_map(|(at, group)| group.sines.iter().enumerate().map(move |(m, s)| ((at, m), s)))
+        };
+        let stronger = |place: (usize, usize), s: &Damped| {
+            all().any(|(other, t)| other != place && is_one(s, t) && t.amplitude.norm() > s.amplitude.norm())
+        };
+        all().find(|(place, s)| stronger(*place, s)).map(|(place, _)| place)
     }
 
     fn count(&self) -> usize {
@@ -210,8 +240,7 @@ impl Sines {
         });
         let good = best.filter(|group| {
             let added = group.sines[old.len()];
-            let alone =
-                |s: &Damped| (s.periods - added.periods).abs() >= PARTED * s.width().max(added.width());
+            let alone = |s: &Damped| !is_one(s, &added);
             let inside = group.lines.contains(&(added.periods.max(0.0) as usize));
             let without = if old.is_empty() { None } else { fit(&old, group.lines.clone()).ok() };
             let (left, free) = (group.fit.sum_of_squares(), group.fit.degrees_of_freedom());
@@ -247,6 +276,11 @@ impl Sines {
     }
 }
 
+/// Whether two sines are too near each other to be two modes.
+fn is_one(a: &Damped, b: &Damped) -> bool {
+    (a.periods - b.periods).abs() < PARTED * a.width().max(b.width())
+}
+
 /// Range of lines, among `all`, to which these sines are fitted together.
 fn range(sines: &[Damped], all: usize) -> Range<usize> {
     let ends = |sign: f64| sines.iter().map(move |s| s.periods + sign * s.reach());
@@ -255,7 +289,8 @@ fn range(sines: &[Damped], all: usize) -> Range<usize> {
     low..high.max(low + 2 * OWN * (sines.len() + 1)).min(all - 1)
 }
 
-/// Whether the decay of a sine exceeds 0 by more than [`SURE`] standard uncertainties.
+/// Whether the decay of a sine exceeds 0 by more than [`SURE`] standard uncertainties, of which hum that is
+/// not quite steady is a part.
 pub fn decays(group: &SineGroup, m: usize) -> bool {
-    group.sines[m].decay > SURE * group.std(m, [0.0, 1.0, 0.0, 0.0])
+    group.sines[m].decay > SURE * group.std(m, [0.0, 1.0, 0.0, 0.0]).hypot(STEADY)
 }
