@@ -30,6 +30,20 @@ pub const KINDS: &[Kind] = &[
         draw: |mix| direct_frf(mix, 2),
     },
     Kind {
+        name: "neighbours of a function",
+        ranges: "as one mode; the second and third each 0.3 to 1 half-power bandwidths above the one before, a tenth to once \
+        as high as the first, ζ 0.7 to 1.4 times, of either sign; 3 to 20 lines in the bandwidth",
+        every: 1,
+        draw: neighbours,
+    },
+    Kind {
+        name: "modes of twelve points",
+        ranges: "two modes 1.3 to 2.5 times apart, ζ 0.01 to 0.05; five points within 1.6 half-power bandwidths of each and two \
+        beside; noise of 0.2 % of each point",
+        every: 1,
+        draw: coarse_sweep,
+    },
+    Kind {
         name: "one mode of averaged spectra",
         ranges: "random force, 10 to 60 segments of 512 to 2048 samples, Hann window, overlap 0.5, H1; \
         1 to 20 lines in the half-power bandwidth; noise of the response 30 to 60 dB below its peak, 1/f noise, hum and 12 bits",
@@ -117,6 +131,62 @@ fn direct_frf(mix: &mut Mix, count: usize) -> Record {
         *v += Complex64::new(mix.random.normal(), mix.random.normal()) * (noise * largest / 2f64.sqrt());
     }
     compare_modes(&Measured::new(frequency, values, quantity), &poles)
+}
+
+/// One to three modes within a bandwidth of each other, some without a peak of their own. Lines are 1 Hz
+/// apart.
+fn neighbours(mix: &mut Mix) -> Record {
+    let (zeta, lines_in_bandwidth) = (mix.log(0.002, 0.05), mix.log(3.0, 20.0));
+    mix.note("ζ", zeta);
+    mix.note("lines in the bandwidth", lines_in_bandwidth);
+    let centre = lines_in_bandwidth / (2.0 * zeta) + mix.random.uniform();
+    let mut poles = vec![Pole { frequency: centre, zeta, constant: Complex64::new(1.0, 0.0) }];
+    for name in ["height of the second", "height of the third"] {
+        let last = poles[poles.len() - 1];
+        let (bandwidths_apart, relative_damping) = (mix.random.between(0.3, 1.0), mix.log(0.7, 1.4));
+        let height = mix.some(0.7, name, 0.1, 1.0) * if mix.chance(0.3) { -1.0 } else { 1.0 };
+        let frequency = last.frequency * (1.0 + 2.0 * last.zeta * bandwidths_apart);
+        // The peak of a mode is A/(2ζω²).
+        let constant = height * relative_damping * (frequency / centre).powi(2);
+        if height != 0.0 {
+            let constant = Complex64::new(constant, 0.0);
+            poles.push(Pole { frequency, zeta: zeta * relative_damping, constant });
+        }
+    }
+    let (quantity, power, _) = draw_quantity(mix);
+    let half_span = lines_in_bandwidth * mix.log(5.0, 15.0);
+    let last = poles[poles.len() - 1].frequency + half_span;
+    let first = (centre - half_span).max(0.3 * centre).max(1.0);
+    let frequency: Vec<f64> = (first as usize..last as usize).map(|k| k as f64).collect();
+    let mut values: Vec<Complex64> = frequency.iter().map(|f| response(&poles, *f, power)).collect();
+    let largest = values.iter().fold(0.0, |most: f64, v| v.norm().max(most));
+    let noise = mix.log(1e-3, 0.02);
+    mix.note("noise", noise);
+    for v in &mut values {
+        *v += Complex64::new(mix.random.normal(), mix.random.normal()) * (noise * largest / 2f64.sqrt());
+    }
+    compare_modes(&Measured::new(frequency, values, quantity), &poles)
+}
+
+/// Two modes of a stepped sweep of twelve steps.
+fn coarse_sweep(mix: &mut Mix) -> Record {
+    let (first, ratio) = (mix.log(5.0, 200.0), mix.log(1.3, 2.5));
+    let pole = |mix: &mut Mix, frequency: f64, constant: f64| Pole {
+        frequency,
+        zeta: mix.log(0.01, 0.05),
+        constant: Complex64::new(constant, 0.0),
+    };
+    let poles = [pole(mix, first, 0.5), pole(mix, ratio * first, 0.4)];
+    let steps = [-1.5, -0.5, 0.1, 0.6, 1.6];
+    let near = |p: &Pole| steps.map(|s| p.frequency * (1.0 + 2.0 * p.zeta * s));
+    let mut frequency: Vec<f64> = poles.iter().flat_map(near).collect();
+    frequency.extend([0.7 * first, first * (1.0 + ratio) / 2.0]);
+    frequency.sort_by(f64::total_cmp);
+    let mut values: Vec<Complex64> = frequency.iter().map(|f| response(&poles, *f, 0)).collect();
+    for v in &mut values {
+        *v += Complex64::new(mix.random.normal(), mix.random.normal()) * (0.002 * v.norm() / 2f64.sqrt());
+    }
+    compare_modes(&Measured::new(frequency, values, Quantity::Receptance), &poles)
 }
 
 /// Draws a random force and the response of the modes to it, disturbed as by a measuring chain, and

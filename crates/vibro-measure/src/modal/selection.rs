@@ -212,20 +212,26 @@ pub(super) fn complete(
     if lines.magnitude_only || !sound.contains(&true) && fit.unexplained > NOISE {
         return sound;
     }
-    while fit.modes.len() < TOGETHER && fit.modes.iter().all(|m| m.zeta > 0.0) {
-        let Some(more) = one_more(lines, group, fit, others) else { break };
-        let better = fit.aicc - more.aicc;
-        if fit.whiteness.rejected() && more.whiteness.rejected() {
-            // Residuals that stay coloured would support any additional mode.
+    let mut coloured: Option<Rational> = None;
+    loop {
+        let last = coloured.as_ref().unwrap_or(fit);
+        if last.modes.len() >= TOGETHER || last.modes.iter().any(|m| m.zeta <= 0.0) {
             break;
         }
-        // A mode beyond the lines, or much lower, does not belong to the group: it only widens the
-        // uncertainties.
-        let height = |mode: &Pole| mode.constant.norm() / (mode.zeta * mode.frequency.powi(2));
-        let highest = more.modes.iter().map(height).fold(0.0, f64::max);
-        let part = lines.frequency[group.lines.start]..lines.frequency[group.lines.end - 1];
-        let left_out = |m: &Pole| height(m) < LOW * highest || !part.contains(&m.frequency);
-        let left_out = more.modes.iter().any(left_out);
+        let Some(more) = one_more(lines, group, last, others) else { break };
+        let better = fit.aicc - more.aicc;
+        let left_out = group.leaves_out(lines, &more.modes);
+        if fit.whiteness.rejected() && more.whiteness.rejected() {
+            // Residuals that stay coloured support any further mode a little. One that explains much more may
+            // be one of several that are missing, after which they are white.
+            if left_out || last.aicc - more.aicc <= SPLIT {
+                break;
+            }
+            group.ahead = added(&last.modes, &more.modes).map(|at| (better, at));
+            coloured = Some(more);
+            continue;
+        }
+        coloured = None;
         let width = |pair: &[Pole]| pair[0].zeta * pair[0].frequency + pair[1].zeta * pair[1].frequency;
         let close = |w: &&[Pole]| w[1].frequency - w[0].frequency <= APART * width(w);
         let one = more.modes.windows(2).find(close).map(|w| w[0].frequency);
@@ -249,6 +255,12 @@ pub(super) fn complete(
         break;
     }
     sound
+}
+
+/// Frequency in Hz of the mode of `more` that is farthest from all `modes`.
+fn added(modes: &[Pole], more: &[Pole]) -> Option<f64> {
+    let apart = |f: f64| modes.iter().map(|m| (m.frequency - f).abs()).fold(f64::INFINITY, f64::min);
+    more.iter().map(|m| m.frequency).max_by(|a, b| apart(*a).total_cmp(&apart(*b)))
 }
 
 /// Widens the uncertainties of a fit to cover the fit `more`, which has one more mode, by its Akaike weight;
@@ -288,6 +300,17 @@ pub(super) struct PeakGroup {
     /// Drop of Akaike's criterion with one more mode, and the frequency in Hz, where that mode is not
     /// determined: the modes around it are then doubtful.
     pub ahead: Option<(f64, f64)>,
+}
+
+impl PeakGroup {
+    /// Whether one of `modes` lies beyond the lines or is much lower than the highest: it does not belong to
+    /// the group, and only widens the uncertainties.
+    fn leaves_out(&self, lines: &Measured, modes: &[Pole]) -> bool {
+        let height = |mode: &Pole| mode.constant.norm() / (mode.zeta * mode.frequency.powi(2));
+        let highest = modes.iter().map(height).fold(0.0, f64::max);
+        let part = lines.frequency[self.lines.start]..lines.frequency[self.lines.end - 1];
+        modes.iter().any(|m| height(m) < LOW * highest || !part.contains(&m.frequency))
+    }
 }
 
 impl Measured {
