@@ -158,7 +158,7 @@ impl SweepReader {
             gather(recording, findings);
         }
         let mut meta = spectrum.meta.clone();
-        meta.findings.clear(); // said once, for the sweep
+        meta.findings.clear(); // reported once, for the whole sweep
         meta.step("calibrate", &[("factor", &factor), ("unit", &unit)]);
         meta.quantity = unit.quantity();
         meta.unit = unit;

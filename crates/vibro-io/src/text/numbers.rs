@@ -98,7 +98,7 @@ fn first_rows<'a>(text: &'a Text) -> (Vec<Line<'a>>, Vec<Line<'a>>) {
         } else if rows.is_empty() {
             above.push(line);
         } else if line.remark.is_none() {
-            break; // reading the rows will complain, with the place
+            break; // reading the rows will report the error with its place
         }
     }
     (above, rows)
