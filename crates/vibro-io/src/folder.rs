@@ -190,12 +190,12 @@ impl Folder {
         self.part(path).map_or(path, |(file, _)| file)
     }
 
-    /// Whether the path is that of a regular file, or of a link to one.
+    /// Whether the path leads to a regular file, also through a link.
     pub fn is_file(&self, path: &Path) -> bool {
         self.occupant_by(path, |path| fs::metadata(path)) == Occupant::File
     }
 
-    /// Whether the path is that of a folder, or of a link to one.
+    /// Whether the path leads to a folder, also through a link.
     pub fn is_folder(&self, path: &Path) -> bool {
         self.occupant_by(path, |path| fs::metadata(path)) == Occupant::Folder
     }
@@ -281,7 +281,7 @@ impl Folder {
         }
     }
 
-    /// Opens a file as a measurement and records it as read. The path must be that of a whole file:
+    /// Opens a file as a measurement and records it as read. The path must name a whole file:
     /// [`Folder::part`] splits others. `-` is standard input.
     ///
     /// # Errors

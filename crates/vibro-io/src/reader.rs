@@ -105,7 +105,7 @@ impl Reader {
     }
 
     /// Turns a stated base band into the sampling rate of a time trace: 2.56 times the base band, as
-    /// analysers sample. A stated rate wins. A text whose values are lines of a spectrum stays one.
+    /// analysers sample. A stated rate takes precedence. A text of spectral lines stays a spectrum.
     /// Default: a base band means a spectrum.
     pub fn rate_of_base_band(mut self) -> Reader {
         self.options.rate_of_band = self.options.base_band.take().filter(|_| self.options.rate.is_none());

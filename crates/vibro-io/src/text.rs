@@ -95,7 +95,7 @@ pub(crate) fn read_table(source: &Source, options: &Options, survey: bool) -> Re
     })
 }
 
-/// Reads runs that stand side by side in a text, one after the other.
+/// Reads runs that are side by side in a text, one after the other.
 fn read_runs(text: &Text, dialect: &Dialect, options: &Options, survey: bool) -> Result<Contents> {
     let mut all = Contents::default();
     for others in runs::others_of(dialect) {

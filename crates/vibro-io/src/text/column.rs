@@ -58,8 +58,8 @@ impl Column {
         let (own, other) = (self.reals(), axis.reals());
         let (Some(first), Some(last)) = (own.first(), own.last()) else { return false };
         let units = axis.name.seconds().map_or(vec![1.0, 1e-3, 1e-6, 1e-9], |unit| vec![unit]);
-        // Largest difference: 1 % of a step, since doubles of nanoseconds since 1970 are rounded to
-        // multiples of 256.
+        // Largest difference: 1 % of a step. It allows for the rounding of nanoseconds since 1970, which as
+        // doubles are multiples of 256.
         let most = 1e-2 * (last - first) / own.len() as f64;
         // The same instants stay this close throughout; another clock drifts away.
         let is_same = |unit: f64| {

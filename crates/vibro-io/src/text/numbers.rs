@@ -1,7 +1,7 @@
 //! Detects columns of numbers, with or without header lines, as analysers print them.
 //!
 //! ```text
-//! header lines: free text, `key: value`, or remarks after # % ! * ' " //
+//! SPS390 SPECTRUM            header lines: free text, `key: value`, or remarks after # % ! * ' " //
 //! 20 Hz 400 lines
 //!   4.001992e-02             one value a line; or columns between blanks, tabs, commas or semicolons
 //!   2.001233e-02

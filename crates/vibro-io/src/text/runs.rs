@@ -1,4 +1,4 @@
-//! Splits the runs of a measurement that stand side by side, each with its own times.
+//! Splits the runs of a measurement that are side by side, each with its own times.
 //!
 //! ```text
 //! Time (s) Run #1,Force (N) Run #1,Time (s) Run #2,Force (N) Run #2

@@ -749,7 +749,7 @@ fn heads_say_where_time_begins_and_whether_values_are_complex() {
     );
 }
 
-/// A series is recognised despite numbers above its rows that describe it.
+/// Numbers above the rows that describe the series do not prevent the question.
 #[test]
 fn a_series_below_a_block_of_numbers_is_asked_about() {
     let mut rows = String::new();
@@ -1258,7 +1258,7 @@ fn days_of_a_sheet_with_decimal_commas_and_epochs_in_microseconds() {
         .concat();
     let epoch = of(format!("ts,\"Accel, m/s²\"\n{rows}"));
     assert!((epoch.records[0].axis().step().unwrap() - 5e-4).abs() < 1e-9);
-    // A date printed as a number stands beside its clock.
+    // A date printed as a number is in a column beside its clock.
     let rows: String =
         (0..20).map(|i| format!("20240501,12:00:{i:02}.000,{}\n", i * i % 7)).collect::<Vec<_>>().concat();
     let dated = of(format!("Date,Time,acc (g)\n{rows}"));

@@ -4,10 +4,10 @@ use crate::number;
 use vibro_record::Scaling;
 use vibro_record::units::{Quantity, Unit};
 
-/// Words that stand in place of a unit for a counter.
+/// Words that a counter has instead of a unit.
 pub(super) const COUNTERS: [&str; 6] = ["sequence", "samples", "points", "no.", "rn", "#"];
 
-/// The unit hour, which has no symbol among the units of values.
+/// Name of the unit hour, which has no symbol among the units of values.
 pub(super) const HOUR: &str = "hour";
 
 pub(super) const DAY: &str = "day";

@@ -62,7 +62,7 @@ struct Held {
 /// text then is unreadable for another reason.
 ///
 /// # Errors
-/// If a column often returns to earlier texts: rows of several channels or sensors may stand below each
+/// If a column often returns to earlier texts: rows of several channels or sensors may be below each
 /// other.
 pub fn left_out(text: &Text) -> Result<Option<LeftOut>> {
     let head: Vec<Line> = lines(&text.head).filter(|line| line.remark.is_none()).collect();

@@ -29,7 +29,7 @@ pub fn text(stream: &mut Stream, heading: &Heading, allow_missing: bool) -> Resu
             last_line(line, widths, &mut numbers);
         }
     }
-    numbers.truncate(due); // what fills the last line is not data
+    numbers.truncate(due); // numbers that pad the last line
     Ok(numbers)
 }
 

@@ -25,7 +25,7 @@ pub fn text(record: &Record, layout: Layout, bytes: Option<usize>, [start, step]
         id[0].clone_from(&meta.name);
     }
     if id[4].starts_with("scaling ") {
-        id[4].clear(); // that of the file it was read from
+        id[4].clear(); // scaling of the file that the record was read from
     }
     match record {
         Record::Spectrum(spectrum) => {
