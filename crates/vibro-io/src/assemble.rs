@@ -69,7 +69,8 @@ pub fn to_si(values: &mut Values, factor: f64) -> Result<()> {
 }
 
 impl Options {
-    /// Sets the unit of a record: the user's, else the file's, which is `said`. Returns the factor to SI.
+    /// Sets the unit of a record: the one that the user states, else `said`, the file's. Returns the factor
+    /// to SI.
     pub(crate) fn adopt(&self, meta: &mut Meta, said: Option<&str>) -> f64 {
         // A coherence stored with an FRF has no unit: the unit that the user states is that of the FRF.
         let without_unit = said.is_none_or(|u| matches!(u.trim(), "" | "1"));
@@ -91,7 +92,7 @@ impl Options {
     }
 }
 
-/// Quantity and unit of an abscissa; empty where it is neither time nor frequency.
+/// Quantity and unit of an abscissa; empty if it is neither time nor frequency.
 pub fn domain(kind: &AxisKind) -> (&'static str, &'static str) {
     match kind {
         AxisKind::Time => ("time", "s"),
@@ -228,7 +229,7 @@ pub struct Abscissa {
     pub kind: AxisKind,
     /// Start and step.
     pub even: Option<(f64, f64)>,
-    /// Instants or spectral lines that are stored one by one; empty where there are none.
+    /// Instants or spectral lines that are stored one by one; empty if none are stored.
     pub stored: Vec<f64>,
     /// Half a unit in the last digit of the stored values.
     pub resolution: f64,
@@ -365,15 +366,15 @@ pub fn short(value: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// A logger with 10 samples a second that prints whole seconds and starts within one.
+    /// A logger that takes 10 samples per second, prints whole seconds and starts within a second.
     #[test]
     fn whole_seconds_of_a_faster_logger_give_its_rate() {
         for n in [34, 65, 1003] {
             let printed = (0..n).map(|i| (0.7 + 0.1 * f64::from(i)).floor()).collect();
             let JudgedAxis { axis, found, .. } =
                 from_values(AxisKind::Time, printed, 0.5, "column \"t\"", false);
-            // Rounding puts 0.7 + 0.1 i on a whole second or just below it: at most one sample off in all
-            // that lie between.
+            // Rounding puts 0.7 + 0.1 i on a whole second or just below it, so at most one sample is
+            // misplaced among those in between.
             assert!((axis.step().unwrap() - 0.1).abs() < 0.1 / f64::from(n - 20), "{n}: {:?}", axis.step());
             assert_eq!(found.unwrap().code, "axis-rounded");
         }
@@ -387,10 +388,10 @@ mod tests {
         };
         let (axis, doubt) = of(&[0.0, 0.1, 0.2, 0.300_000_000_000_000_04], 0.0);
         assert_eq!((axis.step().is_some(), doubt), (true, None));
-        // Steps of 1.25 ms, printed in whole milliseconds: every fourth is longer.
+        // Steps of 1.25 ms, printed in whole milliseconds: every fourth printed step is longer.
         let printed: Vec<f64> = (0..16).map(|i| (1.25 * f64::from(i)).round() / 1e3).collect();
         let (axis, doubt) = of(&printed, 0.5e-3);
-        // Both ends are rounded by half a millisecond at most.
+        // Both ends are rounded by at most half a millisecond.
         assert!((axis.step().unwrap() - 0.00125).abs() <= 1e-3 / 15.0);
         let steps = |found: Option<Finding>, code: &str| {
             let found = found.unwrap();
@@ -415,8 +416,9 @@ mod tests {
         }
     }
 
-    /// Instants off by up to 0.16 of a step lie on one even grid with nothing lost; a lost sample leaves a
-    /// step of at least 1.68. With every third sample lost, the others lie near another even grid.
+    /// Instants that deviate by up to 0.16 of a step lie on one even grid without lost samples; a lost
+    /// sample leaves a step of at least 1.68. With every third sample lost, the others lie near another
+    /// even grid.
     #[test]
     fn a_clock_that_jitters_without_a_gap_is_even() {
         let off = |i: i32| 0.16 * (f64::from((i * 7919) % 1000) / 500.0 - 1.0);
@@ -425,7 +427,7 @@ mod tests {
         lost.remove(400);
         let judged = |times: &[f64]| from_values(AxisKind::Time, times.to_vec(), 1e-9, "column \"t\"", false);
         let (whole, gap) = (judged(&times), judged(&lost));
-        // The slope of a line scatters by σ√(12/n³) with σ = 0.16/√3 of a step.
+        // The fitted step scatters relatively by σ√(12/n³) with σ = 0.16/√3 of a step.
         let scatter = 0.16 / 3f64.sqrt() * (12.0 / 1000f64.powi(3)).sqrt();
         let step = whole.axis.step().unwrap();
         assert!((step / 0.01 - 1.0).abs() < 4.0 * scatter, "{step}");

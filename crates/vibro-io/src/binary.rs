@@ -44,7 +44,7 @@ impl NumberType {
         }
     }
 
-    /// Appends to `out` the number at byte `offset` of each row of `width` bytes. Integers beyond 2⁵³ are
+    /// Appends to `out` the number at byte `offset` of each row of `width` bytes. Integers above 2⁵³ are
     /// rounded to a double.
     pub fn take(self, rows: &[u8], offset: usize, width: usize, big_endian: bool, out: &mut Vec<f64>) {
         let at = (rows, offset, width, big_endian);

@@ -15,8 +15,8 @@ use vibro_record::{
     Error, Place, Record, Result, Spectrum, Stream as _, Trace, Traces, code, find_channel, lanes,
 };
 
-/// Size in bytes from which on a text is streamed. A shorter text is read into memory, which saves reading it
-/// twice: a value has at least two bytes with its separator, so all values take less than 256 MiB.
+/// Size in bytes from which a text is streamed. A shorter text is read into memory, which avoids reading it
+/// twice: a value and its separator take at least two bytes, so all values take less than 256 MiB.
 const STREAMED_SIZE: u64 = 64 << 20;
 
 impl Reader {
@@ -30,15 +30,15 @@ impl Reader {
         self.stream_channels(path, &[])
     }
 
-    /// As [`Reader::stream`] for some channels, by name or number from 1, in the order given; all where none
-    /// is named.
+    /// As [`Reader::stream`] for some channels, by name or number from 1, in the order given; all channels
+    /// if none is named.
     ///
     /// # Errors
     /// As [`Reader::stream`]; if there is no such channel.
     pub fn stream_channels(&self, path: impl AsRef<Path>, channels: &[&str]) -> Result<Traces> {
         let source = self.source(path)?;
         let path = source.path().to_owned();
-        // An archive or a workbook is read as a whole.
+        // An archive or a workbook is read into memory as a whole.
         if packed::is_packed(&source) {
             return self.traces_in_memory(&source, channels);
         }
@@ -68,7 +68,7 @@ impl Reader {
         self.traces_in_memory(&source, channels)
     }
 
-    /// Traces of a source, read into memory as a whole.
+    /// Traces of a source that is read into memory as a whole.
     fn traces_in_memory(&self, source: &Source, channels: &[&str]) -> Result<Traces> {
         let path = source.path().to_owned();
         let asked = self.clone().only(channels.iter().map(|&name| name.to_owned()));
@@ -84,9 +84,9 @@ impl Reader {
         Traces::of_file(path, recording.findings, traces)
     }
 
-    /// Opens one channel for reading block by block. With a `reference`, that channel is number 0 and the
-    /// chosen one number 1. `calibration` multiplies the values of the chosen one. Without `channel`, the
-    /// file must hold exactly one beside the reference.
+    /// Opens one channel for reading block by block. With a `reference`, the reference is number 0 and the
+    /// chosen channel number 1. `calibration` multiplies the values of the chosen channel. Without
+    /// `channel`, the file must hold exactly one channel besides the reference.
     ///
     /// # Errors
     /// As [`Reader::stream_channels`]; if there are several channels and none was named.
@@ -143,8 +143,8 @@ fn likeliest(traces: &[(usize, &Trace)]) -> usize {
     all.max_by(|a, b| motion(a).total_cmp(&motion(b))).unwrap_or(first)
 }
 
-/// Error that none of several channels, each with its place in the file, was chosen. It suggests the one at
-/// `best`, by name or, where names repeat, by number.
+/// Error for several channels of which none was chosen; each is given with its index in the file. It
+/// suggests the channel at `best`, by name, or by number if the name is not unique.
 fn none_chosen(path: &Path, channels: &[(usize, &str)], best: usize) -> Error {
     let names: Vec<&str> = channels.iter().map(|channel| channel.1).collect();
     let found = format!("{} channels, and none was chosen", names.len());
@@ -174,8 +174,8 @@ impl Recording {
     /// ```
     ///
     /// # Errors
-    /// If there is no such trace, or several and none was named; if the calibration is 0 or not finite, or
-    /// the trace is a fraction of full scale, which needs a unit, too.
+    /// If there is no such trace, or several and none was named; if the calibration is 0 or not finite; or
+    /// if the trace is a fraction of full scale, which also needs a unit.
     pub fn trace(&self, channel: Option<&str>, calibration: Option<f64>) -> Result<Trace> {
         calibrated(self.chosen(channel)?.1.clone(), calibration)
     }

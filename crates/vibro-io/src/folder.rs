@@ -23,8 +23,8 @@ use vibro_record::{Error, Place, Result};
 /// A SHA-256.
 pub type Digest = [u8; 32];
 
-/// A folder on disk or in memory. A run reaches files only through it. Paths are as the user sees them: the
-/// folder's own path joined with a name in it.
+/// A folder on disk or in memory, through which a run accesses all its files. Paths are as the user sees
+/// them: the folder's own path joined with a name in it.
 ///
 /// ```
 /// use std::path::Path;
@@ -190,12 +190,12 @@ impl Folder {
         self.part(path).map_or(path, |(file, _)| file)
     }
 
-    /// Whether the path is that of a regular file, or of a link to one.
+    /// Whether the path leads to a regular file, also through a link.
     pub fn is_file(&self, path: &Path) -> bool {
         self.occupant_by(path, |path| fs::metadata(path)) == Occupant::File
     }
 
-    /// Whether the path is that of a folder, or of a link to one.
+    /// Whether the path leads to a folder, also through a link.
     pub fn is_folder(&self, path: &Path) -> bool {
         self.occupant_by(path, |path| fs::metadata(path)) == Occupant::Folder
     }
@@ -219,11 +219,11 @@ impl Folder {
         names
     }
 
-    /// Creates the folder with its parents and locks it for writing until the lock is dropped; temporary
-    /// files of killed programs are removed. A folder in memory needs neither: `None`.
+    /// Creates the folder with its parents and locks it for writing until the lock is dropped. Temporary
+    /// files of killed programs are removed. A folder in memory needs no lock: `None`.
     ///
     /// # Errors
-    /// If the folder or the file of the lock cannot be made, or another program is writing there.
+    /// If the folder or the lock file cannot be made, or another program is writing there.
     pub fn lock(&self) -> Result<Option<Lock>> {
         if matches!(self.side, Side::Memory(_)) {
             return Ok(None);
@@ -254,7 +254,7 @@ impl Folder {
     /// All bytes of a file.
     ///
     /// # Errors
-    /// If it is no regular file, or cannot be read.
+    /// If it is not a regular file, or cannot be read.
     pub fn read(&self, path: &Path) -> Result<Vec<u8>> {
         let mut bytes = Vec::new();
         self.open(path)?.read_to_end(&mut bytes).map_err(|e| Error::io("read", path, e))?;
@@ -267,7 +267,7 @@ impl Folder {
         if self.occupant(&path) == Occupant::File { self.read(&path).ok() } else { None }
     }
 
-    /// The SHA-256 of a regular file, read 64 KiB at a time; of the whole file where the path names a part.
+    /// The SHA-256 of a regular file, read 64 KiB at a time; of the whole file if the path names a part.
     ///
     /// # Errors
     /// As [`Folder::read`].
@@ -281,7 +281,7 @@ impl Folder {
         }
     }
 
-    /// Opens a file as a measurement and records it as read. The path must be that of a whole file:
+    /// Opens a file as a measurement and records it as read. The path must name a whole file:
     /// [`Folder::part`] splits others. `-` is standard input.
     ///
     /// # Errors

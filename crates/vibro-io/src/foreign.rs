@@ -1,17 +1,18 @@
-//! Formats that are recognised but not read: which program wrote them, and what to export there.
+//! Formats that are recognised but not read: the program that wrote the file, and what to export there.
 
 use super::text::encoding;
 use crate::format::Format;
 use crate::source::Source;
 use vibro_record::{Error, Place};
 
-/// How a format is recognised: by bytes at an offset, or by the ending of a file that is no text.
+/// How a format is recognised: by bytes at an offset, by the ending of a binary file, or by ending and
+/// first bytes.
 enum Signature {
     /// Offset, and the bytes there.
     Bytes(usize, &'static [u8]),
-    /// Endings of files that are no text.
+    /// Endings of files that are not text.
     Ending(&'static [&'static str]),
-    /// Endings, separated by blanks, and the first bytes.
+    /// Endings, separated by blanks, and the first bytes of the file.
     Named(&'static str, &'static [u8]),
 }
 
@@ -26,7 +27,7 @@ const SHEET: &str = "choose File > Save As > CSV, one sheet a file";
 const SHEETS: &str = "choose File > Save As > CSV, one sheet a file; in phyphox choose Export Data > CSV (Comma, decimal point)";
 const OCTAVE: &[u8] = b"# Created by Octave";
 const SEISMIC: &str = "write it as SLIST, TSPAIR or CSV, e.g. with ObsPy";
-/// `C 1` in EBCDIC: the first of its forty lines of text.
+/// `C 1` in EBCDIC: start of the 40-line textual header of SEG-Y.
 const EBCDIC: &[u8] = b"\xc3\x40\xf1";
 const AUDIO: &str = "turn it into WAV, e.g. with Audacity; a lossy recording is no measurement";
 
@@ -65,7 +66,7 @@ const TABLE: &[(&str, Signature, &str)] = &[
         Bytes(0, b"\x1a\x45\xdf\xa3"),
         "export it as CSV in enDAQ Lab, or with `ide2csv`",
     ),
-    // Number 5012, with which each file of catman begins.
+    // The number 5012, with which each catman file begins.
     ("a catman recording", Bytes(0, b"\x94\x13"), "choose the export as ASCII or MAT in catman"),
     ("a SEG-Y file", Ending(&["sgy", "segy"]), SEISMIC),
     ("a SEG-Y file", Bytes(0, EBCDIC), SEISMIC),
@@ -85,8 +86,8 @@ pub fn complaint(source: &Source) -> Option<Error> {
         Named(endings, begins) => head.starts_with(begins) && endings.split(' ').any(|e| e == ending),
         Bytes(at, begins) => head.get(*at..).is_some_and(|head| head.starts_with(begins)),
     };
-    // MAT-files of version 7.3 are HDF5 and have an error of their own; a text file of Octave with one matrix
-    // is read as text.
+    // MAT-files of version 7.3 are HDF5 and have an error of their own. An Octave text file with a single
+    // variable is read as text.
     let fine = |by: &Signature| match by {
         Bytes(_, OCTAVE) => encoding::decode(head).matches("# name:").count() < 2,
         _ => ending == "mat",

@@ -9,17 +9,17 @@ pub enum Format {
     Wav,
     /// HDF5.
     Hdf5,
-    /// MATLAB's MAT-file, of version 7.3 too.
+    /// MATLAB's MAT-file: level 4, level 5 and version 7.3.
     Mat,
     /// NI's TDMS.
     Tdms,
     /// LabVIEW measurement.
     Lvm,
-    /// Named columns.
+    /// Text of columns with names above them.
     Csv,
     /// Columns of numbers, with or without header lines.
     Ascii,
-    /// A sheet of a workbook, of either kind of columns.
+    /// A sheet of a workbook, with named columns or columns of numbers.
     Workbook,
 }
 

@@ -6,9 +6,9 @@
 //!   run1/velocity  dataset of n values or n × channels, attributes unit = "mm/s"
 //! ```
 //! The crate hdf5-reader reads the bytes. Datasets, the fields of tables and attributes become [`variables`].
-//! A numeric dataset is a record; one of two dimensions is a record for each channel, with its samples along
-//! the longer dimension unless an abscissa says otherwise. MATLAB's files are read like its other MAT-files
-//! ([`matlab`]). Links to other files are not followed.
+//! A numeric dataset is a record. A dataset of two dimensions is a record for each channel, with its
+//! samples along the longer dimension unless an abscissa shows otherwise. MATLAB's files are read like its
+//! other MAT-files ([`matlab`]). Links to other files are not followed.
 
 mod file;
 mod lzf;
@@ -26,12 +26,12 @@ use hdf5_reader::{Attribute, Dataset, Datatype};
 use vibro_record::{Finding, Result, Values};
 
 const SIGNATURE: &[u8] = b"\x89HDF\r\n\x1a\n";
-/// Attributes of HDF5 dimension scales (CLASS, NAME, `DIMENSION_LIST` …), which are no data; spelled as by
+/// Attributes of HDF5 dimension scales (CLASS, NAME, `DIMENSION_LIST` …), which are not data; spelled as by
 /// [`Dialect::word`], in lower case with letters and digits only.
 const INTERNAL: &[&str] = &["class", "name", "dimensionlist", "dimensionlabels", "referencelist"];
-/// Attributes by which stored numbers are converted: ((stored − reference) · factor + offset) · scale + add,
-/// in the order factor, offset, reference, scale, add. The first three, of an oscilloscope, apply to integers
-/// only. The sixth marks a missing value.
+/// Attributes by which stored numbers are converted: ((stored − reference) · factor + offset) · scale +
+/// add, in the order factor, offset, reference, scale, add. The first three come from an oscilloscope and
+/// apply to integers only. The sixth marks a missing value.
 const SCALE: [&[&str]; 6] = [
     &["yinc", "yincrement"],
     &["yorg", "yorigin"],
@@ -43,8 +43,8 @@ const SCALE: [&[&str]; 6] = [
 type Scale = [f64; SCALE.len()];
 /// Scale of numbers that are stored as the values themselves.
 const AS_STORED: Scale = [1.0, 0.0, 0.0, 1.0, 0.0, f64::NAN];
-/// Attributes of integers that do not say what they convert, or whether to multiply or to divide. Unless the
-/// value is 1, the dataset is left out.
+/// Attributes of integers that do not state what they convert, or whether to multiply or to divide. If the
+/// value is not 1, the dataset is left out.
 const FACTORS: [&str; 3] = ["scale", "gain", "conversion"];
 
 static DIALECT: Dialect = Dialect {
@@ -62,7 +62,7 @@ pub(super) fn sniff(head: &[u8], _: &Source) -> bool {
     [0].into_iter().chain(places).any(|at| head[at..].starts_with(SIGNATURE))
 }
 
-/// All records; for a `survey`, only the extremes of their values where these are enough.
+/// All records; for a `survey`, only the extremes of their values if these are enough.
 pub(super) fn read(source: &Source, options: &Options, survey: bool) -> Result<Contents> {
     let mut file = File::open(source, options)?;
     let root = file.root()?;

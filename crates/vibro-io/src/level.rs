@@ -1,4 +1,4 @@
-//! Spectra that are mistaken for something else: levels in decibels for amplitudes, spectral lines for
+//! Detects spectra that look like something else: levels in decibels among amplitudes, spectral lines among
 //! samples over time.
 
 use crate::assemble::{short, to_si};
@@ -9,7 +9,7 @@ use vibro_record::code;
 use vibro_record::units::is_level;
 use vibro_record::{AxisKind, Error, Meta, Record, Result, Spectrum, Trace, Values};
 
-/// Words by which a channel calls itself a spectrum.
+/// Words in a channel's name that mean a spectrum.
 const SPECTRAL: [&str; 7] = ["fft", "psd", "asd", "spectrum", "spectra", "spectral", "autospectrum"];
 
 /// Level in dB of ten times the reference amplitude: L = 20 lg(a/a₀).
@@ -17,8 +17,8 @@ const DB_PER_DECADE_OF_AMPLITUDE: f64 = 20.0;
 /// Level in dB of ten times the reference power density: L = 10 lg(p/p₀).
 const DB_PER_DECADE_OF_POWER: f64 = 10.0;
 
-/// Least number of values of a spectrum, none above 0, from which on they are taken for levels in dB. With
-/// fewer values the signs may be chance.
+/// Fewest values of a spectrum, none above 0, that count as levels in dB. With fewer values the signs may
+/// be chance.
 const LEAST_LEVELS: usize = 8;
 
 /// Converts dB levels whose unit states the reference (dB re 1 g) to amplitudes, or to power densities if the
@@ -124,7 +124,7 @@ pub fn decibels(meta: &Meta) -> Option<String> {
     if let Some(name) = [Some(&meta.name), above].into_iter().flatten().find(bracketed) {
         return Some(name.clone());
     }
-    // dB behind a number is a setting, as in `level: -20 dB`, and no unit of the values.
+    // dB after a number is a setting, as in `level: -20 dB`, not a unit of the values.
     let names_unit = |value: &str| {
         let words: Vec<&str> = value.split_whitespace().collect();
         let at = words.iter().position(|word| is_level(word));

@@ -37,11 +37,11 @@
 //! | `uff` | `uff` | Universal File Format, data sets 58 and 58b |
 //! | `csv`, `ascii` | `text` | tables with names; columns of numbers |
 //!
-//! A zip archive or a workbook (features `zip`, `sheets`) is read as the file or sheet in it with the most
-//! rows; a path such as `walk.zip/Gyroscope.csv` names another.
+//! A zip archive or a workbook (features `zip`, `sheets`) is read as the one file or sheet in it that has
+//! the most rows. A path such as `walk.zip/Gyroscope.csv` names another.
 //!
-//! Long time traces come block by block from [`Reader::stream`], a sweep of spectra from [`SweepReader`].
-//! [`mod@write`] turns records into files again.
+//! [`Reader::stream`] reads long time traces block by block, [`SweepReader`] a sweep of spectra.
+//! [`mod@write`] writes records to files.
 
 mod assemble;
 mod binary;
@@ -121,7 +121,7 @@ mod tests {
         findings.iter().map(|found| format!("{} {}", found.code, facts(found))).collect()
     }
 
-    /// Whether one of the findings, as text, begins with `code` and holds all `facts`.
+    /// Whether one of the findings, as text, has the code `code` and contains all `facts`.
     pub fn has_finding(findings: &[Finding], code: &str, facts: &[&str]) -> bool {
         texts(findings)
             .iter()

@@ -1,5 +1,5 @@
-//! Limit of the memory that a reader may fill: checked before memory is reserved for a size that a file
-//! declares.
+//! Limit of the memory that a reader may use. It is checked before memory is reserved for a size that a
+//! file declares.
 
 use std::sync::OnceLock;
 use vibro_record::units::notation::significant;
@@ -9,14 +9,14 @@ use vibro_record::{Error, Result};
 const GB: f64 = 1e9;
 /// Memory in bytes that is assumed where the machine's own is unknown.
 const UNKNOWN: f64 = 4.0 * GB;
-/// Largest fraction of the machine's memory that a hint suggests as a limit: the system and other programs
+/// Largest fraction of the machine's memory that a hint suggests as a limit. The system and other programs
 /// need the rest.
 const MOST_OF_MACHINE: f64 = 0.8;
 
 /// Limit in bytes stated for all readers of the program.
 static STATED: OnceLock<f64> = OnceLock::new();
 
-/// The most memory in bytes for the values of a file and the results computed from them.
+/// Largest memory in bytes for the values of a file and the results computed from them.
 ///
 /// ```
 /// use vibro_io::Limit;
@@ -35,12 +35,12 @@ impl Default for Limit {
 }
 
 impl Limit {
-    /// Makes it the default of all readers; only the first call has an effect.
+    /// Makes this limit the default of all readers; only the first call has an effect.
     pub fn state(self) {
         let _ = STATED.set(self.0);
     }
 
-    /// A size such as `2GB` or `500MB`, above 0.
+    /// Parses a size above 0, such as `2GB` or `500MB`.
     pub fn parse(text: &str) -> Option<Limit> {
         let text = text.trim().to_uppercase();
         let units = [("TB", 1e12), ("GB", GB), ("MB", 1e6), ("KB", 1e3), ("B", 1.0)];
@@ -52,12 +52,13 @@ impl Limit {
     /// Checks that `bytes` are within the limit.
     ///
     /// # Errors
-    /// If they are not: the error states the memory needed and, if the machine has it, the limit to set.
+    /// If they exceed it: the error states the memory needed and, if the machine has that much, the limit
+    /// to set.
     pub(crate) fn hold(self, bytes: f64) -> Result<()> {
         self.hold_or(bytes, |error| error.hint("of several channels, name one").setting("channel"))
     }
 
-    /// As [`Limit::hold`]; `advice` adds a hint for a machine with too little memory.
+    /// As [`Limit::hold`]; `advice` adds the hint for a machine that has too little memory.
     pub(crate) fn hold_or(self, bytes: f64, advice: impl FnOnce(Error) -> Error) -> Result<()> {
         if bytes <= self.0 {
             return Ok(());
@@ -69,7 +70,7 @@ impl Limit {
         };
         let found = format!("it needs {} of memory, the limit is {}", size(bytes), size(self.0));
         let error = Error::usage(found, "");
-        // A tenth more, for the program itself and for rounding.
+        // A margin of 10 % for the program itself and for rounding.
         let enough = (1.1 * bytes / GB).max(0.1);
         Err(if enough * GB <= MOST_OF_MACHINE * machine() {
             error.set("max_memory", format!("{}GB", (enough * 10.0).ceil() / 10.0))
@@ -79,7 +80,7 @@ impl Limit {
     }
 }
 
-/// Memory of the machine in bytes; [`UNKNOWN`] where Linux's `/proc/meminfo` is missing.
+/// Memory of the machine in bytes; [`UNKNOWN`] on systems without Linux's `/proc/meminfo`.
 fn machine() -> f64 {
     let meminfo = std::fs::read_to_string("/proc/meminfo").ok();
     let total =

@@ -1,12 +1,13 @@
 //! LabVIEW measurement files (`.lvm`), versions 1 and 2.
 //!
 //! ```text
-//! LabVIEW Measurement                          tags and values, one a line, between separators
+//! LabVIEW Measurement                          tags and values, one per line, between separators
 //! Separator       Tab
-//! X_Columns       No                           one X column for all channels, one for each (Multi), or none
+//! X_Columns       No                           one X column for all channels, one for each (Multi), or
+//! none
 //! ***End_of_Header***
 //!
-//! Channels        2                            the head of a segment, one value a channel
+//! Channels        2                            the header of a segment, one value per channel
 //! Y_Unit_Label    N         m/s^2
 //! Delta_X         3.9E-5    3.9E-5
 //! ***End_of_Header***
@@ -33,7 +34,7 @@ use vibro_record::{AxisKind, Error, Finding, Meta, Place, Record, Result, Values
 const BEGIN: &str = "LabVIEW Measurement";
 const END_OF_HEADER: &str = "***End_of_Header***";
 const SPECIAL: [&str; 2] = ["***Start_Special***", "***End_Special***"];
-/// Largest number of comments kept of a segment: each of its records copies all of them as notes.
+/// Largest number of comments kept of a segment; each of its records stores all of them as notes.
 const MOST_COMMENTS: usize = 100;
 
 pub(super) fn sniff(head: &[u8], _: &Source) -> bool {
@@ -88,7 +89,7 @@ struct NumberedLines<'a> {
 impl<'a> Iterator for NumberedLines<'a> {
     type Item = &'a str;
 
-    /// The next line outside of special blocks.
+    /// The next line outside special blocks.
     fn next(&mut self) -> Option<&'a str> {
         let mut special = false;
         loop {
@@ -128,7 +129,7 @@ impl<'a> Head<'a> {
                 head.ended = true;
                 break;
             }
-            // A tag states the separator, so it is not known yet. No name of a tag contains one of these
+            // A tag states the separator, so it is not known yet. No tag's name contains one of these
             // characters.
             let mark = line.find(['\t', ',', ';']).unwrap_or(line.len());
             let (tag, values) = line.split_at(mark);
@@ -143,7 +144,7 @@ impl<'a> Head<'a> {
         head
     }
 
-    /// The first value of a tag that is not blank.
+    /// The first non-blank value of a tag.
     fn tag_value(&self, tag: &str) -> Option<&'a str> {
         self.tags.get(tag)?.iter().copied().find(|value| !value.is_empty())
     }
@@ -175,7 +176,7 @@ struct Segment<'h, 'a> {
 }
 
 impl<'h, 'a> Segment<'h, 'a> {
-    /// Reads the names and the rows after a header, up to a blank line that no row follows.
+    /// Reads the names and the rows after a header, up to blank lines that no row follows.
     fn read(
         lines: &mut NumberedLines<'a>,
         general: &'h Head<'a>,
@@ -281,7 +282,7 @@ impl<'h, 'a> Segment<'h, 'a> {
     }
 
     /// The abscissa of a channel. `X0` and `Delta_X` of the header have more digits than an X column: they
-    /// are used if they agree with it or there is none. Else the X column is used.
+    /// are used if they agree with it or there is none. Otherwise the X column is used.
     fn abscissa(
         &self,
         channel: usize,

@@ -17,8 +17,8 @@ const LEAST_SAMPLES: usize = 32;
 /// channel gives about 1.
 const LARGEST_DIFFERENCE: f64 = 3e-2;
 
-/// Adds the finding to each trace whose first values are the magnitude of two or three other traces of the
-/// same unit that follow each other.
+/// Adds the finding to each trace whose first values are the magnitude of two or three consecutive other
+/// traces of the same unit.
 pub fn mark(contents: &mut Contents) {
     let found: Vec<(usize, String)> = {
         let traces: Vec<(usize, &str, &str, &[f64])> = contents

@@ -7,11 +7,11 @@
 //!           variable: kind 15, size, then the same packed by zlib
 //! level 4   variable: type, rows, columns, complex or not, length of the name, name, real and imaginary part
 //! ```
-//! A numeric vector is a record, and so is each column of a matrix. Variables in structs and cell arrays are
-//! named as MATLAB writes them: `bearing.gs`, `run(2).v`, `data{1}.x`. Scalars and texts are notes on the
-//! records of their struct. The abscissa comes from a vector `t` or `time` (`f`, `freq` or `frequency`) of
-//! the same length, or from scalars such as `fs`, `SampleRate`, `dt`, or `Tinterval` and
-//! `Tstart` ([`variables`]). The file knows no units, but a struct may state that of its vector (`Unit`).
+//! A numeric vector is a record, and so is each column of a matrix. Variables in structs and cell arrays
+//! are named as MATLAB writes them: `bearing.gs`, `run(2).v`, `data{1}.x`. Scalars and texts are notes on
+//! the records of their struct. The abscissa comes from a vector `t` or `time` (`f`, `freq` or `frequency`)
+//! of the same length, or from scalars such as `fs`, `SampleRate`, `dt`, or `Tinterval` and `Tstart`
+//! ([`variables`]). The format has no units, but a struct may state that of its vector (`Unit`).
 
 mod level4;
 mod level5;
@@ -30,7 +30,7 @@ const HDF5: &[u8] = b"\x89HDF\r\n\x1a\n";
 type Parse = fn(&[u8], &Options) -> Result<Vec<(String, Content)>>;
 
 /// Parser for the level of a MAT-file, or as an error the name of a version without a parser; `None` for
-/// other files. Level 4 has no signature: it is tried only where `named`, for files that end in `.mat`.
+/// other files. Level 4 has no signature, so it is tried only if `named`, for files that end in `.mat`.
 fn level(head: &[u8], named: bool) -> Option<std::result::Result<Parse, &'static str>> {
     const LEVEL_7: &str = "a MAT-file of version 7.3, which is HDF5";
     match head.get(124..128) {

@@ -5,10 +5,10 @@ use rayon::prelude::*;
 use vibro_record::units::notation::counted;
 use vibro_record::{Error, Finding, Place, Result, Values, lanes};
 
-/// Most places of missing values that an error lists.
+/// Largest number of missing values whose places an error lists.
 pub(super) const LISTED: usize = 8;
 
-/// Error that refuses missing values; `found` says which.
+/// Error that refuses missing values; `found` names them.
 pub(super) fn refusal(place: Place, found: impl Into<String>) -> Error {
     Error::input(place, found, "a finite number in every place")
         .hint("allow missing values to keep them as such")
@@ -36,8 +36,8 @@ pub(super) fn mark(values: &mut Values) -> Vec<usize> {
     }
 }
 
-/// Sets values of records that are not finite to NaN (missing). Unless they are `allowed`, they are refused
-/// with their names and numbers.
+/// Sets values of records that are not finite to NaN (missing). Unless `allowed`, they are refused, with
+/// the record's name and the number of each value.
 ///
 /// # Errors
 /// If there are any and they are not `allowed`.
@@ -57,7 +57,7 @@ pub(super) fn checked<'a>(
 #[derive(Debug, Default)]
 pub(super) struct Missing {
     count: usize,
-    /// Place of the first one.
+    /// Place of the first missing value.
     first: Place,
     listed: Vec<String>,
 }
@@ -74,8 +74,8 @@ impl Missing {
         }
     }
 
-    /// Refuses all of them in one error, count, `noun`, `what`, places, as in `1 missing value at 2 of "a"`.
-    /// Returns their number.
+    /// Refuses all of them in one error made of count, `noun`, `what` and places, as in `1 missing value at
+    /// 2 of "a"`. Returns their number.
     ///
     /// # Errors
     /// If there are any and they are not `allowed`.

@@ -43,7 +43,7 @@ pub(crate) fn parse_with(text: &[u8], decimal: u8) -> Option<f64> {
     }
 }
 
-/// A number with a typographic minus, or with the minus behind it, as spreadsheets and old programs write it:
+/// A number with a typographic minus, or with a trailing minus, as spreadsheets and old programs write it:
 /// `−0.5`, `0.5-`.
 #[cold]
 fn negative(text: &[u8], decimal: u8) -> Option<f64> {
@@ -53,14 +53,14 @@ fn negative(text: &[u8], decimal: u8) -> Option<f64> {
     (used == magnitude.len() && magnitude[0] != b'-' && magnitude[0] != b'+').then_some(-value)
 }
 
-/// As [`parse_with`] for a decimal mark that the user stated: the other mark may then group the digits of
-/// whole numbers, too.
+/// As [`parse_with`] for a decimal mark that the user stated: the other mark may then also separate
+/// thousands in whole numbers.
 pub(crate) fn parse_stated(text: &[u8], decimal: u8) -> Option<f64> {
     parse_with(text, decimal).or_else(|| ungrouped(text.trim_ascii(), decimal, true))
 }
 
-/// Whether the mark in `text` may either group the digits of a whole number or be its decimal mark: `1,000`
-/// may be 1000 or 1.
+/// Whether the mark in `text` may either separate thousands in a whole number or be its decimal mark:
+/// `1,000` is 1000 or 1.
 pub(crate) fn may_be_grouped(text: &[u8]) -> bool {
     [b'.', b','].iter().any(|decimal| {
         !text.contains(decimal)
@@ -69,8 +69,8 @@ pub(crate) fn may_be_grouped(text: &[u8]) -> bool {
     })
 }
 
-/// Parses a number with digits in groups of three. Apostrophes or narrow blanks separate groups; so does
-/// the other mark, if the number contains its decimal mark or the user `stated` which mark that is.
+/// Parses a number with digits in groups of three. Apostrophes or narrow blanks separate groups. The other
+/// mark does so only if the number contains its decimal mark, or the user `stated` the decimal mark.
 #[cold]
 fn ungrouped(text: &[u8], decimal: u8, stated: bool) -> Option<f64> {
     let text = std::str::from_utf8(text).ok()?;
@@ -80,7 +80,7 @@ fn ungrouped(text: &[u8], decimal: u8, stated: bool) -> Option<f64> {
     let group =
         text[group..].chars().next().filter(|group| *group != mark || stated || text.contains(own))?;
     let whole = text.split(own).next()?.trim_start_matches(['-', '+']);
-    // A grouped number does not begin with 0: `0.123` has three decimals.
+    // A number with thousands separators does not begin with 0: `0.123` has three decimals.
     if group == mark && whole.starts_with('0') {
         return None;
     }
@@ -113,8 +113,8 @@ pub(crate) fn is_missing(text: &[u8]) -> bool {
 /// A number that overflows a double gives `None`; one that underflows gives 0 or a subnormal.
 #[inline]
 pub fn prefix(text: &[u8], decimal: u8) -> Option<(f64, usize)> {
-    // No branch on the sign: measured signs are random, and a wrong branch prediction costs more time than
-    // the whole number.
+    // No branch on the sign: measured signs are random, and a wrong branch prediction takes longer than
+    // parsing the whole number.
     let first = *text.first()?;
     let negative = first == b'-';
     let mut at = usize::from(negative) + usize::from(first == b'+');
@@ -174,19 +174,19 @@ pub fn scientific<const W: usize>(field: &[u8; W]) -> Option<f64> {
 /// Parses all of `field` as a digit, the point, digits, `E`, a sign and two digits; `None` for everything
 /// else.
 ///
-/// The loop over the digits has no branch; the compiler unrolls it where it knows the length of the field.
+/// The loop over the digits has no branch; the compiler unrolls it if the length of the field is known.
 #[inline(always)]
 #[allow(clippy::inline_always)] // the length must be known to the compiler
 pub fn exponential(field: &[u8]) -> Option<f64> {
     let w = field.len();
-    // 24 characters hold 19 digits, which always fit into 64 bits. Below follows the check that the integer
-    // is exact in a double.
+    // 24 characters hold 19 digits, which always fit into 64 bits. Whether the integer is exact in a double
+    // is checked below.
     if !(8..=24).contains(&w) {
         return None;
     }
     let digit = |at: usize| field[at].wrapping_sub(b'0');
-    // `d.dddddd` is read as eight digits at once: the point becomes the digit before it, and that digit a
-    // zero.
+    // `d.dddddd` is read as eight digits at once: the first digit moves to the place of the point, and a
+    // zero takes its place.
     let (mut mantissa, mut worst, mut at) = (u64::from(digit(0)), digit(0), 2);
     if w >= 12 {
         let mut eight = *field.first_chunk::<8>()?;
@@ -212,14 +212,14 @@ pub fn exponential(field: &[u8]) -> Option<f64> {
     Some(if exponent < 0 { mantissa as f64 / power } else { mantissa as f64 * power })
 }
 
-/// Eight ASCII digits as a number, joined to pairs, fours and eight within one register. `None` if any byte
-/// is no digit.
+/// Eight ASCII digits as a number, combined to pairs, fours and eight within one register. `None` if any
+/// byte is not a digit.
 #[inline]
 fn eight_digits(text: [u8; 8]) -> Option<u64> {
     const ZEROS: u64 = 0x3030_3030_3030_3030;
     const HIGH: u64 = 0xf0f0_f0f0_f0f0_f0f0;
     let v = u64::from_le_bytes(text);
-    // A byte is a digit if its high half is 3, and stays 3 when 6 is added.
+    // A byte is a digit if its high half is 3 and remains 3 when 6 is added.
     let other = ((v & HIGH) ^ ZEROS) | ((v.wrapping_add(0x0606_0606_0606_0606) & HIGH) ^ ZEROS);
     if other != 0 {
         return None;
@@ -264,8 +264,8 @@ fn exponent_part(text: &[u8]) -> Option<(i32, usize)> {
         value = value.saturating_mul(10).saturating_add(i32::from(d));
         at += 1;
     }
-    // A letterless exponent has three digits: Fortran drops the letter only where the exponent needs the
-    // room. Without this rule `1.5-2` in a file of touching numbers would be read as one number.
+    // An exponent without a letter has three digits, since Fortran drops the letter only if the exponent
+    // needs its place. Without this rule, `1.5-2`, two numbers that touch, would be read as one number.
     let enough = if lettered { at > from } else { at - from == 3 };
     enough.then_some((if negative { -value } else { value }, at))
 }
@@ -331,7 +331,8 @@ mod tests {
     }
 
     proptest! {
-        /// The standard library's parser is the oracle: both are correctly rounded, so they agree to the bit.
+        /// The standard library's parser is the reference. Both are correctly rounded, so they agree to the
+        /// bit.
         #[test]
         fn agrees_with_the_standard_library(value in proptest::num::f64::NORMAL | proptest::num::f64::ZERO, digits in 0usize..20) {
             for text in [format!("{value:e}"), format!("{value:.digits$e}"), format!("{}", value as f32)] {
@@ -340,7 +341,7 @@ mod tests {
             }
         }
 
-        /// The general parser is the oracle.
+        /// The general parser is the reference.
         #[test]
         fn scientific_fields_agree_with_the_general_parser(value in -1e20f64..1e20, power in -40i32..20) {
             fn check<const W: usize>(text: &str) -> Result<(), TestCaseError> {
@@ -348,7 +349,7 @@ mod tests {
                 let general = parse(field).expect("a printed number");
                 match scientific(field) {
                     Some(value) => prop_assert_eq!(value.to_bits(), general.to_bits(), "{}", text),
-                    // Beyond 10^22 the power of ten is not exact.
+                    // Beyond 10²² the power of ten is not exact.
                     None => prop_assert!(general == 0.0 || !(1e-10..1e20).contains(&general.abs()), "{}", text),
                 }
                 Ok(())

@@ -1,48 +1,48 @@
-//! Statements of the user about a file.
+//! What the user states about a file.
 
 use crate::limit::Limit;
 use std::path::Path;
 use vibro_record::units::Unit;
 use vibro_record::{Axis, Meta, Result, find_channel};
 
-/// Accepted range in Hz of rates, bands and line widths: any instrument lies far inside, and steps computed
-/// from it are finite and positive.
+/// Accepted range in Hz of rates, bands and line widths. All instruments lie far inside it, and every step
+/// computed from it is finite and positive.
 pub const POSSIBLE: std::ops::RangeInclusive<f64> = 1e-12..=1e15;
 
 /// Bytes of a value in memory.
 const VALUE: f64 = 8.0;
 
-/// Statements of the user about a file that lacks them. One that contradicts the file wins, with a finding in
-/// the record.
+/// What the user states about a file. A statement that contradicts the file is used, and a finding in the
+/// record reports that.
 #[derive(Debug, Clone, Default)]
 pub struct Options {
     /// Keep NaN, Inf, over-range and blank values as missing (NaN) instead of refusing them.
     pub allow_missing: bool,
     /// Sampling rate in Hz: the values are a time trace.
     pub rate: Option<f64>,
-    /// The base band in Hz from which `rate` was computed.
+    /// The base band in Hz from which `rate` was computed, if any.
     pub rate_of_band: Option<f64>,
     /// Base band in Hz: the values are a spectrum from 0 to it.
     pub base_band: Option<f64>,
     /// Unit of the values.
     pub unit: Option<Unit>,
-    /// Whether a comma is the decimal mark; `None` to find out.
+    /// Whether a comma is the decimal mark; `None`: detected.
     pub decimal_comma: Option<bool>,
-    /// Two value columns are real and imaginary part.
+    /// Whether two value columns are the real and the imaginary part.
     pub complex: bool,
-    /// Whether rows continue each other as one series; `None` to find out.
+    /// Whether each row continues the row above as one series of values; `None`: detected.
     pub wrapped: Option<bool>,
     /// Part of the time traces that is read, in s: from the first time (included) to the second (excluded).
     pub span: Option<(f64, f64)>,
-    /// Number, from 1, of the stretch between lost samples that is kept.
+    /// Which of the stretches between lost samples is kept, counted from 1.
     pub stretch: Option<usize>,
     /// Rate in Hz to which traces are resampled by interpolation.
     pub resample: Option<f64>,
-    /// Memory that may be filled.
+    /// Limit of the memory for values and results.
     pub limit: Limit,
     /// Memory for results computed from the values, as a multiple of the values' own size.
     pub beside: f64,
-    /// Channels whose values are needed, by name or number from 1; all where none is named.
+    /// Channels whose values are needed, by name or by number from 1; empty: all.
     pub only: Vec<String>,
 }
 

@@ -1,8 +1,8 @@
 //! Files that contain other files: a zip archive of files, a workbook of sheets.
 //!
 //! The part with at least ten times the rows of any other is read. A sheet is read as the text that a
-//! spreadsheet program would export ([`sheets`]). A hidden sheet is read only if no visible one has a
-//! table. A path as in a folder names any other part: `walk.zip/Gyroscope.csv`, `walk.xlsx/Sheet 2`.
+//! spreadsheet program would export ([`sheets`]). A hidden sheet is read only if no visible sheet has a
+//! table. A path as in a folder names another part: `walk.zip/Gyroscope.csv`, `walk.xlsx/Sheet 2`.
 
 #[cfg(feature = "sheets")]
 mod sheets;
@@ -63,8 +63,8 @@ impl Member {
     }
 }
 
-/// Parts with their sizes by [`Member::rows`], largest first, and how many parts exceed 1/[`LONGER`] of the
-/// largest size.
+/// Parts with their sizes by [`Member::rows`], largest first, and the number of parts larger than
+/// 1/[`LONGER`] of the largest.
 type Ranked = (Vec<(usize, Member)>, usize);
 
 /// All parts of an archive or a workbook; `None` for other files.
@@ -131,7 +131,7 @@ fn listed<'a>(parts: impl Iterator<Item = &'a (usize, Member)>) -> String {
     parts.map(rows).collect::<Vec<_>>().join(", ")
 }
 
-/// Hint for a file without a table: unpack it, and name the packed file in it that may hold one.
+/// Hint for a file without a table: unpack it, and name the packed file inside it that may hold one.
 fn unpack(packed: Option<&(usize, Member)>) -> String {
     let name = packed.map_or("the file with the samples", |(_, part)| part.name.as_str());
     format!("unpack it, and name {name}")
@@ -149,7 +149,7 @@ pub fn file_or_part(folder: &Folder, path: &Path, limit: Limit) -> Result<Source
     }
 }
 
-/// Reads the part of this name.
+/// Reads the part with this name.
 ///
 /// # Errors
 /// As [`main_part`]; if there is no such part.
@@ -167,7 +167,7 @@ fn part(source: &Source, name: &Path, limit: Limit) -> Result<Source> {
 }
 
 /// Finding on a sheet with a column in percent. Cells formatted as percent are stored as fractions of one,
-/// other cells as shown; calamine, which reads sheets, does not tell which.
+/// other cells as shown. The crate calamine, which reads sheets, does not distinguish them.
 pub fn percent(source: &Source) -> Option<Finding> {
     let text = source.in_memory().filter(|_| source.is_sheet())?;
     let in_percent = |cell: &&str| {

@@ -105,7 +105,7 @@ impl Reader {
     }
 
     /// Turns a stated base band into the sampling rate of a time trace: 2.56 times the base band, as
-    /// analysers sample. A stated rate wins. A text whose values are lines of a spectrum stays one.
+    /// analysers sample. A stated rate takes precedence. A text of spectral lines stays a spectrum.
     /// Default: a base band means a spectrum.
     pub fn rate_of_base_band(mut self) -> Reader {
         self.options.rate_of_band = self.options.base_band.take().filter(|_| self.options.rate.is_none());
@@ -159,7 +159,7 @@ impl Reader {
         self
     }
 
-    /// Bounds the memory that values may fill. Default: see [`Limit`].
+    /// Limits the memory for values. Default: see [`Limit`].
     pub fn max_memory(mut self, limit: Limit) -> Reader {
         self.options.limit = limit;
         self
@@ -190,8 +190,8 @@ impl Reader {
     /// Reads many files, in parallel, in the order given.
     ///
     /// # Errors
-    /// As [`Reader::from_path`], for the first file that fails; where several fail because of their content,
-    /// the error names the others too.
+    /// As [`Reader::from_path`], for the first file that fails. If several files fail because of their
+    /// content, the error also names the others.
     pub fn from_paths<P: AsRef<Path> + Sync>(&self, paths: &[P]) -> Result<Vec<Recording>> {
         let results: Vec<Result<Recording>> = paths.par_iter().map(|p| self.from_path(p)).collect();
         let failed = paths.iter().zip(&results).filter(|(_, result)| result.is_err());
@@ -228,8 +228,8 @@ impl Reader {
         Ok(Recording { path: source.path().to_owned(), format, records, findings })
     }
 
-    /// Headers of the records of a file, without values; memory use does not grow with the file where the
-    /// format allows.
+    /// Headers of the records of a file, without values. If the format allows, memory use does not grow
+    /// with the file.
     ///
     /// # Errors
     /// As [`Reader::from_path`].
@@ -339,7 +339,7 @@ pub struct Header {
     pub declared_n: Option<usize>,
     /// First abscissa value, in `x_unit`.
     pub x0: f64,
-    /// `s` or `Hz`; empty where the file does not say what the abscissa is.
+    /// `s` or `Hz`; empty if the file does not state the kind of abscissa.
     pub x_unit: &'static str,
     /// Step of the abscissa, in `x_unit`; `None` if uneven.
     pub dx: Option<f64>,
@@ -349,11 +349,11 @@ pub struct Header {
     pub duration: Option<f64>,
     /// Whether values are complex.
     pub complex: bool,
-    /// Smallest value, in SI units; `None` for complex values, and wherever `max_abs` is.
+    /// Smallest value, in SI units; `None` for complex values, and if `max_abs` is `None`.
     pub min: Option<f64>,
     /// Largest value, in SI units; `None` as for `min`.
     pub max: Option<f64>,
-    /// Largest magnitude in SI units; `None` where the values were not read or are all missing.
+    /// Largest magnitude in SI units; `None` if the values were not read or are all missing.
     pub max_abs: Option<f64>,
     /// Abscissa of the largest magnitude.
     pub max_at: Option<f64>,

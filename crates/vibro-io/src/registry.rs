@@ -12,14 +12,15 @@ use vibro_record::Result;
 /// How one format is detected and read.
 pub struct Entry {
     pub format: Format,
-    /// Whether the first bytes are of this format.
+    /// Whether a source that begins with the bytes `head` is in this format.
     pub sniff: fn(head: &[u8], source: &Source) -> bool,
-    /// Reads the records of a source; for a `survey`, only the extremes of their values where the format can
-    /// find these in less memory.
+    /// Reads the records of a source. For a `survey`, a format may read only the smallest and largest
+    /// values, where that needs less memory.
     pub read: fn(&Source, &Options, survey: bool) -> Result<Contents>,
 }
 
-/// Binary formats with a signature first, then text formats from the strictest to the loosest.
+/// In the order of detection: binary formats with a signature, then text formats from the strictest to the
+/// loosest.
 pub const TABLE: &[Entry] = &[
     Entry { format: Format::Wav, sniff: wav::layout::sniff, read: wav::read },
     #[cfg(feature = "hdf5")]

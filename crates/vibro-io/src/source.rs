@@ -84,12 +84,13 @@ impl Source {
         Source { sheet: Some(first), ..self }
     }
 
-    /// Whether it is the sheet of a workbook, which is read as a table like CSV.
+    /// Whether it is the sheet of a workbook, which is read as a table, like CSV.
     pub fn is_sheet(&self) -> bool {
         self.sheet.is_some()
     }
 
-    /// Name of the cell of a sheet, such as `B2`, at a character of its text; line and column count from 1.
+    /// Name of a sheet's cell, such as `B2`, at a character of the sheet's text; line and column count from
+    /// 1.
     pub fn cell(&self, line: u64, column: u64) -> Option<String> {
         let first = self.sheet?;
         let text = str::from_utf8(self.in_memory()?).ok()?.lines().nth(line.checked_sub(1)? as usize)?;
@@ -129,7 +130,7 @@ impl Source {
         self.path.file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned())
     }
 
-    /// Lower-case ending without the dot; empty where there is none.
+    /// Lower-case file ending without the dot; empty if there is none.
     pub fn extension(&self) -> String {
         self.path.extension().map_or_else(String::new, |e| e.to_string_lossy().to_lowercase())
     }
@@ -145,7 +146,7 @@ impl Source {
         &self.bytes[..self.bytes.len().min(HEAD)]
     }
 
-    /// All bytes, where they are in memory.
+    /// All bytes, if they are in memory.
     pub fn in_memory(&self) -> Option<&[u8]> {
         (self.bytes.len() as u64 == self.len).then_some(&self.bytes)
     }

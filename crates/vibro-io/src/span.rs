@@ -5,10 +5,11 @@ use crate::held::Contents;
 use std::ops::Range;
 use vibro_record::{Axis, AxisKind, Error, Grid, Meta, Record, Result};
 
-/// Indices of the samples of `axis` at or after the first time of `span` and before its second, in s.
+/// Indices of the samples of `axis` in `span`, in s: from the first time (included) to the second
+/// (excluded).
 ///
 /// # Errors
-/// If no sample lies there.
+/// If no sample lies in the span.
 pub fn within(axis: &Axis, span: (f64, f64)) -> Result<Range<usize>> {
     let part = axis.between(span.0, span.1);
     if !part.is_empty() {
@@ -19,8 +20,8 @@ pub fn within(axis: &Axis, span: (f64, f64)) -> Result<Range<usize>> {
     Err(Error::usage(found, format!("a part of {} to {} s", short(axis.start()), short(end))).setting("span"))
 }
 
-/// Notes in a channel's history which part of it was read. Keeps the declared number of values only if the
-/// whole channel was read.
+/// Adds the span to a channel's history. Keeps the declared number of values only if the whole channel was
+/// read.
 pub fn note(meta: &mut Meta, span: Option<(f64, f64)>, declared: Option<usize>) {
     meta.declared_n = declared.filter(|_| span.is_none());
     if let Some((from, to)) = span {
@@ -28,10 +29,10 @@ pub fn note(meta: &mut Meta, span: Option<(f64, f64)>, declared: Option<usize>) 
     }
 }
 
-/// The same contents with the time traces cut to a `span`, if there is one.
+/// The contents with all time traces cut to `span`, in s; unchanged without a span.
 ///
 /// # Errors
-/// If no record is over time, or none has samples there.
+/// If no record is a time trace, or a trace has no sample in the span.
 pub fn cut(mut contents: Contents, span: Option<(f64, f64)>) -> Result<Contents> {
     let Some(span) = span else { return Ok(contents) };
     let mut over_time = false;
@@ -40,13 +41,13 @@ pub fn cut(mut contents: Contents, span: Option<(f64, f64)>) -> Result<Contents>
         if trace.axis.kind != AxisKind::Time || trace.axis.is_empty() {
             continue;
         }
-        // Only where times rise is a span one contiguous part. Else the error of `sampling_rate` names the
-        // stretches, numbered in the whole trace.
+        // Only in rising times is a span one contiguous part. Otherwise the error of `sampling_rate` lists
+        // the stretches, numbered within the whole trace.
         let rises = |instants: &[f64]| instants.is_sorted_by(|a, b| a < b);
         if matches!(&trace.axis.grid, Grid::Uneven(instants) if !rises(instants)) {
             trace.sampling_rate()?;
         }
-        // A span of dates counts from 1970, in the unit that `epoch` finds. Any other is in s on the
+        // A span of dates counts from 1970, in the unit that `epoch` detects. Any other span is in s on the
         // trace's axis.
         let counted = [span.0, span.1].into_iter().find_map(|t| if t.is_finite() { epoch(t) } else { None });
         let (from, factor) = counted.map_or((0.0, 1.0), |(_, factor)| (trace.meta.origin, factor));

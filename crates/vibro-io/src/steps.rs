@@ -17,7 +17,7 @@ pub struct Steps {
     pub force: Vec<String>,
     /// Name of the response channel; for a single file, one name for each step.
     pub response: Vec<String>,
-    /// Sampling rate in Hz, where the files do not state it.
+    /// Sampling rate in Hz, if the files do not state it.
     pub rate: Option<f64>,
 }
 
@@ -50,7 +50,7 @@ impl SweepReader {
             ([file], forces, responses) => {
                 let pairs = forces.par_iter().zip(responses.par_iter());
                 let pair = |(force, response): (&String, &String)| {
-                    // The name of the response channel tells the steps apart.
+                    // The name of the response channel distinguishes the steps.
                     let path = PathBuf::from(format!("{}#{response}", file.display()));
                     let (_, step) = one(file, force, response);
                     (path.clone(), step.map(|step| StepTraces { path, ..step }))

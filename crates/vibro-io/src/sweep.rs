@@ -31,12 +31,11 @@ pub struct SweepReader {
     pub calibration: Option<f64>,
     /// Factor on stored forces, if stated, in N per stored number, even if the files say volts.
     pub force_calibration: Option<f64>,
-    /// Window, if stated: `Some(None)` says that it is unknown. Else that of the files, else Hann is
-    /// assumed.
+    /// Window, if stated: `Some(None)` means unknown. Else that of the files, else Hann is assumed.
     pub window: Option<Option<Window>>,
     /// Peak or RMS, if stated; else that of the files, else peak is assumed.
     pub scaling: Option<Scaling>,
-    /// Number of integrations (in frequency) that the analyser made before it stored, if stated; else 1 is
+    /// Number of integrations (in frequency) that the analyser made before storing, if stated; else 1 is
     /// assumed for displacements, 0 for other responses.
     pub analyser_integrated: Option<u8>,
     /// Format of the files, detected if `None`.
@@ -158,7 +157,7 @@ impl SweepReader {
             gather(recording, findings);
         }
         let mut meta = spectrum.meta.clone();
-        meta.findings.clear(); // said once, for the sweep
+        meta.findings.clear(); // reported once, for the whole sweep
         meta.step("calibrate", &[("factor", &factor), ("unit", &unit)]);
         meta.quantity = unit.quantity();
         meta.unit = unit;
@@ -219,10 +218,10 @@ impl SweepReader {
     }
 }
 
-/// Hint for a file with other records than one spectrum.
+/// Hint for a file that holds anything but one spectrum.
 const SPECTRA: &str = "list the spectra of the analyser; time records and frequency responses have tables of their own in a campaign";
 
-/// Hint where values are levels in dB.
+/// Hint for values that are levels in dB.
 const LINEAR: &str = "export linear amplitudes; levels in decibels are not read";
 
 /// Factor from stored numbers to SI, from the history of the record.

@@ -32,7 +32,7 @@ pub struct SweepList {
     pub excitation: Vec<f64>,
     /// Response files.
     pub response: Vec<PathBuf>,
-    /// Place of each name in the list, force files first; empty where the names were not read from a list.
+    /// Place of each name in the list, force files first; empty if the names were not read from a list.
     pub places: Vec<Place>,
 }
 
@@ -44,7 +44,7 @@ const HOLDS: &str = "a list holds: number of points, lines, base band in Hz, for
                      time traces, one file a step, go to a campaign: [[sweep]] with name, traces = \"step_*.csv\", force and response";
 
 impl SweepList {
-    /// Reads a list file or a hand-over file. Names are taken relative to the folder in which it lies.
+    /// Reads a list file or a hand-over file. Names are relative to the folder of that file.
     ///
     /// # Errors
     /// If a number or a name is missing or out of range, or a name leads outside that folder and `within`
@@ -73,14 +73,14 @@ impl SweepList {
         Ok(list)
     }
 
-    /// The list that a source holds; `None` if it holds none, or is larger than 1 MiB (room for ten
+    /// The list that a source holds; `None` if it is not a list, or is larger than 1 MiB (room for ten
     /// thousand points).
     pub(super) fn of(source: &Source) -> Option<SweepList> {
         let bytes = source.all().ok().filter(|_| source.len() < 1 << 20)?;
         parse(source.path(), &encoding::decode(&bytes)).ok()
     }
 
-    /// Error that names all files that do not exist, each with its line in the list; `None` where all exist.
+    /// Error that names all files that do not exist, each with its line in the list; `None` if all exist.
     pub(super) fn missing(&self, folder: &Folder) -> Option<Error> {
         let files: Vec<&PathBuf> = self.force.iter().chain(&self.response).collect();
         let missing: Vec<usize> = (0..files.len()).filter(|i| !folder.exists(files[*i])).collect();
@@ -108,7 +108,7 @@ impl SweepList {
 }
 
 /// Hint to name the steps of a sweep by a pattern instead of one of their files, if the folder holds
-/// others.
+/// several.
 fn steps(path: &Path) -> Option<Hint> {
     let all = pattern(path.file_name()?.to_str()?);
     let folder = path.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new("."));
@@ -175,7 +175,8 @@ fn parse(path: &Path, text: &str) -> Result<SweepList> {
     Ok(SweepList { lines: spectral, base_band, force: files(names), excitation, response, places })
 }
 
-/// Names of files with their lines: one a line, or all of a hand-over to the script for `points` points.
+/// Names of files with their lines: one name per line, or all `points` names of a hand-over file on one
+/// line.
 fn names_of(lines: &[(u64, &str)], points: usize, one_a_line: bool) -> Vec<(u64, String)> {
     match lines {
         all if one_a_line => all.iter().map(|(line, name)| (*line, (*name).to_owned())).collect(),
@@ -188,7 +189,7 @@ fn names_of(lines: &[(u64, &str)], points: usize, one_a_line: bool) -> Vec<(u64,
     }
 }
 
-/// Whether a text may be the name of a file: it is no number and has a letter.
+/// Whether a text may be the name of a file: it has a letter and is not a number.
 fn is_name(name: &str) -> bool {
     let bytes = name.as_bytes();
     name.contains(char::is_alphabetic) && number::parse(bytes).is_none() && !number::is_missing(bytes)

@@ -6,9 +6,9 @@
 //!   raw data: channel after channel, sample after sample of all, or DAQmx buffers
 //! ```
 //! Source: National Instruments, "TDMS File Format Internal Structure". Every numeric channel is a record:
-//! a trace, or a spectrum where its abscissa is in Hz. The channel's scales ([`scale`]) convert raw values;
-//! a channel with an unknown scale is left out, since its raw values are no measurement. The index file
-//! beside it (`_index`) is not needed.
+//! a trace, or a spectrum if its abscissa is in Hz. The channel's scales ([`scale`]) convert raw values. A
+//! channel with an unknown scale is left out, since raw values are not a measurement. The index file
+//! (`_index`) is not needed.
 
 mod axes;
 mod description;
@@ -37,7 +37,7 @@ use vibro_record::{Error, Finding, Meta, Result, Values};
 
 /// Bytes that are read at a time; few in tests, so that small files have several blocks.
 const BLOCK: usize = if cfg!(test) { 64 } else { 1 << 20 };
-/// Values of a channel that are scaled and reduced to extremes in one step: fewer are slower, more take
+/// Values of a channel that are scaled and reduced to extremes in one step. Fewer take more time, more take
 /// more memory.
 const LOOK: usize = if cfg!(test) { 4 } else { 1 << 16 };
 
@@ -45,7 +45,7 @@ pub(super) fn sniff(head: &[u8], _: &Source) -> bool {
     head.starts_with(b"TDSm") || head.starts_with(b"TDSh")
 }
 
-/// Reads all records. A `survey` keeps only the extremes of a channel's values where these are enough.
+/// Reads all records. A `survey` keeps only the extremes of a channel's values if these are enough.
 pub(super) fn read(source: &Source, options: &Options, survey: bool) -> Result<Contents> {
     if source.head().starts_with(b"TDSh") {
         return Err(Error::usage("the index of a TDMS file", "the file with the values")
@@ -59,7 +59,7 @@ pub(super) fn read(source: &Source, options: &Options, survey: bool) -> Result<C
     let mut above: Vec<&Object> = objects.iter().filter(|object| object.path.len() < 2).collect();
     above.sort_by_key(|object| Reverse(object.path.len()));
     let raw = objects.iter().map(|object| {
-        // Objects of several slots keep all values, since the slots need not lie side by side.
+        // Objects of several slots keep all values, since their slots may be stored apart.
         let kept = if survey && object.slots.len() == 1 { KeptValues::Undecided } else { KeptValues::Values };
         Raw { object, scales: Scales::of(&above, object), columns: Vec::new(), kept }
     });
@@ -110,8 +110,8 @@ pub(super) fn read(source: &Source, options: &Options, survey: bool) -> Result<C
     Ok(Contents { records, findings })
 }
 
-/// Channels with numbers. The others give findings, and the first with an unknown scale also the text of an
-/// error.
+/// Channels with numbers. The others give findings; the first with an unknown scale also gives the text of
+/// an error.
 fn measured<'a>(
     objects: &'a [Object],
     raw: Vec<Raw<'a>>,
@@ -153,8 +153,8 @@ struct Channel<'a> {
     clock: Option<Arc<AbscissaChannel>>,
 }
 
-/// Text on a unit or scale that changes between the values of a channel, so that none holds for all; else
-/// `None`.
+/// Text on a unit or scale that changes between the values of a channel, so that no single one applies to
+/// all; else `None`.
 fn changed(object: &Object) -> Option<String> {
     let text = |value: &Value| value.text().unwrap_or_default();
     let scales = |key: &str| UNITS.contains(&key) || key == "wf_xunit_string" || key.starts_with("NI_");
@@ -164,28 +164,29 @@ fn changed(object: &Object) -> Option<String> {
     Some(format!("{key} changes from {} to {now} behind value {at}", text(before)))
 }
 
-/// Whether an object keeps its values or only their extremes.
+/// Whether an object's values are kept, or only their extremes.
 #[derive(Clone)]
 enum KeptValues {
     /// All of them.
     Values,
-    /// Not decided yet: extremes are enough unless the first values rise, and so may be an abscissa.
+    /// Not decided yet: extremes are enough unless the first values rise and may therefore be an abscissa.
     Undecided,
     /// Not kept: only extremes and first values.
     Summary(Extremes),
 }
 
-/// The values of an object that were read so far.
+/// The values of an object read so far.
 struct Raw<'a> {
     object: &'a Object,
     scales: Scales<'a>,
-    /// Raw values, one column a slot.
+    /// Raw values, one column for each slot.
     columns: Vec<Vec<f64>>,
     kept: KeptValues,
 }
 
 impl Raw<'_> {
-    /// Reduces the values to their extremes where these are enough, once there are more than `many` values.
+    /// Reduces the values to their extremes, if these are enough, as soon as there are more than `many`
+    /// values.
     fn look(&mut self, many: usize) {
         if self.columns.iter().all(|column| column.len() <= many) {
             return;
@@ -213,7 +214,7 @@ impl Raw<'_> {
         !matches!(self.kept, KeptValues::Summary(_)) && self.columns.iter().all(Vec::is_empty)
     }
 
-    /// Measured values, or the type of a scale that is not known.
+    /// Measured values, or the type of an unknown scale.
     fn measured(self) -> std::result::Result<Held, String> {
         match self.kept {
             KeptValues::Summary(summary) => Ok(Held::Summary(summary)),
@@ -222,7 +223,7 @@ impl Raw<'_> {
     }
 }
 
-/// Appends to `raw` the values in a segment of as many objects, from index `first` on.
+/// Appends the values in a segment to `raw`, which holds the objects from index `first` on.
 fn values(
     file: &mut BufReader<impl Read + Seek>,
     layout: &RawData,

@@ -1,10 +1,11 @@
 //! Reads text of analysers, loggers and spreadsheets: dialect → rows → records.
 //!
-//! A [`dialect`] describes, as data, the names, the units, the abscissa and how a row is cut. It is found
-//! from the first bytes: [`table`] detects tables with names above their columns or behind the keys of a
-//! [`preamble`], [`numbers`] plain columns of numbers; both know a [`clock`]. Another instrument needs one
-//! more function beside these two. Clean rows are read in parallel ([`fast`]), all others one by one
-//! ([`rows`]), so that an error names line and column. Columns become records in [`records`].
+//! A [`dialect`] is data that describes the names, the units, the abscissa and how a row is cut. It is
+//! detected from the first bytes: [`table`] detects tables with names above their columns or after the keys
+//! of a [`preamble`], [`numbers`] detects plain columns of numbers. Both recognise a [`clock`]. Another
+//! instrument needs one more function beside these two. Clean rows are read in parallel ([`fast`]), all
+//! others one by one ([`rows`]), so that an error names line and column. Columns become records in
+//! [`records`].
 
 mod abscissa;
 mod axis;
@@ -56,10 +57,10 @@ pub(crate) use tail::Digits;
 use vibro_record::{AxisKind, Error, Finding, Record, Result, Trace, Values, code};
 use word_columns::LeftOut;
 
-/// Whether a text begins with a table with names above its columns.
+/// Whether a text begins with a table that has names above its columns.
 pub(crate) fn is_table(head: &[u8], source: &Source) -> bool {
-    // Names have a letter that no number holds; most files of numbers have none, and are not examined
-    // further.
+    // Names have a letter that no number contains. Most files of numbers have no such letter and are not
+    // examined further.
     let letter = |b: &u8| !b.is_ascii() || b.is_ascii_alphabetic() && !b"eEdDqQijIJ".contains(b);
     let words = head[..head.len().min(encoding::LOOK)].iter().any(letter);
     let found = || with_text(source, Limit::default(), |text| Ok(table::detect(text, &Options::default())));
@@ -94,7 +95,7 @@ pub(crate) fn read_table(source: &Source, options: &Options, survey: bool) -> Re
     })
 }
 
-/// Reads the runs of a text that are side by side, one after the other.
+/// Reads runs that are side by side in a text, one after the other.
 fn read_runs(text: &Text, dialect: &Dialect, options: &Options, survey: bool) -> Result<Contents> {
     let mut all = Contents::default();
     for others in runs::others_of(dialect) {
@@ -120,7 +121,7 @@ pub(crate) fn read_numbers(source: &Source, options: &Options, survey: bool) -> 
     })
 }
 
-/// Reads a text without its columns of words; fails with the first error `why` where it has none.
+/// Reads a text without its columns of words; returns the earlier error `why` if it has no such columns.
 fn without_words(text: &Text, options: &Options, why: Error) -> Result<Contents> {
     let Some(LeftOut { source, found, changes }) = word_columns::left_out(text)? else { return Err(why) };
     let contents = without((source, found), options)?;
@@ -129,13 +130,13 @@ fn without_words(text: &Text, options: &Options, why: Error) -> Result<Contents>
     let is_said = |code: &str| findings.iter().any(|found| found.code == code);
     let timed = contents.records.iter().all(|(record, _)| record.axis().kind == AxisKind::Time);
     let rises = timed && !is_said(code::AXIS_BACKWARDS);
-    // Rows of several channels below each other may each have rising times. Only printed times that rise
-    // exclude them, not times that follow from a rate.
+    // Rows of several channels below each other may still rise in time if the times follow from a rate.
+    // Only printed times that rise exclude several channels.
     let by_rate = options.rate.is_some() || is_said(code::RATE_FROM_HEAD);
     if changes && (!rises || by_rate) { Err(why) } else { Ok(contents) }
 }
 
-/// Reads the longer of two tables; fails with the first error `why` where neither is much longer.
+/// Reads the longer of two tables; returns the earlier error `why` if neither is much longer.
 fn one_table(text: &Text, options: &Options, why: Error) -> Result<Contents> {
     let Some(line) = why.line().filter(|_| why.advice() == rows::TABLES) else { return Err(why) };
     let Some(left) = tables::longest(text, line)? else { return Err(why) };
@@ -143,7 +144,7 @@ fn one_table(text: &Text, options: &Options, why: Error) -> Result<Contents> {
     without((source, vec![found]), options).map_err(|_| why)
 }
 
-/// Reads a text of which parts were left out, and adds the findings `found` on these parts.
+/// Reads the rest of a text of which parts were left out, and adds the findings on these parts.
 fn without((source, found): (Source, Vec<Finding>), options: &Options) -> Result<Contents> {
     let read = if is_table(source.head(), &source) { read_table } else { read_numbers };
     let mut contents = read(&source, options, false)?;
@@ -151,15 +152,15 @@ fn without((source, found): (Source, Vec<Finding>), options: &Options) -> Result
     Ok(contents)
 }
 
-/// Memory to test whether a rising column is an even axis, beside the column itself and as a multiple of its
-/// size.
+/// Memory to test whether a rising column is an even axis, in addition to the column itself, as a multiple
+/// of its size.
 const ABSCISSA: f64 = 1.5;
 
 /// Columns of a text as records, and findings on the text.
 struct Read {
     columns: Vec<records::Built>,
     findings: Vec<Finding>,
-    /// Shape of the rows and the byte offset behind the last one, where all are clean.
+    /// Shape of the rows and the byte offset after the last one, if all rows are clean.
     clean: Option<(RowShape, u64)>,
 }
 
@@ -175,13 +176,13 @@ pub(crate) struct Streamed {
     pub traces: Vec<Trace>,
     /// Findings on the text as a whole.
     pub findings: Vec<Finding>,
-    /// The reader of the values.
+    /// Reader of the values.
     pub columns: stream::Columns,
 }
 
-/// The traces of a text without their values, which are read again block by block, and the findings; `None`
-/// for a text that must be held in memory: it is there already, has rows that are not clean, or has no
-/// traces.
+/// The traces of a text without their values, which are read again block by block, and the findings. `None`
+/// for a text that must be held in memory: it is in memory already, has rows that are not clean, or has
+/// records that are not traces.
 ///
 /// # Errors
 /// As reading the text.
@@ -217,7 +218,7 @@ fn read_rows(text: &Text, dialect: &Dialect, options: &Options, survey: bool) ->
     // Number of rows, estimated from the length of the first lines.
     let lines = text.head.lines().count() as f64 / text.head.len().max(1) as f64;
     let bytes = text.source.len() as f64;
-    // A value and its separator take at least two bytes.
+    // The number of rows is bounded, since a value and its separator take at least two bytes.
     let rows = (bytes * lines).min(bytes / (2.0 * dialect.columns as f64));
     let held = kept.iter().filter(|kept| **kept).count() as f64;
     options.hold(rows * (held + if dialect.columns > 1 { ABSCISSA } else { 0.0 }))?;
@@ -240,7 +241,7 @@ fn read_rows(text: &Text, dialect: &Dialect, options: &Options, survey: bool) ->
         Some(columns) => (Rows { columns, ..Rows::default() }, shape.map(|shape| (shape, end))),
         None => (
             carefully(text, dialect, options).map_err(|why| {
-                // A series over several columns often has a shorter last line.
+                // In a series printed over several columns, the last line is often shorter.
                 let short = plain && options.wrapped.is_none() && wrapped::ends_short(text, dialect);
                 if one_step && dialect.columns > 2 || short {
                     wrapped::question(dialect.columns)
@@ -263,17 +264,17 @@ fn read_rows(text: &Text, dialect: &Dialect, options: &Options, survey: bool) ->
     Ok(Read { clean, ..read })
 }
 
-/// Which columns are held in memory: all, or, where a `survey` needs only extremes, those that may be an
-/// abscissa or a counter.
+/// Which columns are held in memory: all of them, or, for a `survey`, which needs only extremes, those that
+/// may be an abscissa or a counter.
 fn kept(dialect: &Dialect, options: &Options, stated: &Stated, survey: bool) -> Vec<bool> {
     let names = dialect.names.iter().flatten();
     let complex = options.complex
         || stated.complex
         || names.clone().any(|name| name.part().is_some() || name.phase().is_some());
-    // Columns without names may continue each other, which only their values show.
+    // Columns without names may continue each other; only the values show that.
     let plain = dialect.names.is_none() && dialect.columns > 2;
     let all = !survey || complex || plain;
-    // Only values show whether a column counts, or repeats the times.
+    // Only the values show whether a column is a counter or repeats the times.
     let told = |name: &Name| name.may_count() || name.seconds().is_some();
     let told = |i: usize| dialect.names.as_ref().is_some_and(|names| told(&names[i]));
     let abscissa = |i: usize| dialect.named_abscissa() == Some(i) || told(i) || i == 0 && dialect.columns > 1;
@@ -297,7 +298,7 @@ fn records_of(context: RecordContext, rows: Rows) -> Result<Read> {
     Ok(Read { columns, findings, clean: None })
 }
 
-/// Number of lines in a header that are rows of another table: numbers only, as many as in a line next to it.
+/// Number of header lines that are rows of another table: numbers only, as many as in a neighbouring line.
 fn rows_in(head: &[String]) -> usize {
     let numbers = |line: &String| {
         let cells = line.split([',', ';', '\t', ' ']).filter(|cell| !cell.is_empty());
@@ -308,7 +309,7 @@ fn rows_in(head: &[String]) -> usize {
     widths.chunk_by(|a, b| a == b).filter(|rows| rows[0] > 1 && rows.len() > 1).map(<[usize]>::len).sum()
 }
 
-/// Reads row by row, so that an error names its place.
+/// Reads row by row, so that an error names line and column.
 fn carefully(text: &Text, dialect: &Dialect, options: &Options) -> Result<Rows> {
     let bytes = text.source.all()?;
     let bytes =

@@ -10,8 +10,8 @@
 //! …
 //!     -1
 //! ```
-//! Data sets 58 and 58b become records, data set 164 gives the unit system of those after it, and every other
-//! set is skipped with a note.
+//! Data sets 58 and 58b become records. Data set 164 gives the unit system of the sets after it. Every
+//! other set is skipped with a note.
 
 pub mod set58;
 pub mod stream;
@@ -23,12 +23,12 @@ use set58::{UnitSystem, codes};
 use stream::{Stream, is_delimiter, set_number};
 use vibro_record::{Finding, Place, Record, Result};
 
-/// File endings with which text may precede the first data set.
+/// File endings for which text may precede the first data set.
 const ENDINGS: [&str; 6] = ["uff", "unv", "ufb", "bunv", "uf", "58"];
 
-/// Whether a delimiter and the number of a data set follow each other. They must be the first lines that are
-/// not blank, in their exact columns, for `-1` and `58` may also be two values; with a usual file ending any
-/// two lines will do.
+/// Whether the lines of a delimiter and of a data set's number follow each other. They must be the first
+/// lines that are not blank, in their exact columns, since `-1` and `58` may also be two values. With a
+/// usual file ending, any two consecutive lines are accepted.
 pub(super) fn sniff(head: &[u8], source: &Source) -> bool {
     let known = ENDINGS.contains(&source.extension().as_str());
     let head = head.strip_prefix(b"\xef\xbb\xbf").unwrap_or(head);
@@ -50,7 +50,7 @@ pub(super) fn read(source: &Source, options: &Options, _: bool) -> Result<Conten
     let bytes = source.all()?;
     let mut stream = Stream::new(&bytes);
     let (mut records, mut findings): (Vec<Record>, Vec<Finding>) = (Vec::new(), Vec::new());
-    // Other data sets with their counts, and lines outside any, with the place of the first.
+    // Other data sets with their counts, and lines outside any set, with the place of the first.
     let mut others: Vec<(u32, usize)> = Vec::new();
     let mut outside: Option<(Place, usize)> = None;
     let (mut system, mut delimited, mut cut) = (UnitSystem::default(), false, None);
@@ -66,7 +66,8 @@ pub(super) fn read(source: &Source, options: &Options, _: bool) -> Result<Conten
             outside.get_or_insert_with(|| (stream.place(), 0)).1 += 1;
             continue;
         };
-        // The delimiter that closes this set may open the next one, where a file has lost one of the two.
+        // The delimiter that closes this set may also open the next one, in a file that lacks one of the
+        // two.
         delimited = true;
         if number == 58 {
             match set58::read(&mut stream, (line, binary), &system, options, &source.name())? {
@@ -108,7 +109,7 @@ pub(super) fn read(source: &Source, options: &Options, _: bool) -> Result<Conten
     Ok(Contents::of(records, findings))
 }
 
-/// Adds a number to repeated names (`name #2`), so that the user can ask for each channel.
+/// Adds a number to repeated names (`name #2`), so that the user can name each channel.
 fn tell_apart(records: &mut [Record]) {
     let mut seen: Vec<(String, usize)> = Vec::new();
     for name in records.iter_mut().map(|r| &mut r.meta_mut().name).filter(|n| !n.is_empty()) {

@@ -1,4 +1,4 @@
-//! Makes records of the named variables of a file, the same way for all formats.
+//! Makes records from the named variables of a file, in the same way for all formats.
 //!
 //! A numeric vector is a record, and so is each column of a matrix. Scalars and texts are notes on the
 //! records of their struct or group, and state abscissa and unit ([`names`], [`axes`]).

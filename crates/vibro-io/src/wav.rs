@@ -33,7 +33,7 @@ use vibro_record::{Axis, Error, Finding, Meta, Place, Record, Result, Stream, Tr
 /// The unit of values without a calibration.
 const FULL_SCALE: &str = "FS";
 
-/// Approximate number of bytes read at a time: large enough for the disk, small enough for the processor's
+/// Approximate number of bytes read at a time: large enough for the disk, and fits into the processor's
 /// cache.
 const BLOCK: usize = 256 * 1024;
 
@@ -75,15 +75,15 @@ pub(crate) struct Wave {
     reader: Box<dyn ReadSeek>,
     path: PathBuf,
     bytes: Vec<u8>,
-    /// Frame of the file at which the part to read begins.
+    /// Frame of the file at which the part to be read begins.
     first: u64,
     left: u64,
-    /// Time axis of the part to read.
+    /// Time axis of the part to be read.
     axis: Axis,
     /// Every channel of the file without its values.
     pub channels: Vec<Trace>,
     factors: Vec<f64>,
-    /// Indices of the channels that are handed out.
+    /// Indices of the channels that are returned.
     kept: Vec<usize>,
     largest: Vec<f64>,
     allow_missing: bool,
@@ -94,7 +94,7 @@ impl Wave {
     /// Reads all chunks of a file except the samples, and moves to the first sample to read.
     ///
     /// # Errors
-    /// If its samples are of an unknown kind, or there are none; if the user states a base band.
+    /// If the kind of its samples is unknown, or there are none; if the user states a base band.
     pub fn open(source: &Source, options: &Options) -> Result<Wave> {
         if options.base_band.is_some() {
             let found = "a base band was stated, but a wave file holds samples over time";
@@ -135,7 +135,7 @@ impl Wave {
     }
 
     /// A channel without its values, and the factor from fractions of full scale to SI that the user or the
-    /// file's comment states; else 1.
+    /// file's comment states; 1 if none is stated.
     fn describe(&self, source: &Source, options: &Options, channel: usize) -> Result<(Trace, f64)> {
         let layout = &self.layout;
         let scale = layout.scales.as_ref().and_then(|s| s.channels.get(channel));
@@ -171,7 +171,7 @@ impl Wave {
         Ok((trace, full_scale * unit.factor()))
     }
 
-    /// Number of frames (samples a channel) of the part that is read, whatever the file declares.
+    /// Number of frames (samples per channel) of the part that is read, whatever the file declares.
     pub fn frames(&self) -> usize {
         self.axis.len()
     }

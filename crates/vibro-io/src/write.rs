@@ -1,8 +1,8 @@
 //! Writes records to files that other programs read.
 //!
-//! Values are written in the SI units of the records. What a format has no place for is lost or refused: see
-//! each writer. Findings are never written; of history and notes, only a few facts in header lines and
-//! remarks.
+//! Values are written in the SI units of the records. Facts that a format cannot hold are lost or refused:
+//! see each writer. Findings are never written; of history and notes, only a few facts are written, in
+//! header lines and remarks.
 //!
 //! ```
 //! use vibro_io::Reader;
@@ -28,7 +28,7 @@ use vibro_record::{Error, Record, Result};
 /// A format to write.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Target {
-    /// Universal file, data set 58: text or, where asked for, binary.
+    /// Universal file, data set 58: text, or binary if requested.
     Uff,
     /// Universal file, data set 58b: always binary.
     UffBinary,
@@ -55,7 +55,7 @@ const TARGETS: [(Target, &str, &str); 8] = [
 ];
 
 impl Target {
-    /// The format of a file name by its ending, in upper or lower case.
+    /// The format that a file name's ending means, in upper or lower case.
     ///
     /// # Errors
     /// If no format has this ending.
@@ -81,7 +81,8 @@ impl Target {
     /// precision of a wave file.
     ///
     /// # Errors
-    /// If the format cannot hold the records together, with the reason, or the output cannot be written.
+    /// If the format cannot hold these records together, with the reason, or if the output cannot be
+    /// written.
     pub fn write(self, records: &[Record], storage: Storage, out: &mut impl Write) -> Result<()> {
         match self {
             Target::Uff => uff58::write_uff58(records, out, storage),

@@ -1,6 +1,6 @@
-//! Time columns as telephones and loggers write them, drawn with seeds: they jitter, wander, lose samples, or
-//! are uneven. Each is read with the rate that it was drawn with, or refused with what reads it; values and
-//! instants are compared one by one.
+//! Time columns as telephones and loggers write them, drawn with seeds: they jitter, wander, lose samples,
+//! or are uneven. Each is read with the rate from which it was drawn, or refused with the setting that
+//! reads it. Values and instants are compared one by one.
 
 use vibro_io::{Reader, Recording};
 use vibro_math::Noise;
@@ -9,22 +9,22 @@ use vibro_record::{AxisKind, Error, Grid, Record, Trace};
 /// How an export stamps its samples.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Clock {
-    /// Each instant is off on its own.
+    /// Each instant has an independent error.
     Jitters,
-    /// Each step is off, and all that follow with it.
+    /// Each step has an error, which shifts all later instants.
     Wanders,
 }
 
-/// A layout: what stands above the rows, and how a row is printed.
+/// A layout: the header, and how a row is printed.
 struct Layout {
     file: &'static str,
     head: &'static str,
     row: fn(f64, [f64; 2]) -> String,
     /// Name of the first channel, and its factor to SI.
     channel: (&'static str, f64),
-    /// Half a unit in the last digit of an instant, in s, and of a value.
+    /// Largest rounding error of an instant in s, and of a value in its printed unit.
     digits: (f64, f64),
-    /// First instant that the column holds for 0.
+    /// Printed time in s of the instant 0; NaN if the axis counts from its first sample.
     start: f64,
 }
 
@@ -73,7 +73,7 @@ const LAYOUTS: [Layout; 7] = [
             format!("{since},{:.9},{a:.9},{b:.9}", t + 0.034)
         },
         channel: ("z", 1.0),
-        // Nanoseconds since 1970 are printed whole, and a double holds them to 128.
+        // Nanoseconds since 1970 are rounded by up to 128 ns, as doubles.
         digits: (2e-7, 5e-10),
         start: f64::NAN,
     },
@@ -88,7 +88,7 @@ const LAYOUTS: [Layout; 7] = [
     Layout {
         file: "serial.csv",
         head: "millis,a,b\n",
-        // The clock of an Arduino drops the rest of a millisecond.
+        // The clock of an Arduino truncates to whole milliseconds.
         row: |t, [a, b]| format!("{},{a:.2},{b:.2}", (1e3 * (t + 1.0)).floor()),
         channel: ("a", 1.0),
         digits: (5e-4, 5e-3),
@@ -96,7 +96,7 @@ const LAYOUTS: [Layout; 7] = [
     },
 ];
 
-/// A drawn export: instants of all samples, also of those that are lost, and which of them are printed.
+/// A drawn export: the instants of all samples, including lost ones, and which samples are printed.
 struct Drawn {
     layout: &'static Layout,
     step: f64,
@@ -111,7 +111,7 @@ impl Drawn {
         let n = noise.between(150.0, 900.0) as usize;
         let coarse = layout.digits.0 > 1e-4;
         let step = if coarse { noise.between(3.1e-3, 2e-2) } else { noise.between(2e-3, 2e-2) };
-        // Up to a tenth of a step in all, five standard deviations apart.
+        // Five standard deviations are at most a tenth of a step; with wander, for the sum of all n errors.
         let size = match clock {
             Clock::Jitters => noise.uniform() * 0.02 * step,
             Clock::Wanders => noise.uniform() * 0.02 * step / (n as f64).sqrt(),
@@ -128,7 +128,7 @@ impl Drawn {
         Drawn { layout, step, instants, kept: (0..n).collect() }
     }
 
-    /// Takes out whole samples.
+    /// Removes one to three samples.
     fn lose(mut self, seed: u64) -> Drawn {
         let mut noise = Noise::new(seed ^ 0x5EED);
         for _ in 0..noise.between(1.0, 4.0) as usize {
@@ -151,7 +151,7 @@ impl Drawn {
         reader.from_reader(self.layout.file, self.text().as_bytes())
     }
 
-    /// What is wrong with a trace that should hold the samples `kept`, in an even grid.
+    /// Differences between a trace and the samples `kept` on an even grid.
     fn faults(&self, trace: &Trace, kept: &[usize]) -> Vec<String> {
         let mut faults = Vec::new();
         let (name, factor) = self.layout.channel;
@@ -163,7 +163,7 @@ impl Drawn {
             (trace.values[*k] - right).abs() > factor * self.layout.digits.1 * (1.0 + 1e-9)
         };
         faults.extend((0..kept.len()).find(off).map(|k| format!("value {k}")));
-        // Instants lie within jitter and rounding of the grid.
+        // Instants are within jitter and rounding of the grid.
         let start = if self.layout.start.is_nan() { -self.instants[0] } else { self.layout.start };
         let most = 0.15 * self.step + 2.0 * self.layout.digits.0;
         let late = |k: &usize| (trace.axis.at(*k) - start - self.instants[kept[*k]]).abs() > most;
@@ -207,17 +207,19 @@ fn a_jittering_or_wandering_clock_is_even_and_its_rate_lies_within_its_uncertain
             said += 1;
             let std = found.get("std").expect("an uncertainty");
             held += u64::from((rate * drawn.step - 1.0).abs() / drawn.step <= 2.0 * std);
-            // Six standard uncertainties of seven degrees of freedom: one in two thousand.
+            // 8 standard uncertainties with 7 degrees of freedom (Student): exceeded by chance once in 11
+            // 000.
             if (rate - 1.0 / drawn.step).abs() > 8.0 * std {
                 wrong.push(format!("{seed}: {rate} ± {std}, not {}", 1.0 / drawn.step));
             }
         } else if (rate * drawn.step - 1.0).abs() * drawn.kept.len() as f64 > 0.5 {
-            // What is said to be rounded only has its rate within half a step a record.
+            // For times that are only rounded, the rate is within half a step over the whole record.
             wrong.push(format!("{seed}: {rate}, not {}", 1.0 / drawn.step));
         }
     }
     assert!(wrong.is_empty(), "{} faults:\n{}", wrong.len(), wrong.join("\n"));
-    // Student with seven degrees of freedom: 91 %; independent jitter has more.
+    // Within 2 standard uncertainties: 91 % with 7 degrees of freedom (Student); more for independent
+    // jitter.
     assert!(said > SEEDS / 2 && held as f64 > 0.9 * said as f64, "{held} of {said}");
 }
 
@@ -230,7 +232,7 @@ fn a_nominal_rate_beside_such_a_column_works() {
         let recording = drawn.read(&Reader::new().rate(Some(nominal)));
         let recording = match recording {
             Ok(recording) => recording,
-            // A column that is only rounded is held to the digits that were stated.
+            // A column that is only rounded must agree with the stated rate within its digits.
             Err(why) => {
                 let plain = drawn.read(&Reader::new()).expect("read without");
                 assert!(
@@ -241,7 +243,7 @@ fn a_nominal_rate_beside_such_a_column_works() {
             }
         };
         assert_eq!(drawn.faults(first(&recording), &drawn.kept), [""; 0], "{seed}");
-        // Twice the rate is another clock.
+        // Twice the rate is refused as another clock.
         let why = drawn.read(&Reader::new().rate(Some(2.0 * nominal))).expect_err("another rate").to_string();
         assert!(why.contains("holds a time"), "{why}");
     }
@@ -266,7 +268,7 @@ fn no_lost_sample_passes_in_silence_and_each_stretch_reads() {
         let number = found.get("longest").expect("a number") as usize;
         let why = refused(&recording).to_string();
         assert!(why.contains(&format!("stretch = {number}")), "{seed}: {why}");
-        // Runs of samples that follow each other, of which short ones are not offered.
+        // Runs of consecutive samples; runs of fewer than 16 samples are not offered as stretches.
         let runs: Vec<&[usize]> =
             drawn.kept.chunk_by(|a, b| b - a == 1).filter(|run| run.len() >= 16).collect();
         for (i, run) in runs.iter().enumerate() {
@@ -309,7 +311,8 @@ fn uneven_times_are_refused_and_interpolated_within_the_stated_error() {
         let off = |(i, v): (usize, &f64)| (v - signal(trace.axis.at(i))).powi(2);
         let actual = trace.values.iter().enumerate().map(off).sum::<f64>() / trace.values.len() as f64;
         assert!(actual.sqrt() <= stated, "{seed}: {} of {stated}", actual.sqrt());
-        // Less than the samples have, or far more, is refused with a rate that works.
+        // A rate far below or far above that of the samples is refused, and the error names a rate that
+        // works.
         for far in [0.5 * rate, 20.0 * rate] {
             let why = read(Reader::new().resample(Some(far))).expect_err("folds or invents").to_string();
             assert!(why.contains("resample = "), "{why}");
@@ -339,18 +342,18 @@ fn noise_and_repeated_instants_are_not_interpolated() {
     }
 }
 
-/// What an Arduino sends without a head: the unit of the times is that which the stated rate has.
+/// Output of an Arduino without a header: the unit of the times follows from the stated rate.
 #[test]
 fn times_without_a_name_have_the_unit_that_the_rate_needs() {
     let row = |i| format!("{},{:.2}\n", 1023 + (f64::from(i) / 0.3) as u64, (0.3 * f64::from(i)).sin());
     let rows = concat((0..600).map(row));
     let recording = Reader::new().rate(Some(300.0)).from_reader("log.txt", rows.as_bytes()).expect("read");
     let trace = first(&recording);
-    // The last of 599 steps is off by a millisecond at most.
+    // The span of 599 steps, 2 s long, is off by at most one millisecond.
     assert!((trace.rate().expect("even") / 300.0 - 1.0).abs() < 1e-3 / 2.0, "{:?}", trace.axis);
 }
 
-/// Heads that state a rate in ways of their own, above a column of values.
+/// Various header lines that state a rate, above columns of values.
 #[test]
 fn rates_in_heads_are_used() {
     let row = |i| format!("{:.5},{:.5}\n", (0.1 * f64::from(i)).sin(), (0.3 * f64::from(i)).cos());
@@ -374,7 +377,7 @@ fn rates_in_heads_are_used() {
     }
 }
 
-/// K-NET, SLIST and Q-files end with a short row: nothing is to be removed.
+/// K-NET, SLIST and Q-files end with a short row: no value is to be removed.
 #[test]
 fn a_short_last_row_of_a_series_loses_no_value() {
     let values: Vec<f64> = (0..590).map(|i| (1e4 * (0.05 * f64::from(i)).sin()).round()).collect();
@@ -386,7 +389,7 @@ fn a_short_last_row_of_a_series_loses_no_value() {
         if let Err(why) = why {
             assert!(why.to_string().contains("wrapped"), "{columns}: {why}");
         } else {
-            // Rows of five are all full.
+            // Rows of five are all full, so nothing shows a series.
             assert_eq!(values.len() % columns, 0);
         }
         let found = Reader::new().wrapped(Some(true)).from_reader("a.EW", text.as_bytes()).expect("read");
@@ -395,8 +398,7 @@ fn a_short_last_row_of_a_series_loses_no_value() {
     }
 }
 
-/// Heads of loggers and oscilloscopes that state a rate, between semicolons and commas, with units of their
-/// own.
+/// Headers of loggers and oscilloscopes that state a rate, with semicolons, commas and various units.
 #[test]
 fn rates_in_units_of_samples_a_second_are_used() {
     let row = |i| format!("{:.5};{:.5}\n", (0.1 * f64::from(i)).sin(), (0.3 * f64::from(i)).cos());
@@ -450,7 +452,7 @@ fn rates_in_units_of_samples_a_second_are_used() {
         }
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
-    // How long a sample takes, or how long it was sampled.
+    // The total sampling time, or the time that one sample takes, is not a sampling interval.
     for head in ["Sampling time: 10 s", "Sample Time [s]: 8", "TS [s]: 12"] {
         let text = format!("{head}\nA (V);B (V)\n{rows}");
         let rate = Reader::new().from_reader("a.csv", text.as_bytes()).map(|found| first(&found).rate());
@@ -458,7 +460,8 @@ fn rates_in_units_of_samples_a_second_are_used() {
     }
 }
 
-/// Jitter that passes for an even grid is not in what is interpolated: that uses the instants themselves.
+/// Jitter accepted as an even grid does not enter interpolated values: interpolation uses the stored
+/// instants.
 #[test]
 fn jittering_samples_are_interpolated_from_their_own_times() {
     for seed in 1..=60 {
@@ -467,7 +470,8 @@ fn jittering_samples_are_interpolated_from_their_own_times() {
         let size = noise.between(0.02, 0.15);
         let frequency = noise.between(2.0, 6.0);
         let signal = |t: f64| 3.0 * (std::f64::consts::TAU * frequency * t).sin();
-        // The line through 800 is off by a twentieth of the jitter.
+        // The factor 0.95: the line fitted through 800 instants deviates by up to a twentieth of the
+        // jitter.
         let instants: Vec<f64> =
             (0..800).map(|i| step * (f64::from(i) + 0.95 * size * noise.between(-1.0, 1.0))).collect();
         let rows = concat(instants.iter().map(|t| format!("{t:.9},{:.12}\n", signal(*t))));
@@ -486,8 +490,8 @@ fn jittering_samples_are_interpolated_from_their_own_times() {
             made.all_findings().iter().find_map(|f| f.get("error").filter(|_| f.code == "resampled"));
         let (own, grid) = (off(&made), off(&even));
         assert!(own <= stated.expect("an error"), "{seed}: {own} of {stated:?}");
-        // Twenty samples a period: cubics are wrong by 0.023·(2π/20)⁴ of it, the grid by 2π/20 of the jitter,
-        // 1 % of a step at least.
+        // At 20 samples per period, cubic interpolation is off by 0.023·(2π/20)⁴ of the amplitude, the even
+        // grid by 2π/20 of the jitter, which is at least 1 % of a step.
         assert!(own < 0.3 * grid, "{seed}: {own} and {grid}");
         assert!(read(Reader::new().rate(Some(125.4)).resample(Some(130.0))).is_ok(), "{seed}");
         let why = read(Reader::new().rate(Some(250.0)).resample(Some(130.0))).expect_err("another rate");
@@ -495,8 +499,8 @@ fn jittering_samples_are_interpolated_from_their_own_times() {
     }
 }
 
-/// A sine of 3 Hz beside white noise, 1000 samples at uneven steps of 4 to 12 ms. Noise cannot be
-/// interpolated; a sine of 40 samples a period can.
+/// A sine of 3 Hz and white noise, 1000 samples at uneven steps of 4 to 12 ms. Noise cannot be
+/// interpolated; a sine with 40 samples per period can.
 #[test]
 fn a_channel_that_cannot_be_interpolated_loses_only_itself() {
     let (mut noise, mut t) = (Noise::new(7), 0.0);
@@ -523,8 +527,8 @@ fn a_channel_that_cannot_be_interpolated_loses_only_itself() {
     assert!(read("blank").unwrap_err().to_string().contains("without missing values"));
 }
 
-/// A sensor of 100 Hz that is polled at 120 Hz: every sixth row repeats the one before. One that rests, or
-/// whose digits are coarse, repeats many.
+/// A sensor polled 6 times per 5 measurements, here at 128 Hz: every sixth row repeats the row before. A
+/// sensor at rest or with coarse digits repeats many rows in succession.
 #[test]
 fn rows_that_repeat_are_told() {
     let text = |row: &dyn Fn(usize) -> (f64, f64)| {
@@ -544,7 +548,7 @@ fn rows_that_repeat_are_told() {
     assert_eq!(told(text(&|i| (coarse(sine(i).0), coarse(sine(i).1)))), None);
 }
 
-/// A damaged digit makes one instant as large as no record is long.
+/// A damaged digit makes one instant far larger than the length of any record.
 #[test]
 fn an_instant_far_beyond_the_record_leaves_no_clock() {
     for at in [1, 100, 199] {

@@ -1,5 +1,5 @@
-//! Two thousand exports in the manner of loggers and telephones, drawn from one seed with known truth: none
-//! is read wrong in silence.
+//! Two thousand exports like those of loggers and telephones, drawn from seeds with known truth: none is
+//! read wrongly without a caution.
 
 use std::fmt::Write;
 use vibro_io::{Reader, Recording};
@@ -8,7 +8,7 @@ use vibro_record::{Finding, Record, Severity, Trace};
 
 const FILES: u64 = 2000;
 
-/// One of several, drawn.
+/// One of several items, drawn with equal probability.
 fn one<T: Copy>(noise: &mut Noise, all: &[T]) -> T {
     all[((noise.uniform() * all.len() as f64) as usize).min(all.len() - 1)]
 }
@@ -17,16 +17,16 @@ fn chance(noise: &mut Noise, part: f64) -> bool {
     noise.uniform() < part
 }
 
-/// How instants are printed.
+/// How instants are printed, or the rate stated.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Stamp {
-    /// Name of the column, unit as written, its size in s, decimals.
+    /// Name of the column, unit as written, size of the unit in s, decimals.
     Column(&'static str, &'static str, f64, usize),
-    /// `12:00:00.123`, behind a date in a cell of its own.
+    /// `12:00:00.123`, perhaps after a date in a cell of its own.
     Clock { dated: bool, decimals: usize },
     /// Seconds or milliseconds since 1970.
     Epoch(f64),
-    /// No column: the rate stands in the head.
+    /// No column: a line of the header states the rate.
     Head(&'static str),
 }
 
@@ -54,7 +54,7 @@ const HEADS: [&str; 8] = [
     "fs = {} Hz",
 ];
 
-/// Name, unit as written, factor to SI and its symbol; the last is a level.
+/// Name, unit as written, factor to SI, and SI symbol; the last channel is a level.
 const CHANNELS: [Channel; 10] = [
     ("Acceleration X", "m/s^2", 1.0, "m/s²"),
     ("ay", "g", 9.806_65, "m/s²"),
@@ -70,7 +70,7 @@ const CHANNELS: [Channel; 10] = [
 
 type Channel = (&'static str, &'static str, f64, &'static str);
 
-/// Marks between cells and in numbers, and decimals of values.
+/// Separator of cells, whether a comma is the decimal mark, and decimals of values.
 struct Style {
     separator: &'static str,
     comma: bool,
@@ -84,7 +84,7 @@ impl Style {
     }
 }
 
-/// What stands above the rows: statements, names and units.
+/// The lines above the rows: statements, names and units.
 fn head(
     noise: &mut Noise,
     stamp: Stamp,
@@ -127,7 +127,7 @@ fn head(
     text
 }
 
-/// The cells of an instant in s, cut off or rounded.
+/// The cells of an instant in s, truncated or rounded to the printed digits.
 fn stamped(stamp: Stamp, t: f64, floor: bool, style: &Style) -> Vec<String> {
     let rounded = |size: f64, decimals: usize| {
         let unit = 10f64.powi(decimals as i32);
@@ -149,7 +149,7 @@ fn stamped(stamp: Stamp, t: f64, floor: bool, style: &Style) -> Vec<String> {
     }
 }
 
-/// What stands below the rows: a summary, another table.
+/// The lines below the rows: a summary, another table.
 fn behind(noise: &mut Noise, channels: &[Channel], style: &Style, (summary, second): (bool, bool)) -> String {
     let mut text = String::new();
     if summary {
@@ -176,9 +176,9 @@ struct Drawn {
     channels: Vec<Channel>,
     /// Values of each channel in SI, as printed.
     values: Vec<Vec<f64>>,
-    /// Largest error of a printed value, in its own unit.
+    /// Largest rounding error of a printed value, in the unit as written.
     digit: f64,
-    /// What is odd about it, for a person who reads of a fault.
+    /// Unusual features of this export, named in the report of a fault.
     odd: Vec<&'static str>,
 }
 
@@ -256,7 +256,7 @@ impl Drawn {
         Drawn { text, rate, channels, values, digit: 0.5 * 10f64.powi(-(decimals as i32)), odd }
     }
 
-    /// What is wrong with what was read, beyond what a caution says.
+    /// Faults of a reading that no caution reports.
     fn faults(&self, read: &Recording) -> Vec<String> {
         let all = read.all_findings();
         let caution = |codes: &[&str]| {

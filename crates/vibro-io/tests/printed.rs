@@ -1,5 +1,5 @@
-//! Times that were printed with few digits, rounded or cut off, drawn with seeds: the rate lies within its
-//! uncertainty, and lost samples are seen.
+//! Times printed with few digits, rounded or truncated, drawn with seeds: the rate is within its
+//! uncertainty, and lost samples are detected.
 
 use vibro_io::Reader;
 use vibro_math::Noise;
@@ -14,7 +14,7 @@ struct Drawn {
     decimals: usize,
     cut_off: bool,
     phase: f64,
-    /// Standard deviation of instants, as a part of a step.
+    /// Standard deviation of the instants, as a fraction of a step.
     jitter: f64,
     kept: Vec<usize>,
 }
@@ -57,7 +57,7 @@ impl Drawn {
         (trace, found)
     }
 
-    /// How many of its standard uncertainties a rate is off.
+    /// Deviation of the rate in standard uncertainties.
     fn off(&self, trace: &Trace) -> f64 {
         let rate = trace.rate().expect("even");
         (rate / self.rate - 1.0).abs() / trace.meta.clock
@@ -84,8 +84,8 @@ fn the_rate_of_a_printed_clock_lies_within_its_uncertainty() {
         if trace.rate().is_none() {
             wrong.push(format!("{seed}: {}: {found:?}", drawn.short()));
         } else if drawn.off(&trace) > 1.01 * 3f64.sqrt() {
-            // All that rounding can hide is equally likely: nothing lies beyond √3. Decimals of binary
-            // numbers are off by a part in 10⁶ of a digit.
+            // The true rate is equally likely anywhere within the rounding, so it is at most √3 standard
+            // uncertainties off. The factor 1.01 covers the rounding of printed decimals to doubles.
             wrong.push(format!("{seed}: {}: off by {:.2}", drawn.short(), drawn.off(&trace)));
         }
     }
@@ -99,8 +99,8 @@ fn the_rate_of_a_printed_clock_that_jitters_lies_within_its_uncertainty() {
         let drawn = Drawn::new(seed, true, 0);
         let (trace, found) = drawn.read(&Reader::new());
         if trace.rate().is_none() {
-            // A digit as long as a sample, a multiple of which it nearly is, drifts by one as if a sample
-            // were lost.
+            // If the digit is longer than half a step and nearly a multiple of it, the printed times drift
+            // by one digit, as after a lost sample.
             let close = drawn.digit * drawn.rate > 0.5;
             doubted += 1;
             if !close {
@@ -140,7 +140,7 @@ fn lost_samples_of_a_printed_clock_are_seen_or_within_the_uncertainty() {
     assert!(wrong.is_empty(), "{} faults:\n{}", wrong.len(), wrong.join("\n"));
 }
 
-/// Samples of 0.625 and 0.4 ms in whole milliseconds: no step shows a lost one.
+/// Samples every 0.625 and 0.4 ms printed in whole milliseconds: no single step shows a lost sample.
 #[test]
 fn lost_samples_shorter_than_a_digit_are_seen() {
     for (rate, n) in [(1600.0, 2000), (2500.0, 2000), (800.0, 1000), (612.0, 1000)] {

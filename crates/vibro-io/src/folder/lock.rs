@@ -7,21 +7,21 @@ use std::thread::sleep;
 use std::time::{Duration, Instant};
 use vibro_record::{Error, Place, Result};
 
-/// The right to write into a folder, held until it is dropped. The system releases it if the program is
-/// killed.
+/// The right to write into a folder, held until dropped. The system releases it if the program is killed.
 #[derive(Debug)]
 pub struct Lock {
     path: PathBuf,
     _file: File,
 }
 
-/// Time between two attempts to lock: short beside the writing of a campaign.
+/// Time between two attempts to lock: short compared with writing the results of a campaign.
 const PAUSE: Duration = Duration::from_millis(20);
-/// Time after which another writer counts as stuck: even a large campaign writes figures and tables in 1 s.
+/// Time after which another writer counts as stuck; even a large campaign writes its figures and tables in
+/// 1 s.
 const PATIENCE: Duration = Duration::from_secs(10);
 
 impl Lock {
-    /// Name of the lock file. It holds the number of the process, only for the user to read.
+    /// Name of the lock file. It holds the process number, only as information for the user.
     pub const FILE: &str = ".vibro.lock";
 
     /// Locks a folder on disk; waits up to 10 s for another writer.

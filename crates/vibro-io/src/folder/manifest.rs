@@ -42,7 +42,7 @@ impl Manifest {
     /// Name of the file that holds the list.
     pub const FILE: &str = ".vibro.sha256";
 
-    /// The list of a folder; empty where there is none, or the file of that name is not vibro's.
+    /// The list of a folder; empty if there is none, or if vibro did not write the file of that name.
     pub fn of(folder: &Folder) -> Manifest {
         let bytes = folder.own_file(Manifest::FILE).unwrap_or_default();
         Manifest::parse(&String::from_utf8(bytes).unwrap_or_default())

@@ -8,8 +8,8 @@ use std::sync::{Arc, Mutex};
 use tempfile::{NamedTempFile, TempPath};
 use vibro_record::{Error, Result};
 
-/// A complete file that has no name yet: a temporary file in its folder, or bytes in memory. It is removed
-/// unless it gets its name.
+/// A complete file without its final name: a temporary file in its folder, or bytes in memory. It is
+/// removed unless [`Staged::place`] names it.
 #[derive(Debug)]
 pub enum Staged {
     /// On a disk.
@@ -19,7 +19,7 @@ pub enum Staged {
 }
 
 impl Staged {
-    /// Gives the file its name in one step; a file that had this name is replaced.
+    /// Gives the file its name in one step; an existing file of that name is replaced.
     ///
     /// # Errors
     /// If the system refuses.
@@ -87,7 +87,7 @@ impl Folder {
     }
 }
 
-/// A temporary file with a hidden name in `folder`, so that renaming it stays on one file system. It has
+/// A temporary file with a hidden name in `folder`, so that renaming stays within one file system. It has
 /// the permissions of any new file.
 fn temporary(folder: &Path) -> std::io::Result<NamedTempFile> {
     let mut named = tempfile::Builder::new();

@@ -103,7 +103,7 @@ mod on_unix {
         assert_eq!(left, ["two\nlines.csv", "gone", "up", "y.csv", "zero.csv"]);
         assert!(folder.path(Path::new("y.csv")).is_err() && folder.path(Path::new("up/new.csv")).is_err());
         assert!(folder.path(Path::new("a/new.csv")).is_ok());
-        // With names outside allowed, `up` leads to the other folder, too; its file is listed once.
+        // If names outside are allowed, `up` leads to the other folder, too; its file is listed once.
         let all = folder.allow_outside(true).walk(&here, 2).unwrap();
         let names: Vec<_> =
             all.files.iter().map(|path| path.strip_prefix(&here).unwrap().to_str().unwrap()).collect();

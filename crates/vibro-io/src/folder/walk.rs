@@ -18,8 +18,8 @@ pub struct Walk {
 
 impl Folder {
     /// Searches a folder and up to `levels` levels of folders below it. Each folder is visited once,
-    /// however many links lead to it. Links are followed only as far as [`Folder::path`] allows. Hidden
-    /// files and vibro's own results are skipped silently.
+    /// however many links lead to it. Links are followed only where [`Folder::path`] allows. Hidden files
+    /// and vibro's own results are skipped without a report.
     ///
     /// # Errors
     /// If the folder itself cannot be listed. A folder below it that cannot be listed is skipped.
@@ -117,7 +117,7 @@ impl Walk {
             Some(path) if path.contains(is_unprintable) => {
                 "its name has a line break or a control character: rename it"
             }
-            // In lists written on DOS a backslash separates folders.
+            // In lists written on DOS, a backslash separates folders.
             Some(_) if name.contains(&b'\\') => "its name has a backslash: rename it",
             Some(_) => return self.files.push(path),
         };

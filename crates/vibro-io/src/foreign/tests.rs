@@ -25,6 +25,6 @@ fn each_is_named_with_its_way_out() {
         let said = said.to_string();
         assert!(words.iter().all(|word| said.contains(word)), "{name}: {said}");
     }
-    // The ending alone names nothing that is text.
+    // A text file is not refused by its ending.
     assert!(Reader::new().from_reader("x.svd", &b"0.5\n1.5\n2.5\n"[..]).is_ok());
 }

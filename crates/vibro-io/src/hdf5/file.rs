@@ -1,7 +1,7 @@
 //! Reads the groups, datasets and attributes of a file.
 //!
-//! The crate hdf5-reader tells only the size of integers and floats. Numbers of another bit layout, as the
-//! message of their datatype shows, are not read.
+//! The crate hdf5-reader returns only the size of integers and floats. Numbers of another bit layout, as
+//! stated in their datatype message, are not read.
 
 use super::lzf;
 use crate::assemble::fewer;
@@ -28,10 +28,10 @@ use std::sync::{Arc, Mutex};
 use vibro_record::lanes::Extremes;
 use vibro_record::{Error, Finding, Result, Values};
 
-/// Most bytes that any filter unpacks from one: deflate gives 258 bytes for two bits.
+/// Most bytes that a filter unpacks from one byte: deflate needs at least two bits for 258 bytes.
 const MOST_UNPACKED: u64 = 1032;
-/// Ratio of declared to file bytes above which only the written part of a dataset is read, as the rest may
-/// never have been written; a smaller ratio may come from compression.
+/// Ratio of declared to file bytes above which only the written part of a dataset is read, since the rest
+/// may never have been written. A smaller ratio may result from compression.
 const MANY: u64 = 16;
 /// Deepest nesting of groups, and longest path in bytes, that are read.
 const MOST_DEPTH: usize = 32;
@@ -42,11 +42,11 @@ const BLOCK: usize = if cfg!(test) { 8 } else { 1 << 15 };
 /// Names of the real and the imaginary field of complex numbers.
 const COMPLEX: &[(&str, &str)] = &[("r", "i"), ("real", "imag"), ("re", "im")];
 
-/// What a dataset or an attribute holds.
+/// Content of a dataset or an attribute.
 #[derive(Debug)]
 pub enum Data {
     Numbers(Held),
-    /// Columns by the name of their field; `None` for a field that is no number.
+    /// Columns by the name of their field; `None` for a field that is not a number.
     Table(Vec<(String, Option<Vec<f64>>)>),
     Texts(Vec<String>),
     /// Addresses of other objects.
@@ -87,12 +87,12 @@ pub struct File {
     options: Options,
     /// Number of values in memory so far.
     held: Cell<f64>,
-    /// The error, if more values are needed than may be held.
+    /// The error, if more values are needed than the memory limit allows.
     pub refused: OnceCell<Error>,
     pub findings: Vec<Finding>,
 }
 
-/// Names of other files that links lead to. None of them is opened.
+/// Names of other files that links lead to. None of these files is opened.
 #[derive(Default)]
 struct Outside(Mutex<BTreeSet<String>>);
 
@@ -299,7 +299,7 @@ impl H5Type for Number {
     }
 }
 
-/// Reads the numbers of a dataset in blocks of rows: little memory is needed beside the values. With
+/// Reads the numbers of a dataset in blocks of rows, which needs little memory besides the values. With
 /// `summary`, only extremes and first values are kept, if the first block does not rise and no value is
 /// missing.
 fn by_rows(
@@ -341,7 +341,7 @@ fn by_rows(
     Ok(Values::Real(values).into())
 }
 
-/// What an attribute holds.
+/// Content of an attribute.
 pub fn attribute(attribute: &Attribute) -> Option<Data> {
     if let Ok(texts) = attribute.read_strings() {
         return Some(Data::Texts(texts));
@@ -352,7 +352,7 @@ pub fn attribute(attribute: &Attribute) -> Option<Data> {
     decoded(kind, &layout, size, || Ok(attribute.raw_data.clone())).ok()
 }
 
-/// Decodes the bytes that `read` gives: elements of `size` bytes, whose datatype message is `layout`.
+/// Decodes the bytes that `read` returns: elements of `size` bytes, whose datatype message is `layout`.
 fn decoded(
     kind: &Datatype,
     layout: &[u8],
@@ -392,7 +392,7 @@ fn decoded(
     })
 }
 
-/// Number type of a datatype, and whether it is big-endian; `None` if it is no number.
+/// Number type of a datatype, and whether it is big-endian; `None` if it is not a number.
 fn number(kind: &Datatype) -> Option<(NumberType, bool)> {
     /// Added to the size in bytes: an unsigned integer, a float.
     const UNSIGNED: u32 = 0x100;
@@ -408,7 +408,7 @@ fn number(kind: &Datatype) -> Option<(NumberType, bool)> {
     Some((kind, *order == ByteOrder::BigEndian))
 }
 
-/// The numbers at byte `offset` of each row of `width` bytes; `None` if they are no numbers or do not fit.
+/// The numbers at byte `offset` of each row of `width` bytes; `None` if they are not numbers or do not fit.
 fn column(bytes: &[u8], offset: usize, width: usize, of: &Datatype) -> Option<Vec<f64>> {
     let ((kind, big_endian), mut column) = (number(of)?, Vec::new());
     (offset as u64 + kind.size() <= width as u64).then_some(())?;
@@ -430,7 +430,7 @@ fn description(kind: &Datatype) -> Option<Vec<u8>> {
     Some([&[flags, sign, 0, size, 0, 0, 0, 0, 0, size * 8, 0], properties].concat())
 }
 
-/// Whether the message `layout` holds the description above of each datatype, one after the other.
+/// Whether the message `layout` contains the description above of each datatype, in this order.
 fn described(layout: &[u8], kinds: &[&Datatype]) -> Vec<bool> {
     let mut rest = layout;
     let mut next = |kind: &&Datatype| {

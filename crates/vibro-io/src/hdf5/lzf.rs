@@ -1,13 +1,13 @@
 //! The filter LZF, which h5py writes for `compression="lzf"`.
 //!
-//! A byte n below 32 is followed by n + 1 literal bytes. Any other byte begins a copy of earlier output: its
-//! upper three bits are the length less 2 (7: the next byte is added), its lower five bits and the next byte
-//! the distance back less 1.
+//! A byte n below 32 is followed by n + 1 literal bytes. Any other byte begins a copy of earlier output.
+//! Its upper three bits are the length minus 2 (7: the next byte is added). Its lower five bits and the
+//! next byte are the distance back minus 1.
 
 use hdf5_reader::error::Error as Fault;
 use hdf5_reader::messages::filter_pipeline::FilterDescription;
 
-/// The number under which the filter is registered.
+/// Number under which the filter is registered.
 pub const ID: u16 = 32000;
 
 /// Unpacks a chunk; the third parameter of the filter is its size.

@@ -1,5 +1,5 @@
-//! The variables of a MAT-file of version 7.3: `MATLAB_class` names what a dataset or a group holds,
-//! dimensions are reversed, cells and fields of arrays of structs are references into the group `#refs#`.
+//! The variables of a MAT-file of version 7.3. `MATLAB_class` states the content of a dataset or a group.
+//! Dimensions are reversed. Cells and fields of arrays of structs are references into the group `#refs#`.
 
 use super::file::{Data, File, MOST_PATH, Member};
 use crate::held::Held;
@@ -19,7 +19,7 @@ type Variables = Vec<(String, Content)>;
 const REFERENCES: &str = "#refs#";
 const OBJECTS: &str = "#subsystem#";
 
-/// Whether a member of a group has a class of MATLAB.
+/// Whether a member of a group has a MATLAB class.
 pub fn is(members: &[(String, Member)]) -> bool {
     members.iter().any(|(_, member)| has(&member.attributes(), "MATLAB_class"))
 }
@@ -46,7 +46,7 @@ pub fn variables(file: &mut File, mut members: Vec<(String, Member)>, survey: bo
 
 struct VariableWalk<'a> {
     file: &'a mut File,
-    /// Whether the extremes of values are enough.
+    /// Whether extremes are enough instead of all values.
     survey: bool,
     /// Targets of references by address; each is used once.
     referred: HashMap<u64, Member>,

@@ -6,12 +6,12 @@ use proptest::prelude::*;
 use vibro_record::units::Unit;
 use vibro_record::{AxisKind, Record};
 
-/// The values of the fixtures.
+/// Values of the fixtures.
 fn v() -> impl Iterator<Item = f64> {
     (0..24).map(|i| 5.0 * f64::from(i) - 60.0)
 }
 
-/// Reads a fixture from its folder, where files that links lead to are, too.
+/// Reads a fixture from its folder, which also holds the targets of its links.
 fn fixture(name: &str) -> Recording {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/hdf5/");
     read_both_ways(&Source::file(format!("{folder}{name}")).unwrap()).unwrap()
@@ -133,7 +133,8 @@ fn attributes_state_unit_rate_and_start_of_their_dataset_or_group() {
     };
     assert_eq!(of("bare"), ("", 0.0, 0.01, 24));
     assert_eq!(of("run 1/two"), ("", 3.0, 0.25, 2));
-    // Two rows of 24 values are two channels; three rows of eight values over three times are eight channels.
+    // Two rows of 24 values are two channels; three rows of eight values with three times are eight
+    // channels.
     assert_eq!(of("run 1/velocity[1,:]"), ("m/s", 0.0, 0.005, 24));
     assert_eq!(of("run 2/force[:,7]"), ("N", 0.0, 0.002, 3));
     assert_eq!(recording.records.len(), 12);
@@ -173,7 +174,7 @@ fn counts_of_an_oscilloscope_are_taken_through_their_scale() {
         panic!()
     };
     assert_eq!((spectrum.axis.start(), spectrum.axis.step()), (10.0, Some(2.0)));
-    // Millimetres are no abscissa of a trace.
+    // A dimension in millimetres is not used as abscissa.
     assert!(values(&recording, "packed").iter().copied().eq(v().map(|v| 0.25 * v - 1.0)));
     assert_eq!(named(&recording, "packed").axis().kind, AxisKind::Index);
 }
@@ -200,9 +201,10 @@ fn the_unit_of_a_clock_stands_in_its_name_or_is_assumed_aloud() {
     }
     // Doubles of ns since 1970 are 256 ns apart: over 23 steps, the mean step is right to 256 ns / 23.
     assert!((named(&recording, "timestamp_ns/v").axis().step().unwrap() - 1e-6).abs() < 256e-9 / 23.0);
-    // Nanoseconds in a name keep the instants, a clock without a unit is counted from its first value.
+    // Times whose name states nanoseconds keep their instants; a clock without a unit counts from its first
+    // value.
     assert_eq!((even("timestamp/v").1, even("timestamp_ns/v").1), (0.0, 1.7e9));
-    // Neither ticks are seconds, nor blocks hertz.
+    // Not used: clock ticks as seconds, a rate in blocks, and the rate of the samples for their means.
     for name in ["ticks timestamp/v", "by fs", "device/support/level 10/v"] {
         assert_eq!(named(&recording, name).axis().kind, AxisKind::Index, "{name}");
     }
@@ -211,7 +213,7 @@ fn the_unit_of_a_clock_stands_in_its_name_or_is_assumed_aloud() {
     for (code, facts) in [
         ("axis-epoch", ["unit=ms", "timestamp/timestamp"]),
         ("axis-unit-assumed", ["unit=s", "time/time"]),
-        // Floats of 64 bits have steps of 256 ns at 1.7e18.
+        // Doubles at 1.7e18 are 256 apart, here ns.
         ("axis-rounded", ["timestamp_ns", "smallest"]),
     ] {
         assert!(has_finding(&recording.findings, code, &facts), "{code}: {:?}", texts(&recording.findings));

@@ -2,7 +2,7 @@ use super::*;
 use crate::reader::{Reader, Recording};
 use vibro_record::units::Unit;
 
-/// A LabVIEW spectrum of 40 lines, 0.5 Hz apart, which its writer calls a time: levels of −60 to −21 dB.
+/// A LabVIEW spectrum of 40 lines, 0.5 Hz apart, labelled as time by its writer: levels of −60 to −21 dB.
 fn labview(name: &str) -> String {
     let rows = (0..40).map(|i| format!("\t{}\n", i - 60)).collect::<Vec<_>>().concat();
     let head = "LabVIEW Measurement\nSeparator\tTab\nX_Columns\tNo\n***End_of_Header***\n\nChannels\t1\n";
@@ -27,7 +27,7 @@ fn a_spectrum_over_time_in_decibels_is_read_when_both_are_stated() {
         let Record::Spectrum(spectrum) = &read.records[0] else { panic!("{read:?}") };
         let Values::Real(values) = &spectrum.values else { panic!("{spectrum:?}") };
         assert_eq!((spectrum.meta.unit.symbol(), spectrum.axis.step()), ("m/s²", Some(0.5)));
-        // −40 dB re 1 g; a power and a product, each rounded.
+        // −40 dB re 1 g. Tolerance: a power and a product, each rounded.
         assert!((values[20] / 0.098_066_5 - 1.0).abs() < 1e-14, "{}", values[20]);
         assert!(spectrum.meta.findings.iter().all(|found| found.code != "levels-in-decibels"));
     }
@@ -54,7 +54,7 @@ fn densities_of_power_and_levels_in_linear_units() {
         Record::Spectrum(Spectrum { values: Values::Real(values), .. }) => values,
         other => panic!("{other:?}"),
     };
-    // A tenfold power is 10 dB, a tenfold amplitude 20 dB; powers of ten are rounded once.
+    // A tenfold power is 10 dB, a tenfold amplitude 20 dB. Tolerance: powers of ten are rounded once.
     for (found, expected) in values("dB re 1 (m/s²)²/Hz").iter().zip([0.01, 0.1, 10.0]) {
         assert!((found / expected - 1.0).abs() < 1e-15, "{found}");
     }

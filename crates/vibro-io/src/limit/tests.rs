@@ -14,7 +14,7 @@ fn wave(n: u32) -> Vec<u8> {
 
 #[test]
 fn a_wave_file_may_fill_the_limit_and_no_more() {
-    // 2 channels × 1000 frames × 8 bytes, times three: the values, and twice as much for results.
+    // 2 channels × 1000 frames × 8 bytes, times three: the values, and twice their size for results.
     let bytes = wave(1000);
     let reader = |limit: f64| Reader::new().max_memory(Limit(limit)).beside(2.0);
     let read = |reader: &Reader| reader.from_reader("x.wav", bytes.as_slice());
@@ -23,7 +23,7 @@ fn a_wave_file_may_fill_the_limit_and_no_more() {
     assert_eq!(said.exit_code(), 2);
     assert!(said.to_string().contains("x.wav: it needs 48 kB of memory"), "{said}");
     assert!(said.settings().eq(["max_memory"]), "{said}");
-    // Of one channel it is half, and its record is the same.
+    // One channel takes half of the memory, and its record is the same.
     let one = read(&reader(24_000.0).only(["2".to_owned()])).unwrap();
     assert_eq!(
         one.trace(Some("2"), None).unwrap(),
@@ -34,8 +34,8 @@ fn a_wave_file_may_fill_the_limit_and_no_more() {
 
 #[test]
 fn the_part_of_a_hint_is_read() {
-    // Two channels take 3.2e8 bytes a frame, and all 4800 frames more than any machine has; 3125 frames of 48
-    // kHz are within the limit.
+    // Two channels take 3.2e8 bytes per frame, so all 4800 frames exceed any machine; 3125 frames at 48 kHz
+    // (0.065 s) are within the limit of 1e12 bytes.
     let bytes = wave(4800);
     let reader = || Reader::new().max_memory(Limit(1e12)).beside(2e7 - 1.0);
     let said = reader().from_reader("x.wav", bytes.as_slice()).unwrap_err();
@@ -52,8 +52,8 @@ fn text_is_refused_before_it_is_read() {
         let _ = writeln!(text, "{i},{}", 2 * i);
     }
     let read = |limit| Reader::new().max_memory(Limit(limit)).from_reader("x.csv", text.as_bytes());
-    // 20 000 rows of two columns, times 1.75 for results, take 560 kB; estimated from the first 64 KiB, whose
-    // rows are shorter, a quarter more.
+    // 20 000 rows of two columns, times 1.75 for results, take 560 kB. The estimate from the first 64 KiB,
+    // whose rows are shorter, is a quarter larger.
     assert!(read(420_000.0).is_err());
     assert_eq!(read(840_000.0).unwrap().records[0].len(), 20_000);
 }

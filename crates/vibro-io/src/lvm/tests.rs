@@ -16,7 +16,7 @@ fn traces(recording: &Recording) -> Vec<&Trace> {
         .collect()
 }
 
-/// The header of a file and that of its first segment, without names and rows.
+/// The header of the file and that of its first segment, without names and rows.
 fn head(separator: &str, x_columns: &str) -> String {
     let s = if separator == "Tab" { '\t' } else { ',' };
     format!(
@@ -83,10 +83,10 @@ fn what_the_head_promises_and_the_rows_do_not_hold() {
     assert!(has_finding(&a.meta.findings, "axis-uneven", &[]));
     assert!(has_finding(&found.findings, "variable-empty", &["variable=b"]));
     assert_eq!(a.axis.values(), [0.0, 0.4, 1.5]);
-    // A word in the place of a number.
+    // A word instead of a number.
     let said = recording(&text.replace("2.0", "two")).unwrap_err().to_string();
     assert!(said.contains("line 14") && said.contains("\"two\"") && said.contains("\"a\""), "{said}");
-    // A gap within the values.
+    // A missing value between values.
     let gap = text.replace("0.4\t2.0", "0.4\t");
     assert!(recording(&gap).unwrap_err().to_string().contains("missing"));
     let none = head("Tab", "One");
@@ -100,7 +100,7 @@ fn no_row_is_lost() {
             + "Channels\t1\nX0\t0\nDelta_X\t1\n***End_of_Header***\nX_Value\ta\tComment\n"
             + rows
     };
-    // A row of separators only.
+    // A row of separators only is a missing value.
     let gap = text("\t1.0\n\t\n\t3.0\n\t\n");
     assert!(recording(&gap).unwrap_err().to_string().contains("1 missing value at 2 of \"a\""));
     let kept = crate::reader::Reader::new().allow_missing(true).from_reader("x.lvm", gap.as_bytes()).unwrap();

@@ -2,7 +2,7 @@ use super::*;
 use crate::reader::Reader;
 use vibro_record::Fact;
 
-/// Rows of a phone: three axes and what `last` makes of them, printed with so many decimals.
+/// Rows of a phone: three axes and `last` computed from them, printed with the given number of decimals.
 fn marked(decimals: usize, last: impl Fn([f64; 3]) -> f64) -> Vec<Vec<Finding>> {
     let row = |i: i32| {
         let t = f64::from(i) / 200.0;
@@ -19,7 +19,7 @@ fn marked(decimals: usize, last: impl Fn([f64; 3]) -> f64) -> Vec<Vec<Finding>> 
     read
 }
 
-/// A counter, a small component, a large one, their length.
+/// Channels: a counter, a small component, a large component, and their magnitude.
 #[test]
 fn the_channel_to_name_is_the_component_that_moves_most() {
     let row = |i: i32| {
@@ -41,7 +41,7 @@ fn the_length_of_a_vector_is_told_from_what_is_measured() {
         assert_eq!(found, [vec![], vec![], vec![], vec![caution.clone()]], "{decimals}");
     }
     assert_eq!(marked(5, |[x, y, _]| x.hypot(y))[3][0].fact("components"), Some(&Fact::Name("x, y".into())));
-    // A copy, a rectified channel, and a length with an error of 5 %.
+    // No magnitudes: a copy, a rectified channel, and a magnitude with an error of 5 %.
     for other in [|v: [f64; 3]| v[0], |v: [f64; 3]| v[0].abs(), |v: [f64; 3]| 1.05 * v[0].hypot(v[1])] {
         assert_eq!(marked(5, other), vec![vec![]; 4]);
     }

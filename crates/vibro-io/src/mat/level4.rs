@@ -1,4 +1,4 @@
-//! The variables of a MAT-file of level 4: each five words, a name and numbers; the file has no header.
+//! The variables of a MAT-file of level 4: each is five words, a name and numbers; the file has no header.
 //!
 //! Source: The `MathWorks`, "MAT-File Format", chapter 1, "Level 4 MAT-File Format".
 
@@ -6,11 +6,11 @@ use super::level5::{numbers, string};
 use crate::variables::{Array, Content, MOST_TEXT};
 use vibro_record::{Error, Place, Result, Values};
 
-/// Kinds of numbers as level 5 counts them, and their bytes: double, single, int32, int16, uint16, uint8.
+/// Kinds of numbers as in level 5, and their sizes in bytes: double, single, int32, int16, uint16, uint8.
 const KINDS: [(u32, usize); 6] = [(9, 8), (7, 4), (5, 4), (3, 2), (4, 2), (2, 1)];
 
-/// The words before a variable: the four digits of its type (machine, zero, kind of numbers; full, text or
-/// sparse), then rows, columns, complex or not, length of the name.
+/// The words before a variable: the four digits of its type (machine; zero; kind of numbers; full, text or
+/// sparse), then rows, columns, complex or not, and length of the name.
 pub fn header(bytes: &[u8]) -> Option<([u32; 4], [u32; 4])> {
     let words: [[u8; 4]; 5] = bytes.as_chunks().0.get(..5)?.try_into().ok()?;
     let digits = |n: u32| [n / 1000, n / 100 % 10, n / 10 % 10, n % 10];

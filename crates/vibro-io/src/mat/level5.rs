@@ -9,16 +9,16 @@ use flate2::read::ZlibDecoder;
 use std::io::Read;
 use vibro_record::{Error, Place, Result, Values};
 
-/// Bytes before the first variable, of which the last two are IM (little endian) or MI.
+/// Bytes before the first variable; the last two are IM (little endian) or MI (big endian).
 const HEADER: usize = 128;
-/// Most bytes that zlib unpacks from one: 258 bytes of two bits.
+/// Most bytes that zlib unpacks from one byte: it needs at least two bits for 258 bytes.
 const MOST_UNPACKED: u64 = 1032;
-/// Deepest nesting of structs and cell arrays, and longest name in bytes, that are read: both bound what one
-/// byte of a file can cost.
+/// Deepest nesting of structs and cell arrays, and longest name in bytes, that are read. Both limit the
+/// memory that one byte of a file can take.
 const MOST_DEPTH: usize = 32;
 const MOST_NAME: usize = 512;
 
-/// Elements one after the other.
+/// A sequence of elements.
 struct Elements<'a> {
     rest: &'a [u8],
     big_endian: bool,
@@ -31,7 +31,7 @@ impl<'a> Elements<'a> {
         Error::input(self.place.clone(), found, expected).hint("the file is damaged; copy or save it again")
     }
 
-    /// An unsigned word in the file's order.
+    /// An unsigned word in the file's byte order.
     fn word(&self, bytes: [u8; 4]) -> u32 {
         if self.big_endian { u32::from_be_bytes(bytes) } else { u32::from_le_bytes(bytes) }
     }
@@ -59,7 +59,7 @@ impl<'a> Elements<'a> {
         };
         let word = self.word([*a, *b, *c, *d]);
         if word >> 16 != 0 {
-            // The content of a small element lies in its tag.
+            // The content of a small element is stored in its tag.
             let size = (word >> 16) as usize;
             let content = self.rest[4..8].get(..size).ok_or_else(|| ends_early(4, word >> 16))?;
             self.rest = behind;
@@ -73,7 +73,7 @@ impl<'a> Elements<'a> {
         Ok(Some((word, content)))
     }
 
-    /// The content of an element that a variable must have.
+    /// The content of an element that is required in a variable.
     fn part(&mut self, what: &str) -> Result<(u32, &'a [u8])> {
         self.next()?
             .ok_or_else(|| self.fault(format!("a variable that ends early, without its {what}"), what))
@@ -92,7 +92,7 @@ impl<'a> Elements<'a> {
     }
 }
 
-/// Numbers of an element of this kind; `None` for a kind that holds no numbers.
+/// Numbers of an element of this kind; `None` for a kind without numbers.
 pub fn numbers(kind: u32, bytes: &[u8], big: bool) -> Option<Vec<f64>> {
     let kind = NumberType::coded(kind, [1, 3, 5, 12, 2, 4, 6, 13, 7, 9])?;
     let (width, mut values) = (kind.size() as usize, Vec::new());
@@ -124,8 +124,8 @@ pub fn all(bytes: &[u8], options: &Options) -> Result<Vec<(String, Content)>> {
     }
 }
 
-/// Unpacks a compressed variable: no more bytes than it declares, and no more than the memory limit allows,
-/// with its numbers and what was `held` before.
+/// Unpacks a compressed variable: no more bytes than it declares, and no more than the memory limit allows
+/// with its numbers and the values `held` before.
 fn unpacked(file: &Elements, packed: &[u8], options: &Options, held: &mut f64) -> Result<Vec<u8>> {
     let damaged = |e: std::io::Error| {
         let found = format!("a packed variable that is damaged: {e}");
@@ -134,10 +134,10 @@ fn unpacked(file: &Elements, packed: &[u8], options: &Options, held: &mut f64) -
     let (mut zlib, mut tag, mut inflated) = (ZlibDecoder::new(packed), [0; 8], Vec::new());
     zlib.read_exact(&mut tag).map_err(damaged)?;
     let declared = u64::from(file.words(&tag[4..]).next().unwrap_or(0));
-    // A wrong declared size shows below: the variable ends early or late.
+    // A wrong declared size is found below: the variable ends early or late.
     *held += declared.min(MOST_UNPACKED * packed.len() as u64) as f64 / 4.0;
     options.hold(*held)?;
-    // zlib compares the checksum only at the end of the stream: eight bytes more are read, which is more than
+    // zlib compares the checksum only at the end of the stream: eight more bytes are read, which exceeds
     // any padding.
     zlib.by_ref().take(declared + 8).read_to_end(&mut inflated).map_err(damaged)?;
     let behind = packed.get(zlib.total_in() as usize..).unwrap_or_default();
@@ -163,7 +163,7 @@ fn variable(
     let class = flags & 0xff;
     let (has_two, logical) = (flags & 0x800 != 0, flags & 0x200 != 0);
     if class == 17 {
-        // An object of the newer kind has no dimensions; what follows is not documented.
+        // An object of the newer kind has no dimensions; its remaining layout is not documented.
         variables.push((inside.map_or_else(String::new, |(name, _)| name), Content::Other("object")));
         return Ok(());
     }

@@ -27,7 +27,7 @@ impl Order {
         self.put(&value.to_le_bytes())
     }
 
-    /// A small element where it fits, as MATLAB writes them.
+    /// A small element if the content fits, as MATLAB writes it.
     fn element(self, kind: u32, content: &[u8]) -> Vec<u8> {
         let mut out = Vec::new();
         if (1..=4).contains(&content.len()) {
@@ -67,7 +67,7 @@ impl Order {
         self.matrix(4, &[1, text.len() as u32], name, &[self.element(16, text.as_bytes())])
     }
 
-    /// `members` are nameless, field by field of one struct after the other.
+    /// `members` are without names, field after field of one struct after the other.
     fn structs(self, name: &str, n: u32, fields: &[&str], members: &[Vec<u8>]) -> Vec<u8> {
         let names: Vec<u8> = fields
             .iter()
@@ -90,7 +90,7 @@ impl Order {
         self.matrix(1, &[1, members.len() as u32], name, &[members.concat()])
     }
 
-    /// A variable of level 4; `words` are type, rows, columns, complex or not.
+    /// A variable of level 4; `words` are type, rows, columns, complex (1) or not (0).
     fn of_level_4(self, words: [u32; 4], name: &str, content: &[u8]) -> Vec<u8> {
         let words: Vec<u8> =
             words.iter().chain(&[name.len() as u32 + 1]).flat_map(|w| self.word(*w)).collect();
@@ -170,7 +170,7 @@ fn sampling_from_scalars() {
 
 #[test]
 fn abscissae_from_vectors() {
-    // Accumulated steps, as simulation programs write them, drift by rounding and are still even.
+    // Accumulated steps, as simulation programs write them, drift by rounding and still count as even.
     let times: Vec<f64> = (0..1000)
         .scan(0.0, |t, _| {
             let now = *t;
@@ -181,7 +181,7 @@ fn abscissae_from_vectors() {
     let x = vec![1.0; 1000];
     let recording = of(&[LITTLE.column("t", &times), LITTLE.column("x", &x)]).unwrap();
     assert_eq!(recording.records.len(), 1);
-    // A thousand sums, each rounded by at most half an ulp of 1.
+    // Tolerance: a thousand sums, each rounded by at most half an ulp of 1.
     assert!((recording.records[0].axis().step().unwrap() - 0.001).abs() < 1000.0 * f64::EPSILON);
     assert_eq!(recording.findings.len(), 1, "{:?}", recording.findings);
 
@@ -201,7 +201,7 @@ fn abscissae_from_vectors() {
         (&Axis::frequency(0.0, 2.0, 2), &Values::Real(vec![1.0, 2.0]))
     );
 
-    // A force called f, and a torque called t, are no abscissae.
+    // A force called f and a torque called t are not abscissae.
     let force = of(&[LITTLE.column("f", &[0.0, 2.0, 1.0]), LITTLE.column("x", &[1.0, 2.0, 3.0])]).unwrap();
     assert_eq!(force.records.len(), 2);
     assert!(has_finding(&force.findings, "abscissa-not-rising", &["variable=f"]));
@@ -373,7 +373,7 @@ fn a_sampling_rate_and_the_rate_of_a_shaft() {
     assert!(close(&both, 97656.0) && rates(&both)[0].0 == "bearing.gs");
     let said = &both.records[0].meta().findings;
     assert!(has_finding(said, "step-by-name", &["variable=bearing.sr", "rate=97656", "other=bearing.rate"]));
-    // Alone, a rate below 1 kHz may be that of the shaft.
+    // Without another statement, a rate below 1 kHz may be that of the shaft.
     let shaft = bearing(&[], 25.0);
     assert_eq!(rates(&shaft), [("bearing.gs", None)]);
     assert!(has_finding(
@@ -434,7 +434,7 @@ fn step_and_label_beside_the_values() {
     let (bare, _, said) = signal(axis(0.0, 0.5, "?"), complex());
     assert_eq!(bare, Axis::frequency(0.0, 0.5, 4));
     assert!(has_finding(&said, "step-by-name", &["variable=Signal.x_values.increment", "step=0.5"]));
-    // Over revolutions a step is neither time nor frequency.
+    // An increment in rpm is neither a time nor a frequency step.
     assert_eq!(signal(axis(0.0, 0.5, "rpm"), LITTLE.column("", &SOME)).0.kind, AxisKind::Index);
 }
 
@@ -558,9 +558,9 @@ fn any_damage_to_what_is_packed_is_found() {
             }
         }
     }
-    // A few bits fill up the last byte or belong to codes that no value has.
+    // A few bits pad the last byte or belong to codes that no value uses.
     assert!(unused < packed.len() * 8 / 20, "{unused}");
-    // Cut short, with the size in the tag made to match.
+    // Cut short, with the size in the tag adjusted.
     for n in 8..packed.len() {
         let mut cut = packed[..n].to_vec();
         cut[4..8].copy_from_slice(&(n as u32 - 8).to_le_bytes());
@@ -573,7 +573,7 @@ fn any_damage_to_what_is_packed_is_found() {
 
 #[test]
 fn memory_follows_what_is_there() {
-    // A packed variable that declares eight bytes and unpacks to a hundred megabytes.
+    // A packed variable that declares eight bytes and unpacks to 100 MB.
     let mut bomb = vec![0; 100 << 20];
     bomb[..8].copy_from_slice(&[14, 0, 0, 0, 8, 0, 0, 0]);
     assert!(complaint(&[packed(&bomb)]).contains("late: 16 of 8 bytes"));
@@ -621,14 +621,15 @@ fn other_levels_are_refused_by_name() {
     let reader = Reader::new();
     let mut hdf5 = vec![b' '; 512];
     hdf5[124..128].copy_from_slice(b"\0\x02IM");
-    // Next comes the signature of HDF5, by which the file would be read if that is compiled in: then zeros.
+    // Next comes the HDF5 signature; with the feature `hdf5`, zeros instead, since the file would be read
+    // as HDF5.
     hdf5.extend(if cfg!(feature = "hdf5") { b"\0\0\0\0\0\0\0\0" } else { HDF5 });
     let error = reader.from_reader("x.mat", hdf5.as_slice()).unwrap_err().to_string();
     assert!(error.contains("version 7.3, which is HDF5") && error.contains("-v7"), "{error}");
     let vax = LITTLE.of_level_4([2000, 2, 1, 0], "x", &[0; 16]);
     let error = reader.from_reader("x.mat", vax.as_slice()).unwrap_err().to_string();
     assert!(error.contains("byte 0: numbers of a VAX") && error.contains("-v7"), "{error}");
-    // Text that `save -ascii` wrote is left to the reader of text.
+    // Text that `save -ascii` wrote is read as text.
     assert_eq!(
         reader.from_reader("x.mat", b" 1.0e+00\n 2.0e+00\n".as_slice()).unwrap().format,
         Format::Ascii
@@ -686,7 +687,7 @@ fn level_4_in_both_byte_orders_and_every_storage() {
         }
         let forced = Reader::new().format(Some(Format::Mat)).from_reader("x", variables.concat().as_slice());
         assert_eq!(forced.unwrap().records.len(), 8);
-        // The last variable has 54 bytes: five words, "H" with its zero, and four numbers.
+        // The last variable has 54 bytes: five words, "H" with its zero, and four doubles.
         let start = variables.concat().len() - 54;
         for end in start + 1..start + 54 {
             let error =
@@ -706,7 +707,7 @@ fn level_4_in_both_byte_orders_and_every_storage() {
 fn a_file_that_is_cut_off_is_refused_with_the_byte() {
     let rate = LITTLE.matrix(6, &[1, 1], "fs", &[LITTLE.doubles(&[100.0])]);
     let mut file = LITTLE.file(&[rate.clone(), LITTLE.column("x", &[1.0, 2.0, 3.0])]);
-    // 128 bytes of header.
+    // The header has 128 bytes.
     let start = 128 + rate.len();
     file.truncate(file.len() - 10);
     let error = Reader::new().from_reader("x.mat", file.as_slice()).unwrap_err().to_string();
@@ -721,7 +722,7 @@ fn a_file_that_is_cut_off_is_refused_with_the_byte() {
 fn damage_is_named_with_its_byte() {
     let short = LITTLE.matrix(6, &[3, 1], "x", &[LITTLE.doubles(&[1.0, 2.0])]);
     let error = complaint(&[LITTLE.column("a", &[1.0, 2.0]), short]);
-    // The first variable takes 8 + 64 bytes after the header of 128.
+    // The first variable takes 8 + 64 bytes after the header of 128 bytes.
     assert!(error.starts_with("x.mat, byte 200: a variable that declares 3 values and holds 2"), "{error}");
     assert!(complaint(&[LITTLE.matrix(6, &[2, 1], "x", &[])]).contains("ends early"));
     assert!(complaint(&[LITTLE.matrix(99, &[1, 1], "x", &[])]).contains("class 99"));
@@ -793,7 +794,7 @@ proptest! {
         let _ = of(&[packed(&inner)]);
         let mut bytes = whole;
         for (index, value) in &changes {
-            // Leave the header: without it nothing is read.
+            // The header is not changed: without it nothing is read.
             let at = 128 + index.index(bytes.len() - 128);
             bytes[at] = *value;
         }
@@ -805,7 +806,7 @@ proptest! {
 
 #[test]
 fn a_packed_variable_is_refused_by_what_it_unpacks_to() {
-    // 1000 zeros take 8000 bytes, which are held twice while they are read.
+    // 1000 zeros take 8000 bytes, of which two copies are in memory during reading.
     let file = LITTLE.file(&[packed(&LITTLE.column("x", &[0.0; 1000]))]);
     let read =
         |limit| Reader::new().max_memory(crate::limit::Limit(limit)).from_reader("x.mat", file.as_slice());

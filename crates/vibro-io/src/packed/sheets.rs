@@ -1,5 +1,5 @@
-//! Writes sheets of workbooks as text: tabs between cells, numbers with all their digits, dates as date and
-//! time.
+//! Converts sheets of workbooks to text: tabs between cells, numbers with all their digits, dates as date
+//! and time.
 
 use super::{Member, Workbook, damaged, locked};
 use crate::limit::Limit;
@@ -26,12 +26,12 @@ const DECIMALS: usize = 6;
 /// Largest difference in µs between a time and its printed form, since days are rounded to a double.
 const ROUNDING: i64 = 1;
 
-/// All sheets with cells, or the one of this name.
+/// All sheets with cells, or the one with this name.
 ///
 /// # Errors
 /// If the workbook is damaged or encrypted, or needs more memory than the limit.
 pub fn of(source: &Source, kind: Workbook, named: Option<&Path>, limit: Limit) -> Result<Vec<Member>> {
-    // The crate calamine panics on a sheet that ends before it begins: the panic becomes an error.
+    // The crate calamine panics on a sheet that ends before it begins; the panic becomes an error.
     let read = AssertUnwindSafe(|| match kind {
         Workbook::Compound => {
             let book = Xls::new(checked(source, limit)?).map_err(|why| match why {
@@ -129,7 +129,7 @@ fn extent(sheet: &[u8]) -> Option<f64> {
     Some(rows * columns)
 }
 
-/// The sheets of a workbook to read: all, or the one of this name.
+/// The sheets of a workbook to read: all, or the one with this name.
 fn meant(sheets: &[Sheet], named: Option<&Path>) -> Vec<Sheet> {
     sheets.iter().filter(|of| named.is_none_or(|named| named == Path::new(&of.name))).cloned().collect()
 }
@@ -152,7 +152,7 @@ where
     Ok(parts)
 }
 
-/// As [`ranges`] for `.xlsx`, cell by cell: no memory is reserved for cells between used ones.
+/// As [`ranges`] for `.xlsx`, cell by cell: no memory is reserved for empty cells between used ones.
 fn streamed((source, named): (&Source, Option<&Path>), limit: Limit) -> Result<Vec<Member>> {
     let mut book =
         Xlsx::new(BufReader::new(source.open()?)).map_err(|why: XlsxError| damaged(source, why))?;
@@ -211,8 +211,8 @@ fn sheet(source: &Source, of: Sheet, mut cells: Vec<Cell>, limit: Limit) -> Resu
     Ok(Some(Member { name: of.name, source, hidden }))
 }
 
-/// Converts texts with a decimal comma to numbers if other cells are numbers with decimals, as these are
-/// written with a point. Not done if each such text may be grouped digits (`1,000`).
+/// Converts texts with a decimal comma to numbers if other cells are numbers with decimals. Not done if in
+/// each such text the comma may separate thousands (`1,000`).
 fn with_points(cells: &mut [Cell]) {
     let decimals = |cell: &Cell| matches!(cell.2, Data::Float(value) if value.fract() != 0.0);
     let comma = |cell: &Cell| match &cell.2 {
@@ -255,7 +255,8 @@ fn write_cell(text: &mut String, cell: &Data, clock: Option<&DateFormat>) {
     };
 }
 
-/// The fewest digits that read back as the same double, in a form that cannot be taken for grouped digits.
+/// The fewest digits that read back as the same double, in a form that cannot be mistaken for thousands
+/// separators.
 fn digits(value: f64) -> String {
     // Beyond 2⁵³ not every whole number is a double.
     let whole = value.trunc() == value && value.abs() < 9e15;

@@ -322,13 +322,13 @@ mod sheets {
                 trace.axis.at(399)
             );
         }
-        // Not days: a time of day in s sampled at 1440 Hz, and a record sampled at 100 kHz.
+        // Not read as days: a time of day in s sampled at 1440 Hz, and a record sampled at 100 kHz.
         for (start, rate) in [(45_250.4, 1.0 / 60.0), (0.0, 1e5 / 86_400.0)] {
             assert!(!has_finding(&days(start, rate).findings, "axis-serial-days", &[]), "{start} {rate}");
         }
     }
 
-    /// In a number cell −1.234 has three decimals. In text its point might separate thousands.
+    /// In a number cell, −1.234 has three decimals. In a text cell its point might separate thousands.
     #[test]
     fn three_decimals_beside_whole_numbers_are_a_number() {
         let bytes = workbook(|book| {
@@ -372,7 +372,7 @@ mod sheets {
         }
     }
 
-    /// A workbook of Excel 97 as [MS-XLS] describes it: a stream of records in a compound file.
+    /// An Excel 97 workbook as [MS-XLS] describes it: a stream of records in a compound file.
     fn compound(rows: &[Vec<String>]) -> Vec<u8> {
         let record = |kind: u16, data: &[u8]| {
             [&kind.to_le_bytes()[..], &(data.len() as u16).to_le_bytes(), data].concat()

@@ -9,7 +9,7 @@ fn read(name: &str, bytes: &[u8], span: (f64, f64)) -> Result<Recording> {
 
 #[test]
 fn a_part_has_the_samples_and_times_of_the_whole() {
-    // 100 samples at 8 Hz: a double holds all times exactly.
+    // 100 samples at 8 Hz: all times are exact in a double.
     let values: Vec<f64> = (0..100).map(|i| f64::from(i) / 128.0).collect();
     let meta = Meta::new("v", Unit::parse("m/s").unwrap());
     let trace = Trace { meta, axis: Axis::time(2.0, 0.125, 100), values };

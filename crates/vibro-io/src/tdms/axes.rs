@@ -1,4 +1,4 @@
-//! The abscissa of a channel: its waveform properties, or a channel of its group whose name says time or
+//! The abscissa of a channel: its waveform properties, or a channel of its group whose name means time or
 //! frequency.
 
 use super::Channel;
@@ -23,7 +23,7 @@ pub struct AbscissaChannel {
 
 impl AbscissaChannel {
     fn of(channel: &Channel, resampled: bool, findings: &mut Vec<Finding>) -> Option<AbscissaChannel> {
-        // As the unit of a time, `h` means hours.
+        // The unit `h` of a time means hours.
         let unit = channel.object.text("unit_string").map(|unit| if unit == "h" { "hour" } else { unit });
         let Name { name, unit } = Name::with_unit_row(channel.name, unit.unwrap_or_default());
         let whole = name.trim_end_matches(|c: char| c.is_ascii_digit() || c == '_' || c == ' ');
@@ -31,8 +31,8 @@ impl AbscissaChannel {
             Name { name: name.to_owned(), unit }.axis(name.len() == 1).filter(|_| name != "x" && name != "X")
         };
         let named = |name: &str| kind(name, None).filter(|of| kind(name, unit.clone()).as_ref() == Some(of));
-        // A name that only begins like a time makes a clock only if the values rise evenly: `Zeit_langsam`
-        // may be one, a measured `time of flight` is none.
+        // A name that only begins like a time counts as a clock only if the values rise evenly:
+        // `Zeit_langsam` may be a clock, a measured `time of flight` is not.
         let first = whole.split(['_', ' ']).next().filter(|word| word.len() > 1);
         let first = || named(first?).filter(|kind| *kind == AxisKind::Time);
         let (kind, sure) = named(whole).map(|kind| (kind, true)).or_else(|| Some((first()?, false)))?;
@@ -71,8 +71,8 @@ impl AbscissaChannel {
     }
 }
 
-/// Removes the clocks (abscissa channels) and assigns each to the channels of its group and length. Of
-/// several clocks, each holds for the channels that follow it.
+/// Removes the clocks (abscissa channels) and assigns each to the channels of its group and length. If
+/// there are several clocks, each applies to the channels that follow it.
 ///
 /// # Errors
 /// If it is ambiguous which channels belong to which clock.
@@ -91,7 +91,7 @@ pub fn assign(channels: &mut Vec<Channel>, options: &Options, findings: &mut Vec
             let by_step = kind == AxisKind::Time && step.is_some_and(|(_, step)| step != 1.0);
             by_step || clocks[*i].as_ref().is_some_and(|clock| clock.axis.kind == AxisKind::Time)
         });
-        // Among channels over time, a rising frequency is a measured run-up and no abscissa.
+        // Among channels over time, a rising frequency is a measured run-up, not an abscissa.
         for i in set.iter().filter(|_| timed) {
             clocks[*i].take_if(|clock| clock.axis.kind != AxisKind::Time);
         }
@@ -156,8 +156,8 @@ fn stated(object: &Object) -> (AxisKind, Option<(f64, f64)>, Option<Finding>) {
     (kind, object.number("wf_increment").map(|step| (start * factor, step * factor)), found)
 }
 
-/// The axis of a channel: its clock, with the stated step if both agree, since that has more digits.
-/// Without a clock, the axis that the properties state.
+/// The axis of a channel: its clock, with the stated step if both agree, since the stated step has more
+/// digits. Without a clock, the axis that the properties state.
 pub fn of(channel: &Channel, options: &Options, meta: &mut Meta) -> Axis {
     let (object, n) = (channel.object, channel.values.len());
     let (kind, step, found) = stated(object);
@@ -183,7 +183,7 @@ pub fn of(channel: &Channel, options: &Options, meta: &mut Meta) -> Axis {
         }
         _ => Abscissa::of(axis.clone()),
     };
-    // The findings of the file already contain that on an uneven clock.
+    // The findings of the file already contain the one on an uneven clock.
     if free && abscissa.even.is_none() { axis.clone() } else { abscissa.axis(n, options, meta) }
 }
 

@@ -56,7 +56,7 @@ pub struct Index {
 pub struct Words<'a> {
     pub rest: &'a [u8],
     pub big_endian: bool,
-    /// Byte of the file at which they begin.
+    /// Byte of the file at which the unread bytes begin.
     pub at: u64,
 }
 
@@ -75,7 +75,7 @@ impl<'a> Words<'a> {
         Ok(bytes)
     }
 
-    /// Bytes of a number, turned to little endian.
+    /// Bytes of a number, converted to little endian.
     fn word<const N: usize>(&mut self) -> Result<[u8; N]> {
         let mut word = [0; N];
         word.copy_from_slice(self.bytes(N)?);
@@ -143,7 +143,7 @@ impl<'a> Words<'a> {
 
     /// The layout of DAQmx data: scalers, then the widths of the buffers.
     fn shared(&mut self, digital: bool) -> Result<Index> {
-        // This word says only that these are raw data of DAQmx.
+        // This word states only that these are DAQmx raw data.
         self.u32()?;
         self.one_dimension()?;
         let rows = self.u64()?;

@@ -7,12 +7,12 @@ use std::sync::Arc;
 /// Raw data of a segment.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RawData {
-    /// Byte of the file at which they begin.
+    /// Byte of the file at which the raw data begin.
     pub at: u64,
-    /// Number of their bytes that the file holds.
+    /// Number of bytes of the raw data that the file holds.
     pub len: u64,
     pub big_endian: bool,
-    /// The parts of one chunk; chunks follow each other to the end.
+    /// The parts of one chunk; the raw data consist of such chunks.
     pub parts: Arc<[RowBlock]>,
 }
 
@@ -36,14 +36,14 @@ pub struct RowBlock {
     pub fields: Vec<Field>,
 }
 
-/// A number that each row of a part holds.
+/// A number in each row of a part.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Field {
-    /// Index of the object that it belongs to.
+    /// Index of the object that the number belongs to.
     pub object: usize,
-    /// Index of its column in that object: 1 for imaginary parts; each DAQmx scaler has its own.
+    /// Index of its column in that object: 1 for imaginary parts; each DAQmx scaler has its own column.
     pub slot: usize,
-    /// Byte of the row at which it begins.
+    /// Byte of the row at which the number begins.
     pub offset: usize,
     pub kind: NumberType,
 }

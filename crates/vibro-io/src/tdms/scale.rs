@@ -1,4 +1,4 @@
-//! Converts raw values to measured ones by the scales `NI_Scale[0]`, `NI_Scale[1]`, … of a channel. The
+//! Converts raw values to measured values with the scales `NI_Scale[0]`, `NI_Scale[1]`, … of a channel. The
 //! last scale gives the result.
 
 use super::description::Slot;
@@ -28,7 +28,7 @@ enum Conversion {
 }
 
 impl<'a> Scales<'a> {
-    /// The scales that hold for `channel`; `above` are the file and its groups, groups first.
+    /// The scales that apply to `channel`; `above` are the file and its groups, groups first.
     pub fn of(above: &[&'a Object], channel: &'a Object) -> Scales<'a> {
         // Older files do not state the number of scales: it follows from their highest index.
         let index = |key: &str| key.strip_prefix("NI_Scale[")?.split_once("]_Scale_Type")?.0.parse().ok();
@@ -39,15 +39,15 @@ impl<'a> Scales<'a> {
         };
         let holders = above.iter().copied().filter(|o| channel.path.starts_with(&o.path));
         let from = std::iter::once(channel).chain(holders).find(|o| count(o) > 0);
-        // Values stored as already scaled still list their scales: these are not applied again.
+        // Values stored already scaled still list their scales; these are not applied again.
         let from = from.filter(|from| from.text("NI_Scaling_Status") != Some("scaled"));
         from.map_or(Scales { from: channel, n: 0 }, |from| Scales { from, n: count(from) })
     }
 
-    /// The measured values of raw `columns`, one a slot.
+    /// The measured values of raw `columns`, one for each slot.
     ///
     /// # Errors
-    /// The type of a scale that is not known, or what is wrong with a scale.
+    /// The type of an unknown scale, or the fault in a scale.
     pub fn apply(&self, slots: &[Slot], mut columns: Vec<Vec<f64>>) -> Result<Values, String> {
         if let ([Slot::Real, Slot::Imaginary], 0) = (slots, self.n) {
             let (imaginary, real) = (columns.pop().unwrap_or_default(), columns.pop().unwrap_or_default());
@@ -56,8 +56,8 @@ impl<'a> Scales<'a> {
         if self.n == 0 {
             return Ok(Values::Real(columns.swap_remove(0)));
         }
-        // Collects the scales from the last down to the raw values, each once. Here numbers are one higher
-        // than in the file, so that 0 means the raw values.
+        // Collects the scales from the last one down to the raw values, each once. Numbers here are one
+        // higher than in the file, so that 0 means the raw values.
         let (mut wanted, mut chain) = (BTreeSet::from([self.n]), Vec::new());
         while let Some(number) = wanted.pop_last() {
             let (step, inputs) = self.step(number.wrapping_sub(1), slots)?;
@@ -99,7 +99,7 @@ impl<'a> Scales<'a> {
     fn step(&self, i: u32, slots: &[Slot]) -> Result<(Conversion, Vec<u32>), String> {
         let number = |key: &str| self.from.number(&format!("NI_Scale[{i}]_{key}"));
         let Some(kind) = self.from.text(&format!("NI_Scale[{i}]_Scale_Type")) else {
-            // No type: a DAQmx scaler, whose column the layout of the raw data gives.
+            // Without a type it is a DAQmx scaler, whose column the layout of the raw data gives.
             let column = slots.iter().position(|slot| *slot == Slot::Scaler(i)).unwrap_or(0);
             return Ok((Conversion::Raw(column), Vec::new()));
         };
@@ -131,14 +131,14 @@ impl<'a> Scales<'a> {
                 let sign = if kind == "Add" { 1.0 } else { -1.0 };
                 (Conversion::Sum(sign), vec![input("Right_Operand_"), input("Left_Operand_")])
             }
-            // This scale states only which software scales; it changes no values.
+            // This scale only states which software applies the scaling; it changes no values.
             "AdvancedAPI" => (Conversion::Polynomial(vec![0.0, 1.0]), vec![input("")]),
             other => return Err(other.to_owned()),
         })
     }
 }
 
-/// A value of a table: linear between its rows, constant beyond them.
+/// A value from a table: linear between its rows, constant beyond them.
 fn between(table: &[(f64, f64)], at: f64) -> f64 {
     let above = table.partition_point(|(x, _)| *x <= at);
     let (Some((x0, y0)), Some((x1, y1))) = (above.checked_sub(1).map(|i| table[i]), table.get(above)) else {

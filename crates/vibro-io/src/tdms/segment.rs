@@ -1,4 +1,4 @@
-//! Segments of a TDMS file: objects with their properties, and where their raw data lie.
+//! Segments of a TDMS file: objects with their properties, and the place of their raw data.
 
 use super::description::{Index, Slot, Value, Words, in_byte};
 use super::layout::{Field, RawData, RowBlock};
@@ -15,7 +15,7 @@ const NEW_LIST: u32 = 1 << 2;
 const RAW_DATA: u32 = 1 << 3;
 const INTERLEAVED: u32 = 1 << 5;
 const BIG_ENDIAN: u32 = 1 << 6;
-/// Stored length of a segment that was never finished: it reaches to the end of the file.
+/// Stored length of a segment that was not finished: it extends to the end of the file.
 const OPEN: u64 = u64::MAX;
 
 /// The file, a group or a channel.
@@ -28,7 +28,7 @@ pub struct Object {
     pub changes: Vec<(String, Value, u64)>,
     /// Number of values that the file declares.
     pub declared: u64,
-    /// Kind of its raw data, if these are no numbers.
+    /// Kind of its raw data, if these are not numbers.
     pub unreadable: Option<&'static str>,
     /// Meaning of each column of its raw values.
     pub slots: Vec<Slot>,
@@ -100,7 +100,7 @@ pub fn all(
     Ok((known.objects, layouts, findings))
 }
 
-/// Goes to a byte of the file without discarding the read-ahead buffer.
+/// Moves to a byte of the file without discarding the read-ahead buffer.
 pub fn go(file: &mut BufReader<impl Read + Seek>, to: u64) -> std::io::Result<()> {
     let at = file.stream_position()?;
     file.seek_relative(to.wrapping_sub(at) as i64)
@@ -113,11 +113,11 @@ struct SegmentState {
     by_path: HashMap<String, usize>,
     /// The last layout of each object.
     last: Vec<Option<Index>>,
-    /// The objects of the present segment in their order, each with the layout of its raw data, if any.
+    /// The objects of the current segment in their order, each with the layout of its raw data, if any.
     active: Vec<(usize, Option<Index>)>,
     /// Index of an object among the active ones.
     place: HashMap<usize, usize>,
-    /// Whether the values of the present objects are interleaved, and the parts of one chunk.
+    /// Whether the values of the current objects are interleaved, and the parts of one chunk.
     parts: Option<(bool, Arc<[RowBlock]>)>,
 }
 

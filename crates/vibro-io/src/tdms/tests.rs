@@ -4,7 +4,7 @@ use crate::tests::{has_finding, read_both_ways};
 use proptest::prelude::*;
 use vibro_record::{AxisKind, Record, Trace};
 
-/// Writes TDMS segments, in either order of bytes.
+/// Writes TDMS segments, in either byte order.
 #[derive(Default)]
 struct Writer {
     big: bool,
@@ -15,11 +15,11 @@ struct Writer {
 enum Raw {
     None,
     AsBefore,
-    /// Type and number of values.
+    /// Type code and number of values.
     Of(u32, u64),
-    /// Values of a buffer; type, buffer, byte and number of each scaler; widths of the buffers.
+    /// Number of values per buffer; type, buffer, byte and number of each scaler; widths of the buffers.
     Daqmx(u64, Vec<[u32; 4]>, Vec<u32>),
-    /// As `Daqmx`, with bits in place of bytes.
+    /// As `Daqmx`, with bits instead of bytes.
     Digital(u64, Vec<[u32; 4]>, Vec<u32>),
 }
 
@@ -207,7 +207,7 @@ fn interleaved_values_of_every_type() {
             raw.extend(writer.put(60_000u16.to_le_bytes()));
             raw.extend(writer.put(4_000_000_000u32.to_le_bytes()));
             raw.extend(writer.put((1u64 << 50).to_le_bytes()));
-            // Multiples of 2.25 s after the beginning of 1904.
+            // Multiples of 2.25 s after the start of 1904.
             raw.extend(
                 writer.put((((2i128 << 64) | (1i128 << 62)) * i128::from(k.unsigned_abs())).to_le_bytes()),
             );
@@ -239,7 +239,7 @@ fn interleaved_values_of_every_type() {
     }
 }
 
-/// Value of a property: a number, or a text as `Err`.
+/// Value of a property: a number (`Ok`) or a text (`Err`).
 type Said = std::result::Result<f64, &'static str>;
 
 /// Properties of scale `i`.
@@ -292,7 +292,7 @@ fn scales_one_behind_the_other() {
     }
     assert_eq!(scaled(1, &table, &[-3.0, 0.0, 5.0, 25.0, 99.0]).unwrap(), [4.0, 4.0, 3.0, 1.5, 1.0]);
     assert_eq!(scaled(1, &[of(0, "Thermocouple")], &[0.0]), Err("Thermocouple".into()));
-    // A scale that feeds itself.
+    // A scale whose input is itself.
     assert!(scaled(1, &linear(0, 1.0, 0.0, 0), &[0.0]).unwrap_err().contains("itself"));
     assert!(scaled(1, &[of(0, "Linear")], &[0.0]).unwrap_err().contains("without Linear_Slope"));
 }
@@ -300,7 +300,7 @@ fn scales_one_behind_the_other() {
 #[test]
 fn a_daqmx_buffer_with_its_scaler_and_its_scale() {
     let mut writer = Writer::new(false);
-    // Rows of two channels of 16 bits.
+    // Rows of two 16-bit channels.
     let raw: Vec<u8> =
         [[100i16, -7], [200, -8], [-300, 9]].iter().flatten().flat_map(|v| v.to_le_bytes()).collect();
     let scale = |slope| {
@@ -362,7 +362,7 @@ fn a_file_that_ends_early_says_how_much_is_missing() {
     let n: Vec<(usize, Option<usize>)> = cut.records.iter().map(|r| (r.len(), r.meta().declared_n)).collect();
     assert_eq!(n, [(2, None), (1, Some(2))]);
     assert!(has_finding(&cut.records[1].meta().findings, "fewer-values", &["declared=2", "n=1"]));
-    // A segment that was never closed goes to the end of the file.
+    // A segment that was not closed extends to the end of the file.
     let mut open = writer.bytes.clone();
     open[12..20].fill(0xff);
     assert_eq!(recording(&open).unwrap().records, recording(&writer.bytes).unwrap().records);
@@ -452,7 +452,7 @@ fn only_a_name_makes_an_abscissa() {
     let run_up =
         group(&[("speed", &unit("Hz"), &rising), ("tach", &unit("s"), &rising), ("a", &[], &[1.0; 4])]);
     assert!(steps(&run_up).iter().all(|(_, kind, _)| *kind == AxisKind::Index) && steps(&run_up).len() == 3);
-    // A frequency that rises over a stated or a stored time is a channel.
+    // A frequency that rises over a stated or stored time is a measured channel.
     let stated = group(&[("Frequency", &wave("Hz"), &rising), ("a", &wave("g"), &[1.0; 4])]);
     assert_eq!(
         steps(&stated).iter().filter(|(_, kind, dt)| *kind == AxisKind::Time && *dt == Some(0.1)).count(),
@@ -463,7 +463,7 @@ fn only_a_name_makes_an_abscissa() {
     assert_eq!(steps(&both).len(), 2);
     let lines = group(&[("Frequency", &unit("kHz"), &rising), ("A", &unit("g"), &[1.0; 4])]);
     assert_eq!(steps(&lines), [("A".into(), AxisKind::Frequency, Some(2000.0))]);
-    // A time that has the length of no other channel is kept as a channel.
+    // A time whose length no other channel has is kept as a channel.
     let short = group(&[("Time", &unit("s"), &rising), ("a", &unit("g"), &[1.0; 5])]);
     assert!(has_finding(
         &recording(&short).unwrap().findings,
@@ -555,7 +555,8 @@ fn what_changes_between_values() {
     let unit = |unit| [Prop::Text("unit_string", unit)];
     let said = two(&unit("V"), &unit("mV"), true).unwrap_err().to_string();
     assert!(said.contains("unit_string changes from V to mV behind value 2"), "{said}");
-    // A unit changed after all values holds for all of them, and so does one first stated after some of them.
+    // A unit that changes after all values applies to all of them, and so does a unit first stated after
+    // some of them.
     let late = |first: &str| two(&[Prop::Text("unit_string", first)], &unit("mV"), first.is_empty()).unwrap();
     assert_eq!(
         [late("V"), late("")].map(|found| found.records[0].extremes().largest().unwrap().1),
@@ -572,7 +573,7 @@ fn what_changes_between_values() {
 
 #[test]
 fn many_segments_scales_and_channels_cost_what_is_there() {
-    // 28 sums in a chain, each of the scale before with itself: 2²⁸ times the value.
+    // 28 sums in a chain, each adding the previous scale to itself: 2²⁸ times the value.
     let sum = |i: usize| {
         let side =
             |side: &str| (format!("NI_Scale[{i}]_Add_{side}_Operand_Input_Source"), Ok(i as f64 - 1.0));
@@ -605,7 +606,7 @@ fn complaints_name_the_file_and_the_scale() {
     assert!(recording(&bytes).unwrap_err().to_string().contains("x.tdms, byte"));
     let units = [Prop::Text("unit_string", ""), Prop::Text("NI_UnitDescription", "V")];
     assert_eq!(traces(&group(&[("a", &units, &[1.0])]))[0].meta.unit.symbol(), "V");
-    // A property of extended precision: type 0x0b and 16 bytes in place of type 10 and 8 bytes.
+    // A property of extended precision: type 0x0b and 16 bytes instead of type 10 and 8 bytes.
     let bytes = group(&[("a", &[Prop::F64("cal", 1.0)], &[5.0])]);
     let at = bytes.windows(3).position(|word| word == b"cal").unwrap() + 3;
     let mut extended = [&bytes[..at], &[0x0b, 0, 0, 0], &[0; 16], &bytes[at + 12..]].concat();

@@ -1,5 +1,5 @@
-//! Finds the abscissa among the columns of a text: by its name, or since it rises. Its unit is from its name,
-//! the head or its first value.
+//! Finds the abscissa among the columns of a text, by its name or because it rises. Its unit comes from its
+//! name, the header or its first value.
 
 use super::axis::{PrintedAbscissa, choose};
 use super::column::Column;
@@ -14,21 +14,22 @@ use vibro_record::code;
 use vibro_record::units::is_level;
 use vibro_record::{Axis, AxisKind, Error, Finding, Meta, Result, Values};
 
-/// The axis of all records of a text, with what its column and the head tell about it.
+/// The axis of all records of a text, and what its column and the header state about it.
 pub struct CommonAxis {
     pub axis: Axis,
-    /// Relative standard uncertainty of its step; 0 where no column is used.
+    /// Relative standard uncertainty of the step; 0 if no column is used.
     clock: f64,
-    /// Half a unit in the last digit of the printed values, in s or Hz; 0 where no column is used.
+    /// Half a unit in the last digit of the printed values, in s or Hz; 0 if no column is used.
     resolution: f64,
-    /// Time of its 0 in s since 1970, where the column counts from there; else 0.
+    /// Time of its 0 in s since 1970, if the column counts from then; else 0.
     origin: f64,
-    /// Number of values by the spectral lines that the head states, where there are others.
+    /// Number of values expected from the spectral lines that the header states, if it differs from the
+    /// number read.
     pub declared: Option<usize>,
 }
 
 impl CommonAxis {
-    /// Notes what is known about it in a record.
+    /// Stores clock, resolution, origin and declared number of values in a record's metadata.
     pub fn state(&self, meta: &mut Meta) {
         meta.declared_n = self.declared;
         if self.axis.kind == AxisKind::Time {
@@ -44,9 +45,9 @@ struct AxisScale {
     from: f64,
     /// Factor to s or Hz.
     factor: f64,
-    /// Time of the value `from` in s since 1970, where the column counts from there; else 0.
+    /// Time of the value `from` in s since 1970, if the column counts from then; else 0.
     origin: f64,
-    /// What was assumed for it.
+    /// Finding on an assumed unit, kind or origin.
     assumed: Option<Finding>,
 }
 
@@ -54,8 +55,8 @@ struct AxisScale {
 const LINES: [usize; 10] = [100, 200, 400, 800, 1600, 3200, 6400, 12800, 25600, 51200];
 
 impl RecordContext<'_> {
-    /// Whether the first column of a file without names only numbers its rows: the axis is the next column or
-    /// in the header.
+    /// Whether the first column of a file without names only counts its rows. The axis is then the next
+    /// column or from the header.
     pub fn numbered(&self, table: &[Column]) -> bool {
         let beside = || table.len() > 2 && table[1].rises();
         let headed = self.stated.rate.is_some() || self.stated.line_width.is_some();
@@ -63,8 +64,8 @@ impl RecordContext<'_> {
         !self.is_table && counts && table[0].counts() && (headed || beside())
     }
 
-    /// Whether `n` values without an axis are the lines of a spectrum: an analyser's number of them, and all
-    /// of one sign or levels in dB.
+    /// Whether `n` values without an axis are the lines of a spectrum: `n` is a number of lines that
+    /// analysers use, and all values are of one sign or are levels in dB.
     fn holds_lines(&self, table: &[Column], n: usize) -> bool {
         let is_level = |column: &Column| {
             column.name.unit.as_deref().or(self.stated.unit.as_deref()).is_some_and(is_level)
@@ -77,8 +78,8 @@ impl RecordContext<'_> {
         LINES.into_iter().any(|lines| n == lines || n == lines + 1) && table.iter().all(is_one_sided)
     }
 
-    /// Place of the abscissa in `table`. A clear name is enough. Any other column must rise, since one with a
-    /// unit of time may hold intervals.
+    /// Index of the abscissa in `table`. A clear name is enough. Any other column must rise, since a column
+    /// with a unit of time may hold intervals.
     pub fn abscissa(&self, table: &[Column]) -> Option<usize> {
         let by_name = |column: &Column| {
             !column.name.is_vague()
@@ -90,7 +91,8 @@ impl RecordContext<'_> {
             let is = |at: &usize| {
                 by_name(&table[*at]) || table[*at].rises() || self.dialect.clock_at() == Some(named)
             };
-            // Columns without any value were removed, so that places differ from those in the row.
+            // Columns without any value were removed, so an index differs from the column's number in the
+            // row.
             return table.iter().position(|column| column.at - 1 == named).filter(is);
         }
         let pair = self.options.complex && table.len() == 2 && !self.dialect.complex;
@@ -103,7 +105,7 @@ impl RecordContext<'_> {
         (table.len() > 1 && is).then_some(0)
     }
 
-    /// Chooses the axis of `n` values: stated, printed or from the head.
+    /// Chooses the axis of `n` values: from the options, the printed column or the header.
     pub fn common_axis(
         &self,
         printed: Option<PrintedAbscissa>,
@@ -125,7 +127,7 @@ impl RecordContext<'_> {
         Ok(CommonAxis { axis, clock, resolution, origin, declared })
     }
 
-    /// The axis from its `column`, in s or Hz where its kind is known, with its findings.
+    /// The axis from its `column`, in s or Hz if its kind is known, with the findings on it.
     pub fn printed(&self, column: Column, others: &[Column]) -> Result<PrintedAbscissa> {
         let name = &column.name.name;
         let label = if name.is_empty() { place(&column) } else { format!("column {name:?}") };
@@ -134,7 +136,7 @@ impl RecordContext<'_> {
         let own = self.resolution(&column, &values);
         let by_name = self.is_clock(&column) || column.name.axis(column.at == 1).is_some();
         self.one_clock(&kind, &column, (factor, own), others)?;
-        // Converted in place: memory may hold one column of times of a long record, not two.
+        // Converted in place, so that a long record needs memory for one column of times, not two.
         let mut values = match column.values {
             Held::Values(Values::Real(values)) => values,
             _ => values.into_owned(),
@@ -168,13 +170,13 @@ impl RecordContext<'_> {
         self.dialect.clock_at() == Some(column.at - 1)
     }
 
-    /// The scale of an abscissa by its name, the head or the options; of times also by their first value.
+    /// The scale of an abscissa by its name, the header or the options; of times also by their first value.
     fn scale(&self, column: &Column, values: &[f64]) -> Result<AxisScale> {
         let scale = self.stated_scale(column, values)?;
         Ok(if scale.kind == AxisKind::Time { self.counted_from(scale, column, values) } else { scale })
     }
 
-    /// The scale of an abscissa by its name, else by the head or the options.
+    /// The scale of an abscissa by its name, else by the header or the options.
     fn stated_scale(&self, column: &Column, values: &[f64]) -> Result<AxisScale> {
         let by_name =
             if self.is_clock(column) { Some(AxisKind::Time) } else { column.name.axis(column.at == 1) };
@@ -195,7 +197,7 @@ impl RecordContext<'_> {
         Ok(AxisScale { kind, from: 0.0, factor, origin: 0.0, assumed })
     }
 
-    /// The scale of times that count from 1970, or in days as spreadsheets do, which their first value shows.
+    /// The scale of times that count from 1970, or in days as in spreadsheets; the first value shows which.
     fn counted_from(&self, scale: AxisScale, column: &Column, values: &[f64]) -> AxisScale {
         if self.is_clock(column) {
             let minutes = || Finding::caution("axis-clock-minutes");
@@ -219,10 +221,11 @@ impl RecordContext<'_> {
         AxisScale { from: values[0], factor, origin: values[0] * factor, assumed: Some(found), ..scale }
     }
 
-    /// Half a unit in the last digit of the printed values, in their unit; at least their rounding.
+    /// Half a unit in the last digit of the printed values, in their unit; at least the rounding of the
+    /// floating-point format.
     fn resolution(&self, column: &Column, values: &[f64]) -> f64 {
-        // Some instruments print times of single precision with more digits than it has. Steps that are all
-        // finer than its last digit show double precision.
+        // Some instruments print times of single precision with more digits than they carry. Double
+        // precision is assumed only if all steps are finer than the rounding of single precision.
         let largest = values.iter().fold(0.0, |max: f64, x| max.max(x.abs()));
         let single = largest * f64::from(f32::EPSILON) / 2.0;
         let finer = values.windows(2).all(|w| (w[1] - w[0]).abs() < single);
@@ -234,11 +237,11 @@ impl RecordContext<'_> {
         tail::resolution(self.text, self.tail, self.dialect, column.at - 1)
     }
 
-    /// Unit of an unnamed time column (s, ms or µs) and its factor to s with which the mean step agrees with
-    /// the stated rate.
+    /// Unit (s, ms or µs) of a time column without a unit, with its factor to s: the one whose mean step
+    /// agrees with the stated rate.
     fn unit_by_rate(&self, values: &[f64]) -> Option<(&'static str, f64)> {
         let step = (values.last()? - values[0]) / values.len().saturating_sub(1).max(1) as f64;
-        // Steps of 1 from 0 or 1 number the values: no unit.
+        // Steps of 1 from 0 or 1 are a count of the values, without a unit.
         if step == 1.0 && matches!(values[0], 0.0 | 1.0) {
             return None;
         }
@@ -248,8 +251,8 @@ impl RecordContext<'_> {
         [("s", 1.0), ("ms", 1e-3), ("µs", 1e-6)].into_iter().find(agrees)
     }
 
-    /// Refuses a second column of the same kind as the abscissa with another span: which values belong to
-    /// which is unknown.
+    /// Refuses a second column of the same kind as the abscissa but with another span: it is unknown which
+    /// values belong to which.
     fn one_clock(
         &self,
         kind: &AxisKind,
@@ -279,7 +282,8 @@ impl RecordContext<'_> {
         Ok(())
     }
 
-    /// Whether a clock has two numbers and no date: hours and minutes, or minutes and seconds.
+    /// Whether a clock has two numbers and no date, such as 12:05: hours and minutes, or minutes and
+    /// seconds.
     fn minutes(&self) -> bool {
         let first = self.dialect.rows(&self.text.head).next().and_then(|line| self.dialect.cut(&line).ok());
         let cell = self.dialect.clock_at().and_then(|at| first.as_ref()?.get(at));
@@ -288,12 +292,13 @@ impl RecordContext<'_> {
         cell.map(colons).as_deref() == Some(":")
     }
 
-    /// Whether the header states that the abscissa is a frequency and gives no step of one series.
+    /// Whether the header states that the abscissa is a frequency and states no step of a series.
     fn over_hertz(&self) -> bool {
         self.stated.lines_apart && !self.stated.of_one_series
     }
 
-    /// Domain of `n` values, time or frequency, from the options or the header; `None` where neither tells.
+    /// Kind of the axis of `n` values, time or frequency, from the options or the header; `None` if neither
+    /// states it.
     fn domain(&self, n: usize) -> Option<AxisKind> {
         let (options, stated) = (self.options, &self.stated);
         if self.over_hertz() {
@@ -308,7 +313,7 @@ impl RecordContext<'_> {
     }
 }
 
-/// Names the place of a column without a name.
+/// Text that names a column without a name by its place.
 fn place(column: &Column) -> String {
     if column.at == 1 { "first column".to_owned() } else { format!("column {}", column.at) }
 }

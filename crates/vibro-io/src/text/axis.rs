@@ -1,4 +1,4 @@
-//! Chooses the abscissa of a text: from the options, from a column, or from the header.
+//! Chooses the abscissa of a text: from the options, from a printed column, or from the header.
 
 use super::header::{PerhapsRate, Stated};
 use crate::assemble::{NOMINAL, domain, short};
@@ -6,38 +6,38 @@ use crate::options::Options;
 use vibro_record::code;
 use vibro_record::{Axis, AxisKind, Clock, Error, Finding, Grid, Result, evened};
 
-/// Relative difference up to which a stated number and the column agree: nobody states a number to correct
-/// less.
+/// Largest relative difference at which a stated number and the column agree. Nobody states a number to
+/// correct a smaller difference.
 const SURE: f64 = 1e-6;
-/// Relative difference up to which a stated number is a rounded form of the column's, with fewer digits.
+/// Largest relative difference at which a stated number is the column's value rounded to fewer digits.
 const ROUNDED: f64 = 1e-4;
 
-/// An abscissa that the file holds as a column.
+/// An abscissa that the file prints as a column.
 pub struct PrintedAbscissa {
     pub axis: Axis,
-    /// Names the column, e.g. `column "t"`.
+    /// Text that names the column in messages, such as `column "t"`.
     pub label: String,
     /// Half a unit in the last digit of the printed values, in s or Hz.
     pub resolution: f64,
-    /// Whether it is only assumed to be time or frequency: neither its name nor the header states it.
+    /// Whether time or frequency is only assumed: neither the column's name nor the header states it.
     pub assumed: bool,
-    /// Time of its 0 in s since 1970, where the column counts from there; else 0.
+    /// Time of its 0 in s since 1970, if the column counts from then; else 0.
     pub origin: f64,
-    /// Relative standard uncertainty of its step, if it is even.
+    /// Relative standard uncertainty of the step, if the axis is even.
     pub clock: f64,
-    /// Findings on it, reported if it is used.
+    /// Findings on the column, reported if it is used.
     pub findings: Vec<Finding>,
 }
 
-/// Sampling rate or base band from the options.
+/// Sampling rate or base band stated in the options.
 struct Statement {
     /// `sampling rate` of values over time, `base band` of a spectrum.
     what: &'static str,
     setting: &'static str,
     hertz: f64,
-    /// The same quantity in Hz, as the header states it.
+    /// The same quantity in Hz as the header states it.
     header: Option<f64>,
-    /// The axis that follows from it.
+    /// The axis that follows from the stated number.
     axis: Axis,
 }
 
@@ -60,7 +60,7 @@ impl Statement {
         Some(Statement { what, setting, hertz, header, axis })
     }
 
-    /// Adds findings where it differs from the header.
+    /// Adds findings where the stated number differs from the header.
     fn against(&self, header: &Stated, findings: &mut Vec<Finding>) {
         let mut differ = |what: &str, file: Option<f64>, used: f64| {
             let found = Finding::caution("statement-overrides-file").name("what", what);
@@ -75,11 +75,11 @@ impl Statement {
     }
 }
 
-/// Chooses the axis of `n` values: from the options, else from the printed column, else from the header. The
-/// first value returned is the relative standard uncertainty of the step; 0 where no column is used.
+/// Chooses the axis of `n` values: from the options, else from the printed column, else from the header.
+/// Also returns the relative standard uncertainty of the step; 0 if no column is used.
 ///
 /// # Errors
-/// If the options contradict the printed column, or that runs backwards.
+/// If the options contradict the printed column, or if the column runs backwards.
 pub fn choose(
     printed: Option<PrintedAbscissa>,
     n: usize,
@@ -87,7 +87,7 @@ pub fn choose(
     options: &Options,
     findings: &mut Vec<Finding>,
 ) -> Result<(f64, Axis)> {
-    // Uneven times that are to be stretched or resampled are kept until then.
+    // Uneven times are kept if a stretch is to be cut out or the trace resampled later.
     let evened = options.stretch.is_some() || options.resample.is_some();
     let own = evened && printed.as_ref().is_some_and(|p| p.axis.step().is_none());
     let Some(statement) = Statement::of(options, header, printed.as_ref(), n).filter(|_| !own) else {
@@ -132,16 +132,16 @@ impl PrintedAbscissa {
         self.axis.at(self.axis.len().saturating_sub(1))
     }
 
-    /// Whether column and statement agree within the printed digits and a `relative` difference. Times may
-    /// begin anywhere; spectral lines that do not begin at 0 Hz must end at the base band.
+    /// Whether column and statement agree within the printed digits plus a `relative` difference. Times may
+    /// begin anywhere. Spectral lines that do not begin at 0 Hz must end at the base band.
     fn goes_with(&self, statement: &Statement, relative: f64) -> bool {
         let (axis, given) = (&self.axis, &statement.axis);
         if axis.is_empty() || axis.kind != given.kind {
             return false;
         }
         let close = |a: f64, b: f64, resolution: f64| (a - b).abs() <= resolution + relative * b.abs();
-        // Both ends are rounded. In uneven times a lost sample adds a whole step, an unsteady clock less than
-        // half of one.
+        // Both ends are rounded. In uneven times a lost sample adds a whole step, an unsteady clock less
+        // than half a step.
         let uneven = || self.batch().unwrap_or(0.5 * given.step().unwrap_or(0.0));
         let tolerance = axis.step().map_or_else(uneven, |_| 2.0 * self.resolution);
         let span = close(self.last() - axis.start(), given.at(axis.len() - 1), tolerance);
@@ -149,18 +149,18 @@ impl PrintedAbscissa {
         if given.kind == AxisKind::Time { span } else { ends() || (span && self.begins_at_zero()) }
     }
 
-    /// Time in s from one batch of samples to the next, where the samples of a batch share one time.
+    /// Time in s from one batch of samples to the next, if all samples of a batch have one time.
     fn batch(&self) -> Option<f64> {
         if let Grid::Uneven(instants) = &self.axis.grid { batch(instants) } else { None }
     }
 
-    /// Relative difference up to which a statement is a rounded form of this column; larger for a clock with
-    /// jitter.
+    /// Largest relative difference at which a statement is a rounded form of this column; larger for a
+    /// clock with jitter.
     fn rounded(&self) -> f64 {
         if self.findings.iter().any(|found| found.code == Clock::JITTERS) { NOMINAL } else { ROUNDED }
     }
 
-    /// Refuses a column that runs backwards: its values are in no order, whatever the rate.
+    /// Refuses a column that runs backwards: its values are then in no order at any rate.
     fn runs_forward(&self) -> Result<()> {
         let at = |i: usize| short(self.axis.at(i));
         let back = |i: &usize| self.axis.at(*i) < self.axis.at(i - 1) - 2.0 * self.resolution;
@@ -175,17 +175,18 @@ impl PrintedAbscissa {
         self.axis.start().abs() <= self.resolution + SURE * self.last().abs()
     }
 
-    /// Whether lines from 0 Hz on end one step below the base band, as those of a plain transform do.
+    /// Whether lines from 0 Hz end one step below the base band, as those of a discrete Fourier transform
+    /// do.
     fn stops_before(&self, base_band: f64) -> bool {
         let many = self.axis.len() > 1 && self.axis.kind == AxisKind::Frequency;
         self.axis.step().filter(|_| many).is_some_and(|step| {
-            // Less than half a step excludes lines that end at the base band itself.
+            // A tolerance below half a step excludes lines that end at the base band itself.
             let tolerance = (self.resolution * 2.0 + ROUNDED * base_band).min(0.5 * step);
             self.begins_at_zero() && (self.last() + step - base_band).abs() <= tolerance
         })
     }
 
-    /// Finding that the stated number is a rounded form of the column's, which is used.
+    /// Finding that the stated number is a rounded form of the column's value, which is used.
     fn refines(&self, Statement { what, hertz, axis, .. }: &Statement) -> Finding {
         let step = self.axis.step().unwrap_or(f64::NAN);
         let holds = match axis.kind {
@@ -225,7 +226,7 @@ impl PrintedAbscissa {
     }
 }
 
-/// Median step in s between different instants, where some are equal and none goes back.
+/// Median step in s between different instants, if some instants are equal and none runs backwards.
 fn batch(instants: &[f64]) -> Option<f64> {
     let steps: Vec<f64> = instants.windows(2).map(|w| w[1] - w[0]).collect();
     let batched = steps.contains(&0.0) && steps.iter().all(|step| *step >= 0.0);
@@ -233,7 +234,7 @@ fn batch(instants: &[f64]) -> Option<f64> {
     (batched && !apart.is_empty()).then(|| vibro_record::median(&apart))
 }
 
-/// The printed axis, with a finding where the header states another step.
+/// The printed axis, with a finding if the header states another step.
 fn trusted(printed: PrintedAbscissa, header: &Stated, findings: &mut Vec<Finding>) -> Axis {
     let PrintedAbscissa { axis, label, findings: mut said, .. } = printed;
     let header = match axis.kind {

@@ -1,31 +1,32 @@
-//! Cautions on the values of a text: scales that are not applied, repeated and held values, marks of missing
-//! values, zeros that fill a record up.
+//! Cautions on the values of a text: scale factors that are not applied, repeated rows, sample-and-hold,
+//! marks of missing values, zero padding.
 
 use super::column::Column;
 use super::header::Stated;
 use vibro_record::code;
 use vibro_record::{Axis, AxisKind, Finding};
 
-/// Magnitudes of the values by which programs mark missing ones.
+/// Magnitudes by which programs mark missing values.
 const MISSING_MARKS: [f64; 5] = [999.0, 9999.0, 99_999.0, 999_999.0, 9_999_999.0];
 
-/// Least ratio of such a mark to all other values: a measured value of all nines is near others.
+/// A missing-value mark is at least 10 times all other magnitudes; a measured 999 has neighbours of its
+/// size.
 const FAR: f64 = 10.0;
 
-/// Fewest zeros, and least part of all values, that fill a record up: a record may end at a few by chance.
+/// Zero padding: at least 32 zeros and 2 % of all values; fewer may end a record by chance.
 const FEWEST_ZEROS: usize = 32;
 const FILLING: f64 = 0.02;
 
-/// Largest part of zeros before the filling: a signal with coarse digits rests at 0 more often.
+/// Largest share of zeros before the padding; a coarsely quantised signal has more.
 const RARE: f64 = 0.01;
 
-/// Fewest values, each of which stands several times, that show that this is how they are stored.
+/// Fewest runs of equal values that show sample-and-hold.
 const FEWEST_RUNS: usize = 20;
 
-/// Smallest part of the rows that repeat the row before, for a sensor that is read faster than it measures.
+/// Smallest share of rows that repeat the row before, when a sensor is read faster than it measures.
 const REPEATS: f64 = 0.05;
 
-/// Cautions on the columns of values of a text with this head, over `axis`.
+/// Cautions on the value columns of a text over `axis`, whose header states `stated`.
 pub fn of(table: &[Column], axis: &Axis, stated: &Stated, is_table: bool) -> Vec<Finding> {
     let mut found = Vec::new();
     let signal = table.iter().any(Column::may_be_signal);
@@ -69,8 +70,9 @@ pub fn of(table: &[Column], axis: &Axis, stated: &Stated, is_table: bool) -> Vec
 }
 
 impl Column {
-    /// Number of rows for which each value is held, where nearly all are held as long: the sensor is slower
-    /// than the rows. Coarse digits are excluded: there, most steps are as small as the smallest.
+    /// Rows per measured value (sample-and-hold), where 95 % of the runs of equal values have the median
+    /// length (±1 above 2 rows). The sensor is slower than the rows. A coarsely quantised signal is
+    /// excluded: most of its steps equal the smallest one.
     fn held(&self) -> Option<usize> {
         let values = self.values.first_values();
         let runs: Vec<&[f64]> = values.chunk_by(|a, b| a == b).collect();
@@ -85,8 +87,8 @@ impl Column {
         (n > 1 && 20 * alike >= 19 * lengths.len() && 2 * large > steps.len()).then_some(n)
     }
 
-    /// The value by which missing values are marked, such as −9999, and how often it stands: one far beyond
-    /// all others.
+    /// The missing-value mark, such as −9999, and its count. It is at least [`FAR`] times all other
+    /// magnitudes and less than half of the values.
     fn missing_mark(&self) -> Option<(f64, usize)> {
         let values = self.reals();
         let is_mark = |v: &&f64| MISSING_MARKS.contains(&v.abs());
@@ -97,7 +99,7 @@ impl Column {
         (2 * n < values.len() && FAR * largest <= mark.abs()).then_some((mark, n))
     }
 
-    /// How many zeros at the end fill the column up: many in a row behind values that are hardly ever 0.
+    /// Number of zeros that pad the end of the column; hardly any value before them is 0.
     fn filled_with_zeros(&self) -> Option<usize> {
         let values = self.reals();
         let n = values.iter().rev().take_while(|v| **v == 0.0).count();
@@ -108,8 +110,9 @@ impl Column {
     }
 }
 
-/// Number of rows that repeat the row before in all columns, and number of all rows looked at. `None` unless
-/// they are single rows between rows that differ: a motion at rest or coarse digits repeat many in a row.
+/// Number of rows that equal the row before in all columns, and number of rows compared. `None` unless over
+/// 90 % of them are single, between rows that differ: a motion at rest or coarse quantisation repeats many
+/// rows in succession.
 fn repeats(table: &[Column]) -> Option<(usize, usize)> {
     let measured = table.iter().filter(|column| !column.rises());
     let columns: Vec<&[f64]> = measured.map(|column| column.values.first_values()).collect();

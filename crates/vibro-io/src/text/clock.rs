@@ -1,8 +1,8 @@
-//! Dates and times of day as an abscissa: seconds since the first row.
+//! Dates and times of day as an abscissa, in seconds since the first row.
 //!
 //! ```text
 //! 2020-01-24T12:00:00.001Z   2020/01/24 12:00:00   24.01.2020 12:00:00,001   1/24/2020 12:00:00.001 PM
-//! 12:00:00.001   12:00:00:001   00:01.5   0.5 sec   and date, time and milliseconds in cells side by side
+//! 12:00:00.001   12:00:00:001   00:01.5   0.5 sec   and date, time and milliseconds in adjacent cells
 //! ```
 
 use crate::assemble::DAY;
@@ -13,21 +13,21 @@ use std::ops::Range;
 const MONTHS: [&str; 12] =
     ["jan", "feb", "mar", "apr", "may", "jun", "jul", "aug", "sep", "oct", "nov", "dec"];
 
-/// One word of a clock: the parts of a date, a time of day in s, or AM (false) or PM (true).
+/// One word of a clock: the parts of a date, a time of day in s, or AM (`false`) or PM (`true`).
 enum ClockField<'a> {
     Date(Vec<&'a str>),
     Time(f64),
     Half(bool),
 }
 
-/// The cells side by side that hold date and time; `None` where none of them holds a time of day.
+/// The adjacent cells that hold date and time; `None` if none of them holds a time of day.
 pub fn columns(fields: &[(usize, Cow<str>)]) -> Option<Range<usize>> {
     let start = fields.iter().position(|(_, field)| is_clock(field))?;
     let end = start + fields[start..].iter().take_while(|(_, field)| is_clock(field)).count();
     parse(&joined(&fields[start..end])).map(|_| start..end)
 }
 
-/// Whether a text is a date, a time of day, or both, or a duration.
+/// Whether a text is a date, a time of day, both, or a duration.
 pub fn is_clock(text: &str) -> bool {
     if duration(text).is_some() {
         return true;
@@ -36,19 +36,19 @@ pub fn is_clock(text: &str) -> bool {
     unsigned.starts_with(|c: char| c.is_ascii_alphanumeric()) && words(text).all(|word| part(word).is_some())
 }
 
-/// Joins cells side by side with blanks.
+/// Joins adjacent cells with blanks.
 pub fn joined(fields: &[(usize, Cow<str>)]) -> String {
     fields.iter().map(|(_, field)| field.as_ref()).collect::<Vec<&str>>().join(" ")
 }
 
-/// The seconds of a clock as printed, `01.123`, so that their digits show the resolution.
+/// The seconds of a clock as printed, such as `01.123`, so that their digits show the resolution.
 pub fn printed_seconds(text: &str) -> String {
     if let Some(seconds) = text.strip_suffix(" sec") {
         return seconds.to_owned();
     }
     let mut words = words(text).skip_while(|word| !word.contains(':'));
     let time = words.next().unwrap_or_default().replace(',', ".");
-    // A zone has digits, too: 12:00:05.1+02:00.
+    // The time zone also has digits: 12:00:05.1+02:00.
     let zone = time.find(':').and_then(|at| Some(at + time[at..].find(['+', '-', '−'])?));
     let time = &time[..zone.unwrap_or(time.len())];
     let mut cells = time.split(':').skip(1 + usize::from(time.matches(':').count() > 1));
@@ -57,12 +57,12 @@ pub fn printed_seconds(text: &str) -> String {
     thousandths.map_or(seconds.clone(), |ms| format!("{seconds}.{}", ms.replace(['.', ','], "")))
 }
 
-/// Gives seconds since the first instant that it was given.
+/// Converts times to seconds since the first time it was given.
 #[derive(Debug, Default)]
 pub struct Stopwatch {
     first: Option<(f64, f64)>,
     last: f64,
-    /// Midnights that passed where no date shows them.
+    /// Midnights passed, in times without a date.
     days: f64,
 }
 
@@ -79,7 +79,7 @@ impl Stopwatch {
     }
 }
 
-/// Words of a clock without its time zone. ISO 8601 joins date and time by a `T`.
+/// Words of a clock without its time zone. ISO 8601 joins date and time with a `T`.
 fn words(text: &str) -> impl Iterator<Item = &str> {
     let iso =
         text.as_bytes().windows(3).any(|w| w[0].is_ascii_digit() && w[1] == b'T' && w[2].is_ascii_digit());
@@ -88,13 +88,13 @@ fn words(text: &str) -> impl Iterator<Item = &str> {
     words.enumerate().filter(|(at, word)| *at == 0 || !is_zone(word)).map(|(_, word)| word)
 }
 
-/// Whether a word behind a time is its zone: `+0100`, `-05:00`.
+/// Whether a word after a time is its time zone: `+0100`, `-05:00`.
 fn is_zone(word: &str) -> bool {
     let digits = word.strip_prefix(['+', '-']).map(|digits| digits.replace(':', ""));
     digits.is_some_and(|digits| digits.len() == 4 && digits.bytes().all(|b| b.is_ascii_digit()))
 }
 
-/// Number of the day, where there is a date, and seconds of that day.
+/// Number of the day, if there is a date, and seconds of that day.
 fn parse(text: &str) -> Option<(Option<f64>, f64)> {
     if let Some(seconds) = duration(text) {
         return Some((None, seconds));
@@ -139,10 +139,10 @@ fn number(text: &str) -> Option<f64> {
     number::either(text.as_bytes())
 }
 
-/// Reads `h:m`, `h:m:s`, `d.h:m:s`, `h:m:s:ms` and, where the last part has decimals, `m:s`, in s. A zone
-/// behind them is ignored: it is the same in a whole file.
+/// Seconds of `h:m`, `h:m:s`, `d.h:m:s`, `h:m:s:ms`, and of `m:s` if the last part has decimals. A time
+/// zone after them is ignored: it is the same in a whole file.
 fn seconds(word: &str) -> Option<f64> {
-    // A negative time lies before a trigger.
+    // A negative time is before a trigger.
     if let Some(before) = word.strip_prefix('-') {
         return seconds(before).map(|seconds| -seconds);
     }
@@ -158,7 +158,7 @@ fn seconds(word: &str) -> Option<f64> {
         return None;
     }
     let of = |h: f64, m: f64, s: f64| (m < 60.0 && s < 61.0).then_some((h * 60.0 + m) * 60.0 + s);
-    // Two last digits, `10:11:12:05`, may be hundredths or frames of a film.
+    // Two last digits, as in `10:11:12:05`, may be hundredths of a second or film frames.
     let thousandths = word.rsplit(':').next().is_some_and(|cell| cell.len() == 3);
     match *cells {
         [m, s] if word.contains(['.', ',']) => of(0.0, m, s),
@@ -169,8 +169,8 @@ fn seconds(word: &str) -> Option<f64> {
     }
 }
 
-/// Days since a fixed date. The order is year first where that has four digits, month first with AM or PM or
-/// where the second number is above 12, else day first.
+/// Days since a fixed date. The order is year first if the first number has four digits; month first with
+/// AM or PM, or if the second number is above 12; otherwise day first.
 fn day(cells: &[&str], american: bool) -> Option<f64> {
     let &[a, b, c] = cells else { return None };
     let whole = |cell: &str| cell.parse::<u16>().ok().map(f64::from);
@@ -184,7 +184,7 @@ fn day(cells: &[&str], american: bool) -> Option<f64> {
         _ => (whole(c)?, month(b)?, whole(a)?),
     };
     let year = if year < 100.0 { year + 2000.0 } else { year };
-    // Years are counted from March, so that the leap day is their last.
+    // Years are counted from March, so that the leap day is the last day of a year.
     let (year, months) = if month > 2.0 { (year, month - 3.0) } else { (year - 1.0, month + 9.0) };
     let leaps = (year / 4.0).floor() - (year / 100.0).floor() + (year / 400.0).floor();
     (1.0..=31.0).contains(&day).then_some(365.0 * year + leaps + ((153.0 * months + 2.0) / 5.0).floor() + day)

@@ -14,12 +14,12 @@ pub struct Column {
     pub at: usize,
     pub name: Name,
     pub values: Held,
-    /// First row and distance in rows of its values, where it has one only in some rows.
+    /// For a channel of a lower rate: first row with a value, and rows from one value to the next.
     pub sparse: Option<(usize, usize)>,
 }
 
 impl Column {
-    /// Its values, or the real parts of complex ones; empty where values were not kept.
+    /// The values, or the real parts of complex values; empty if values were not kept.
     pub fn reals(&self) -> Cow<'_, [f64]> {
         match &self.values {
             Held::Values(Values::Complex(values)) => values.iter().map(|v| v.re).collect(),
@@ -31,12 +31,13 @@ impl Column {
         !matches!(self.values, Held::Summary(_)) && rises(&self.reals())
     }
 
-    /// Whether it rises in even steps, as a clock or counter does, and has no unit of another quantity.
+    /// Whether the values rise in even steps, as a clock or counter does, and have no unit of another
+    /// quantity.
     pub fn rises_evenly(&self) -> bool {
         let unit = self.name.unit.as_deref();
         let other = unit.is_some_and(|unit| Unit::parse(unit).is_none_or(|unit| kind_of(&unit).is_none()));
         let values = Some(self.values.reals()).filter(|values| !other && values.len() > 10);
-        // Stops at the first step of another size, which long records have early.
+        // Stops at the first step of another size, which most measured records have early.
         let even = |(low, high): (f64, f64), step: f64| {
             let (low, high) = (low.min(step), high.max(step));
             (low > 0.0 && high <= 2.0 * low).then_some((low, high))
@@ -49,7 +50,7 @@ impl Column {
         })
     }
 
-    /// Whether it holds the same instants as `axis` with another start or unit: `elapsed (s)` beside
+    /// Whether the column holds the instants of `axis` with another start or unit: `elapsed (s)` beside
     /// milliseconds since 1970.
     pub fn is_clock_of(&self, axis: &Column) -> bool {
         let time = axis.name.axis(true) == Some(AxisKind::Time);
@@ -57,10 +58,10 @@ impl Column {
         let (own, other) = (self.reals(), axis.reals());
         let (Some(first), Some(last)) = (own.first(), own.last()) else { return false };
         let units = axis.name.seconds().map_or(vec![1.0, 1e-3, 1e-6, 1e-9], |unit| vec![unit]);
-        // Largest difference: 1 % of a step. Doubles of nanoseconds since 1970 are rounded to multiples of
-        // 256.
+        // Largest difference: 1 % of a step. It allows for the rounding of nanoseconds since 1970, which as
+        // doubles are multiples of 256.
         let most = 1e-2 * (last - first) / own.len() as f64;
-        // The same instants stay this close everywhere; another clock drifts away.
+        // The same instants stay this close throughout; another clock drifts away.
         let is_same = |unit: f64| {
             let off = |(v, t): (&f64, &f64)| ((v - first) - unit / own_unit * (t - other[0])).abs();
             own.iter().zip(other.iter()).all(|pair| off(pair) <= most)
@@ -76,8 +77,8 @@ impl Column {
             && values.iter().enumerate().all(|(i, v)| *v == first + i as f64)
     }
 
-    /// Two neighbours between which a counter of samples leaves some out: whole numbers that rise, in at
-    /// least 90 % of the rows by one.
+    /// Two neighbouring values of a sample counter between which samples are missing. A counter holds
+    /// rising whole numbers, in at least 90 % of the rows rising by one.
     pub fn leaves_out(&self) -> Option<[f64; 2]> {
         let values = self.reals();
         let steps = || values.windows(2).map(|pair| pair[1] - pair[0]);
@@ -88,8 +89,8 @@ impl Column {
         (10 * ones >= 9 * (values.len() - 1)).then(|| [values[first], values[first + 1]])
     }
 
-    /// First and another value of a column that numbers the channel or the sensor of each row: whole numbers
-    /// in a fixed cycle, or a few repeated ones in a column named so.
+    /// First and another value of a column that gives the channel or sensor number of each row: whole
+    /// numbers in a fixed cycle, or a few repeated ones in a column whose name says so.
     pub fn numbers_channels(&self) -> Option<[f64; 2]> {
         let values = self.values.first_values();
         let first = *values.first().filter(|_| self.sparse.is_none() && self.name.unit.is_none())?;
@@ -112,8 +113,8 @@ impl Column {
         (known.len() > 1 && (in_turns() || named())).then(|| [first, known[1]])
     }
 
-    /// Whether its unit is one of a signal (voltage, ratio), unknown or missing: such values may lack a scale
-    /// factor.
+    /// Whether the unit is missing, unknown or that of a signal (voltage, ratio): a scale factor may still
+    /// have to be applied to such values.
     pub fn may_be_signal(&self) -> bool {
         let unit = self.name.unit.as_deref().and_then(Unit::parse);
         unit.is_none_or(|unit| {
@@ -121,8 +122,8 @@ impl Column {
         })
     }
 
-    /// Makes the magnitude of a response function complex, where the column behind it is its phase; says
-    /// whether it is.
+    /// Makes the magnitude of a frequency response function complex if the next column, `behind`, is its
+    /// phase. Returns whether it is.
     pub fn take_phase(&mut self, behind: &Column) -> bool {
         let unit = self.name.unit.as_deref().and_then(Unit::parse);
         let functions = [Quantity::Receptance, Quantity::Mobility, Quantity::Accelerance];
@@ -148,7 +149,7 @@ impl Column {
     }
 }
 
-/// Most channels or sensors in one table with a column of their numbers, and last words of that column's
-/// name.
+/// Most channels or sensors in a table with a column of channel numbers (`TURNS`), and last words of that
+/// column's name (`NUMBERED`).
 const TURNS: usize = 64;
 const NUMBERED: [&str; 9] = ["channel", "chan", "ch", "sensor", "node", "device", "probe", "id", "kanal"];

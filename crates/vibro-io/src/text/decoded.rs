@@ -1,4 +1,4 @@
-//! Gives texts of any encoding as UTF-8 or Latin-1.
+//! Converts texts of any encoding to UTF-8 or Latin-1.
 
 use super::encoding;
 use crate::limit::Limit;
@@ -6,13 +6,13 @@ use crate::source::Source;
 use std::borrow::Cow;
 use vibro_record::{Place, Result};
 
-/// A text, with its first lines, before its rows are read.
+/// A text and its first lines, before its rows are read.
 pub struct Text<'a> {
     /// UTF-8 or Latin-1, with LF or CR LF.
     pub source: &'a Source,
-    /// Its first lines, without one that is cut off and without the end mark of DOS.
+    /// First whole lines, without the end mark of DOS (0x1A).
     pub head: Cow<'a, str>,
-    /// Its encoding, where that is not UTF-8.
+    /// Encoding of the file, if not UTF-8.
     pub encoding: Option<&'static str>,
 }
 
@@ -26,19 +26,19 @@ impl<'a> Text<'a> {
         Text { source, head: encoding::decode(&whole[..ends]), encoding }
     }
 
-    /// Whether the ending of the file is that of a table: then one column is enough, and names need not fit
-    /// the rows.
+    /// Whether the file name ends as that of a table. Then one column is enough, and the number of names
+    /// need not match the rows.
     pub fn called_csv(&self) -> bool {
         matches!(self.source.extension().as_str(), "csv" | "tsv") || self.source.is_sheet()
     }
 }
 
-/// Hands a source to `read`; UTF-16, other scripts and lone CRs are converted to UTF-8 with LF.
+/// Passes a source to `read`, after converting UTF-16, other scripts and lone CRs to UTF-8 with LF.
 pub fn with_text<T>(source: &Source, limit: Limit, read: impl FnOnce(&Text) -> Result<T>) -> Result<T> {
     let head = source.head();
     let cut = source.len() > head.len() as u64;
     if encoding::is_utf16(head) || encoding::foreign(head).is_some() || encoding::lone_cr(head, cut) {
-        // Memory for the bytes, and for twice their text.
+        // Memory for the bytes, and for text of twice their size.
         limit.hold(3.0 * source.len() as f64)?;
     }
     let converted = if encoding::is_utf16(head) {
@@ -55,12 +55,12 @@ pub fn with_text<T>(source: &Source, limit: Limit, read: impl FnOnce(&Text) -> R
     read(&Text::of(converted.as_ref().unwrap_or(source), encoding::name(head)))
 }
 
-/// The place of an error; the reader adds the file.
+/// Place of an error; the reader adds the file.
 pub fn in_line(line: u64) -> Place {
     Place { line: Some(line), ..Place::default() }
 }
 
-/// The first characters of a text, for messages.
+/// The first 40 characters of a text, for messages.
 pub fn shorten(text: &str) -> String {
     let short: String = text.chars().take(40).collect();
     if short.len() < text.len() { format!("{short}…") } else { short }

@@ -13,21 +13,21 @@ const ENOUGH: usize = 1000;
 /// How rows are cut and read, and what the lines above them hold.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Dialect {
-    /// CSV: the abscissa is the first column whose name says so. ASCII: it is the first column, by its name
-    /// or because it rises, and a blank line between rows of one column is a row without a value.
+    /// CSV: the abscissa is the first column whose name says so. ASCII: the abscissa is the first column,
+    /// if its name says so or it rises; a blank line between rows of one column is a row without a value.
     pub format: Format,
     pub separator: Separator,
     /// Decimal mark.
     pub decimal: u8,
     /// Whether the user stated the decimal mark.
     pub stated: bool,
-    /// Whether a cell holds `(re+imj)`, `re+imj`, `re - im i`, … in place of one real number.
+    /// Whether a cell holds a complex number, `(re+imj)`, `re+imj`, `re - im i`, … instead of a real one.
     pub complex: bool,
-    /// Columns of a row; date and time count as one.
+    /// Columns of a row; date and time count as one column.
     pub columns: usize,
-    /// Number of cells before these columns, which hold a preamble beside the first rows.
+    /// Number of cells before these columns; they hold a preamble to the left of the first rows.
     pub skipped: usize,
-    /// Cells of date and time, counted behind the skipped ones; together they are one column.
+    /// Cells of date and time, counted after the skipped ones; together they are one column.
     pub clock: Option<Range<usize>>,
     /// One name for each column, where the text has names.
     pub names: Option<Vec<Name>>,
@@ -42,7 +42,7 @@ pub struct Dialect {
 }
 
 impl Dialect {
-    /// Byte offset of the first row in `head`, behind a byte order mark.
+    /// Byte offset of the first row in `head`, after any byte order mark.
     pub(crate) fn first_byte(&self, head: &[u8]) -> usize {
         let mark = if head.starts_with(b"\xef\xbb\xbf") { 3 } else { 0 };
         line_start(head, self.first_line).unwrap_or(head.len()).max(mark)
@@ -67,7 +67,7 @@ impl Dialect {
         self.clock.as_ref().map(|cells| cells.start)
     }
 
-    /// The decimal mark, where the user stated it or a number in the first rows shows it: `1.000` does not.
+    /// The decimal mark, if the user stated it or a number in the first rows shows it: `1.000` does not.
     pub(crate) fn shown_mark(&self, head: &str) -> Option<u8> {
         let has =
             |cell: &str| cell.as_bytes().contains(&self.decimal) && !number::may_be_grouped(cell.as_bytes());
@@ -79,17 +79,17 @@ impl Dialect {
         (self.stated || rows.take(ENOUGH).any(shows)).then_some(self.decimal)
     }
 
-    /// The real number in a cell; `None` where there is none.
+    /// The real number in a cell; `None` if the cell is not a number.
     pub(crate) fn number(&self, cell: &[u8]) -> Option<f64> {
         let parse = if self.stated { number::parse_stated } else { number::parse_with };
         parse(cell, self.decimal)
     }
 
-    /// Fields of a row. A single complex number may have blanks in it. Blank fields behind the last column do
+    /// Fields of a row. A single complex number may contain blanks. Blank fields after the last column do
     /// not count.
     ///
     /// # Errors
-    /// The byte offset of text that follows a closing quote.
+    /// The byte offset of text after a closing quote.
     pub fn cut<'a>(&self, line: &Line<'a>) -> Result<Fields<'a>, usize> {
         if self.columns == 1 && self.complex {
             let text = line.text.trim();

@@ -4,11 +4,11 @@ use chardetng::{EncodingDetector, Iso2022JpDetection, Utf8Detection};
 use encoding_rs::Encoding;
 use std::borrow::Cow;
 
-/// Number of first bytes that tell text from binary data.
+/// Number of first bytes that distinguish text from binary data.
 pub const LOOK: usize = 2048;
 
-/// Whether the first bytes look like text: UTF-16, or no control characters but blanks, line ends and the end
-/// mark of DOS.
+/// Whether the first bytes look like text: UTF-16, or no control characters except blanks, line ends, form
+/// feeds and the end mark of DOS (0x1A).
 pub(crate) fn is_text(head: &[u8]) -> bool {
     let control = |b: &u8| *b < 0x20 && !b"\t\n\r\x0c\x1a".contains(b);
     !head[..head.len().min(LOOK)].iter().any(control) || is_utf16(head)
@@ -47,8 +47,8 @@ pub(crate) fn foreign(head: &[u8]) -> Option<&'static Encoding> {
     (![encoding_rs::UTF_8, encoding_rs::WINDOWS_1252].contains(&found)).then_some(found)
 }
 
-/// Whether any CR is followed by anything but LF or CR. The last byte of a head that was `cut` off is not
-/// judged.
+/// Whether any CR is followed by a byte other than LF or CR. The last byte of a head that was `cut` off is
+/// not examined.
 pub(crate) fn lone_cr(bytes: &[u8], cut: bool) -> bool {
     // Fast for most files, which have no CR at all.
     bytes.contains(&b'\r')
@@ -56,7 +56,7 @@ pub(crate) fn lone_cr(bytes: &[u8], cut: bool) -> bool {
             || (!cut && bytes.last() == Some(&b'\r')))
 }
 
-/// Replaces every CR by LF that no LF follows. Several CRs before LF stay one line end: text that was
+/// Replaces every CR by LF unless an LF follows. Several CRs before an LF stay one line end: text that was
 /// converted twice has them.
 pub(crate) fn with_lf(mut bytes: Vec<u8>) -> Vec<u8> {
     let mut before_lf = false;
@@ -70,10 +70,11 @@ pub(crate) fn with_lf(mut bytes: Vec<u8>) -> Vec<u8> {
     bytes
 }
 
-/// Decodes to text without a byte order mark: UTF-8 is borrowed, UTF-16 converted, all else taken as Latin-1.
+/// Decodes to text without a byte order mark: UTF-8 is borrowed, UTF-16 converted, all else read as
+/// Latin-1.
 ///
-/// Latin-1 gives every byte a character, so that nothing is lost and an error can show it. Half a pair of
-/// surrogates becomes U+FFFD.
+/// Latin-1 gives every byte a character, so nothing is lost and an error can quote it. An unpaired
+/// surrogate of UTF-16 becomes U+FFFD.
 pub(crate) fn decode(bytes: &[u8]) -> Cow<'_, str> {
     if is_utf16(bytes) {
         let unit = if bytes[0] == 0xff { u16::from_le_bytes } else { u16::from_be_bytes };
@@ -134,7 +135,7 @@ mod tests {
         for big in [false, true] {
             assert_eq!(decode(&utf16(&format!("\u{feff}{text}"), big)), text);
         }
-        // An odd last byte and half a surrogate pair do not stop the rest.
+        // An odd last byte and an unpaired surrogate do not prevent decoding of the rest.
         let mut cut = utf16("ab\u{1f600}", false);
         cut.truncate(cut.len() - 1);
         assert_eq!(decode(&[b"\xff\xfe", cut.as_slice()].concat()), "ab\u{fffd}");

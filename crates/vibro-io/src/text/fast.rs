@@ -1,7 +1,7 @@
 //! The fast path: rectangular rows of real numbers and nothing else, read in pieces by several threads.
 //!
-//! Anything unexpected (a comment, a missing value, a ragged row, a word) makes this path give up, and
-//! [`super::rows`] reads the file again, line by line, so that an error names line and column.
+//! On anything unexpected (a comment, a missing value, a row of another length, a word) this path gives up.
+//! [`super::rows`] then reads the file again, line by line, so that an error names line and column.
 
 use super::dialect::Dialect;
 use super::lines::Separator;
@@ -15,16 +15,16 @@ use std::slice::IterMut;
 use vibro_record::lanes::Extremes;
 use vibro_record::{Error, Result, Values};
 
-/// Bytes read at a time: small enough to stay in the second-level cache.
+/// Bytes read at a time; a block fits into the level-2 cache.
 const BLOCK: usize = 256 * 1024;
 
-/// Smallest piece of a file in bytes: smaller ones are not worth a thread.
+/// Smallest piece of a file in bytes that is given to a thread of its own.
 const SMALLEST_PIECE: u64 = 1024 * 1024;
 
-/// Number of first rows from which the shape is taken.
+/// Number of first rows from which the shape is detected.
 const ENOUGH: usize = 24;
 
-/// Layout of rows for the fast path: how they are cut, and where all have the same widths.
+/// Layout of rows for the fast path: how they are cut, and whether all have the same widths.
 #[derive(Debug, Clone, Copy)]
 pub struct RowShape {
     separator: Separator,
@@ -34,14 +34,15 @@ pub struct RowShape {
     pub columns: usize,
     /// Byte offset of the first row.
     first_byte: u64,
-    /// Parser and width in bytes of unsigned numbers, where the first rows print them all like `1.234e+05`.
+    /// Parser and width in bytes of unsigned numbers, if all numbers in the first rows are printed as
+    /// `1.234e+05`.
     exponential: Option<(Exponential, usize)>,
-    /// Length of a row in bytes, and offset of the end of its one number, where the first rows are all alike.
+    /// Length of a row in bytes and offset of the end of its only number, if the first rows are all alike.
     fixed: Option<(usize, usize)>,
 }
 
 impl RowShape {
-    /// The shape of rows of real numbers that begin in `head`; `None` for others.
+    /// The shape of rows of real numbers that begin in `head`; `None` for other rows.
     pub fn of(dialect: &Dialect, head: &[u8]) -> Option<RowShape> {
         if dialect.complex || dialect.skipped > 0 || dialect.separator == Separator::Char(dialect.decimal) {
             return None;
@@ -58,7 +59,7 @@ impl RowShape {
     }
 }
 
-/// Parser and width of exponential numbers, where all numbers in `rows` have the same width.
+/// Parser and width of exponential numbers, if all numbers in `rows` have the same width.
 fn exponential(rows: &[&[u8]], separator: Separator) -> Option<(Exponential, usize)> {
     let mark = if let Separator::Char(mark) = separator { mark } else { b' ' };
     let cells = rows.iter().flat_map(|row| row.split(|b| *b == mark || b.is_ascii_whitespace()));
@@ -72,8 +73,8 @@ fn exponential(rows: &[&[u8]], separator: Separator) -> Option<(Exponential, usi
     number::exponential_of(width?).map(|parse| (parse, width.unwrap_or_default()))
 }
 
-/// Reads all columns up to the byte `end`, behind which only blanks follow; `None` where rows are not clean.
-/// Of a column that is not `kept` and falls anywhere, only extremes and first values are held.
+/// Reads all columns up to the byte `end`, after which only blanks follow; `None` if a row is not clean.
+/// For a column that is not `kept` and falls anywhere, only extremes and first values are held.
 pub fn read(source: &Source, shape: &RowShape, end: u64, kept: &[bool]) -> Result<Option<Vec<Held>>> {
     match columns(source, shape, end, kept)? {
         None if shape.fixed.is_some() => columns(source, &RowShape { fixed: None, ..*shape }, end, kept),
@@ -83,8 +84,9 @@ pub fn read(source: &Source, shape: &RowShape, end: u64, kept: &[bool]) -> Resul
 
 /// As [`read`], with this shape only.
 ///
-/// The rows are counted first, so that every thread writes its values where they belong: reading the bytes
-/// twice costs less than joining vectors. Zeroed memory costs nothing before it is written to.
+/// The rows are counted first, so that every thread writes its values to their final place: reading the
+/// bytes twice takes less time than joining vectors. Zeroed memory is not allocated before it is written
+/// to.
 fn columns(source: &Source, shape: &RowShape, end: u64, kept: &[bool]) -> Result<Option<Vec<Held>>> {
     let from = shape.first_byte;
     let to = end.max(from);
@@ -95,8 +97,8 @@ fn columns(source: &Source, shape: &RowShape, end: u64, kept: &[bool]) -> Result
     let pieces: Vec<(u64, u64)> = bounds.windows(2).map(|w| (w[0], w[1])).collect();
     let counts: Vec<usize> = pieces.par_iter().map(|p| rows_in(source, shape, *p)).collect::<Result<_>>()?;
     let total = counts.iter().sum::<usize>();
-    // A value and its separator take at least two bytes. Blank lines must not claim memory for rows of many
-    // columns.
+    // A value and its separator take at least two bytes. Without this check, blank lines would reserve
+    // memory for rows of many columns.
     if total == 0 || total.saturating_mul(shape.columns) as u64 > (to - from) / 2 + 1 {
         return Ok(None);
     }
@@ -127,7 +129,7 @@ fn columns(source: &Source, shape: &RowShape, end: u64, kept: &[bool]) -> Result
     Ok(Some(held.collect()))
 }
 
-/// Reads all values of a piece; `None` where it is not clean.
+/// Reads all values of a piece; `None` if it is not clean.
 fn whole(
     source: &Source,
     shape: &RowShape,
@@ -158,12 +160,12 @@ fn surveyed(
     Ok(clean.filter(|()| all).map(|()| lanes.into_iter().map(|(_, lane)| lane).collect()))
 }
 
-/// Summary of the values of one column in one piece.
+/// Summary of the values of one column in one piece of the file.
 #[derive(Debug, Clone)]
 struct Lane {
-    /// Whether all its values are written.
+    /// Whether all its values are kept in memory.
     kept: bool,
-    /// Whether a value lies no higher than the one before it.
+    /// Whether any value is not above the value before it.
     falls: bool,
     first: f64,
     last: f64,
@@ -175,7 +177,7 @@ impl Lane {
         Lane { kept, falls: false, first: f64::NAN, last: f64::NEG_INFINITY, ends: Extremes::NONE }
     }
 
-    /// Takes the next values and writes them to their place in `values`; `None` where there are more than
+    /// Takes the next values and writes them to their place in `values`; `None` if there are more than the
     /// rows counted.
     fn take(&mut self, next: &[f64], values: &mut [f64]) -> Option<()> {
         let (Some(first), Some(last)) = (next.first(), next.last()) else { return Some(()) };
@@ -192,7 +194,7 @@ impl Lane {
         Some(())
     }
 
-    /// Joins the summaries of two pieces, the second behind the first.
+    /// Joins the summaries of two consecutive pieces.
     fn joined(mut before: Vec<Lane>, behind: Vec<Lane>) -> Vec<Lane> {
         for (lane, next) in before.iter_mut().zip(behind).filter(|(_, next)| next.ends.len() > 0) {
             lane.falls = lane.falls || next.falls || next.first <= lane.last;
@@ -203,9 +205,9 @@ impl Lane {
     }
 }
 
-/// Byte offset of the first row that starts at or behind `at`; `to` where there is none.
+/// Byte offset of the first row that starts at or after `at`; `to` if there is none.
 fn row_start(source: &Source, at: u64, to: u64) -> Result<u64> {
-    // The search begins one byte before `at`: the row before may end there.
+    // The search begins one byte before `at`, since the row before may end there.
     let mut start = to;
     let mut passed = 0;
     blocks(source, (at - 1, to), |block| {
@@ -217,7 +219,7 @@ fn row_start(source: &Source, at: u64, to: u64) -> Result<u64> {
     Ok(start)
 }
 
-/// Number of line ends. A `u8` counts those of 255 bytes without overflow, so that the compiler can vectorize
+/// Number of line ends. A `u8` counts those in 255 bytes without overflow, so the compiler can vectorise
 /// the loop.
 fn line_ends(bytes: &[u8]) -> usize {
     let ends = |c: &[u8]| usize::from(c.iter().map(|b| u8::from(*b == b'\n')).sum::<u8>());
@@ -238,8 +240,8 @@ fn rows_in(source: &Source, shape: &RowShape, (from, to): (u64, u64)) -> Result<
     Ok(count + usize::from(!whole))
 }
 
-/// Hands a range of bytes, which begins with a row, to `each` in blocks of whole rows. `None` once `each`
-/// gives `None` or a row is longer than a block.
+/// Passes a range of bytes, which begins with a row, to `each` in blocks of whole rows. `None` as soon as
+/// `each` returns `None` or a row is longer than a block.
 fn blocks(
     source: &Source,
     (from, to): (u64, u64),
@@ -262,16 +264,16 @@ fn blocks(
 pub struct Blocks {
     file: Take<Box<dyn ReadSeek>>,
     buffer: Vec<u8>,
-    /// Number of bytes in the buffer; `out` of them were handed out.
+    /// Number of bytes in the buffer; `out` of them were returned by the last call.
     filled: usize,
     out: usize,
 }
 
 impl Blocks {
-    /// Opens the rows of `shape`, up to the byte `end`.
+    /// Opens the rows of `shape` up to the byte `end`.
     ///
     /// # Errors
-    /// If it cannot be opened.
+    /// If the file cannot be opened.
     pub fn of(source: &Source, shape: &RowShape, end: u64) -> Result<Blocks> {
         Blocks::open(source, (shape.first_byte, end.max(shape.first_byte)))
     }
@@ -283,10 +285,10 @@ impl Blocks {
         Ok(Blocks { file: file.take(to - from), buffer, filled: 0, out: 0 })
     }
 
-    /// The next block of rows, empty at the end; `None` where a row is longer than a block.
+    /// The next block of rows, empty at the end; `None` if a row is longer than a block.
     ///
     /// # Errors
-    /// If they cannot be read.
+    /// If the file cannot be read.
     pub fn next(&mut self) -> io::Result<Option<&[u8]>> {
         self.buffer.copy_within(self.out..self.filled, 0);
         self.filled -= std::mem::take(&mut self.out);
@@ -303,8 +305,8 @@ impl Blocks {
     }
 }
 
-/// Parses whole rows into the columns of `block`, which grow as needed, and gives the number of rows; `None`
-/// where one is not clean.
+/// Parses whole rows into the columns of `block`, which grow as needed, and returns the number of rows;
+/// `None` if a row is not clean.
 pub fn parsed(bytes: &[u8], shape: &RowShape, block: &mut [Vec<f64>]) -> Option<usize> {
     let most = line_ends(bytes) + 1;
     for column in block.iter_mut().filter(|column| column.len() < most) {
@@ -316,7 +318,7 @@ pub fn parsed(bytes: &[u8], shape: &RowShape, block: &mut [Vec<f64>]) -> Option<
     Some(block.first()?.len() - left)
 }
 
-/// Parses whole rows; `None` where one is not clean or there are more rows than counted.
+/// Parses whole rows; `None` if a row is not clean or there are more rows than counted.
 fn rows(block: &[u8], shape: &RowShape, columns: &mut [IterMut<f64>]) -> Option<()> {
     let mut at = 0;
     while at < block.len() {
@@ -333,7 +335,8 @@ fn rows(block: &[u8], shape: &RowShape, columns: &mut [IterMut<f64>]) -> Option<
     Some(())
 }
 
-/// Value of a row of fixed layout: blanks, a sign or blank, the number at `from..to`, blanks or CR, LF.
+/// Value of a row of fixed layout: blanks, a sign or blank, the number at bytes `from..to`, blanks or CR,
+/// LF.
 #[inline]
 fn fixed(row: &[u8], (from, to): (usize, usize), parse: Exponential) -> Option<f64> {
     let magnitude = parse(&row[from..to])?;
@@ -359,7 +362,7 @@ fn value(bytes: &[u8], shape: &RowShape) -> Option<(f64, usize)> {
     if let Some((parse, width)) = shape.exponential {
         let first = *bytes.first()?;
         let sign = usize::from(matches!(first, b'-' | b'+'));
-        // A digit behind it shows a longer number than the others.
+        // A further digit shows a number longer than the others.
         let ended = bytes.get(sign + width).is_none_or(|b| !b.is_ascii_digit());
         if let Some(magnitude) = bytes.get(sign..sign + width).filter(|_| ended).and_then(parse) {
             return Some((if first == b'-' { -magnitude } else { magnitude }, sign + width));
@@ -368,7 +371,7 @@ fn value(bytes: &[u8], shape: &RowShape) -> Option<(f64, usize)> {
     number::prefix(bytes, shape.decimal)
 }
 
-/// Parses one row and gives its length in bytes, line end included; `None` where it is not clean.
+/// Parses one row and returns its length in bytes, including the line end; `None` if the row is not clean.
 #[inline]
 fn row(bytes: &[u8], shape: &RowShape, columns: &mut [IterMut<f64>]) -> Option<usize> {
     let blank = |at: &mut usize| {
@@ -376,13 +379,14 @@ fn row(bytes: &[u8], shape: &RowShape, columns: &mut [IterMut<f64>]) -> Option<u
             *at += 1;
         }
     };
-    // CR ends a line only before LF. Elsewhere it is a line end of its own, which the careful path handles.
+    // CR ends a line only before LF. Elsewhere CR is a line end of its own, which the careful path reads.
     let line_end = |at: usize| match bytes.get(at) {
         None | Some(b'\n') => Some(at + 1),
         Some(b'\r') if bytes.get(at + 1) == Some(&b'\n') => Some(at + 2),
         Some(_) => None,
     };
-    // Signs make the number of leading blanks random: up to two are skipped without a branch.
+    // With signs, the number of leading blanks varies from row to row: up to two are skipped without a
+    // branch.
     let mut at = usize::from(bytes.first() == Some(&b' '));
     at += usize::from(bytes.get(at) == Some(&b' '));
     blank(&mut at);
@@ -401,7 +405,7 @@ fn row(bytes: &[u8], shape: &RowShape, columns: &mut [IterMut<f64>]) -> Option<u
         let (value, used) = value(&bytes[at..], shape)?;
         *values.next()? = value;
         at += used;
-        // Two numbers must not touch.
+        // Two numbers must not touch each other.
         let before = at;
         blank(&mut at);
         let touching = before == at

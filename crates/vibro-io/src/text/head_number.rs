@@ -1,13 +1,13 @@
-//! Reads numbers with units from header lines. A mark that may be decimal or group digits (`51,200`) is
-//! read as in the rows.
+//! Reads numbers with units from header lines. A mark that may be a decimal mark or a thousands separator
+//! (`51,200`) has the meaning that it has in the rows.
 
 use crate::number;
 use crate::options::POSSIBLE;
 
-/// Stands for `mHz`, which in lower case would be the same as megahertz.
+/// Replaces `mHz`, which in lower case would be the same as megahertz.
 pub const MILLIHERTZ: &str = "millihertz";
 
-/// Units of a frequency or a rate in lower case, with factors to Hz; no unit counts as Hz.
+/// Units of a frequency or a rate in lower case, with factors to Hz; without a unit, Hz.
 pub const HERTZ: [(&str, f64); 9] = [
     (MILLIHERTZ, 1e-3),
     ("mhz", 1e6),
@@ -20,12 +20,12 @@ pub const HERTZ: [(&str, f64); 9] = [
     ("", 1.0),
 ];
 
-/// Units of a time in lower case, with factors to s; no unit counts as s.
+/// Units of a time in lower case, with factors to s; without a unit, s.
 pub const SECONDS: [(&str, f64); 7] =
     [("ns", 1e-9), ("us", 1e-6), ("µs", 1e-6), ("ms", 1e-3), ("s", 1.0), ("sec", 1.0), ("", 1.0)];
 
-/// A number times the factor of its unit, which stands behind it or in the key. `None` if the unit is not
-/// one of `units` or the value lies outside [`POSSIBLE`].
+/// A number times the factor of its unit, which follows the number or is in the key. `None` if the unit is
+/// not one of `units` or the value is outside [`POSSIBLE`].
 pub fn quantity(value: &str, unit_in_key: &str, units: &[(&str, f64)], mark: Option<u8>) -> Option<f64> {
     scaled(value, unit_in_key, units, mark).and_then(checked)
 }
@@ -35,23 +35,23 @@ pub fn is_bare(value: &str, unit_in_key: &str) -> bool {
     unit_in_key.is_empty() && value.ends_with(|c: char| c.is_ascii_digit())
 }
 
-/// A frequency or a rate in Hz, where a doubtful mark is that of the rows or harmless.
+/// A frequency or a rate in Hz; `None` if its mark is ambiguous.
 pub fn hertz(value: &str, unit_in_key: &str, mark: Option<u8>) -> Option<f64> {
-    // Digits of kHz are not grouped, so their mark must be the one of the rows. In Hz, a comma above decimal
-    // commas is in doubt: heads in English group digits with it.
+    // Digits of kHz are not grouped, so their mark must be the decimal mark of the rows. In Hz, a comma
+    // above rows with decimal commas is ambiguous, since English headers separate thousands with it.
     let said = format!("{value} {unit_in_key}").to_lowercase();
     let kilohertz = ["khz", "mhz", "ks/s"].iter().any(|unit| said.contains(unit));
     let told = |own: u8| if kilohertz { mark == Some(own) } else { own == b'.' || mark != Some(own) };
     hertz_with(value, unit_in_key, mark).filter(|_| doubtful_mark(value).is_none_or(told))
 }
 
-/// A frequency or a rate in Hz, with the `mark` where it is doubtful.
+/// A frequency or a rate in Hz; an ambiguous mark is decimal if it equals `mark`.
 pub fn hertz_with(value: &str, unit_in_key: &str, mark: Option<u8>) -> Option<f64> {
     let value = value.replace("mHz", MILLIHERTZ);
     quantity(&samples_a_second(&value), &samples_a_second(unit_in_key), &HERTZ, mark)
 }
 
-/// The rate in Hz of a step in s.
+/// The rate in Hz that follows from a step in s.
 pub fn step_rate(value: &str, unit_in_key: &str, mark: Option<u8>) -> Option<f64> {
     quantity(value, unit_in_key, &SECONDS, mark).and_then(|dt| checked(1.0 / dt))
 }
@@ -61,8 +61,8 @@ fn printed(value: &str) -> &str {
     value.split(|c: char| !c.is_ascii_digit() && !"+-.,".contains(c)).next().unwrap_or_default()
 }
 
-/// The mark of the number at the start of a text that may be decimal or group digits, as in `51,200`;
-/// `None` if the number itself shows which.
+/// The mark of the number at the start of a text, if it may be a decimal mark or a thousands separator, as
+/// in `51,200`; `None` if the number itself shows which.
 pub fn doubtful_mark(value: &str) -> Option<u8> {
     let printed = printed(value.trim()).as_bytes();
     let mut marks = printed.iter().filter(|b| matches!(b, b'.' | b','));
@@ -75,8 +75,8 @@ pub fn other_mark(mark: u8) -> u8 {
     if mark == b',' { b'.' } else { b',' }
 }
 
-/// The decimal mark of a printed number: its last mark; the other mark if the last two are equal, since
-/// those group digits.
+/// The decimal mark of a printed number: its last mark, or the other mark if the last two marks are equal,
+/// since those separate thousands.
 fn decimal_mark(printed: &str) -> u8 {
     let mut marks = printed.bytes().rev().filter(|b| matches!(b, b'.' | b','));
     let last = marks.next().unwrap_or(b'.');
@@ -97,8 +97,8 @@ pub fn without_blanks(value: &str) -> String {
     whole
 }
 
-/// As [`quantity`], but of any sign and size. A mark that may be decimal or group digits is decimal if it
-/// is the decimal `mark` of the rows; if that is unknown, the result is `None`.
+/// As [`quantity`], but of any sign and size. An ambiguous mark is decimal if it is the decimal `mark` of
+/// the rows; if that is unknown, the result is `None`.
 pub fn scaled(value: &str, unit_in_key: &str, units: &[(&str, f64)], mark: Option<u8>) -> Option<f64> {
     let value = value.trim();
     let printed = printed(value);
@@ -118,7 +118,7 @@ pub fn scaled(value: &str, unit_in_key: &str, units: &[(&str, f64)], mark: Optio
     Some(number * factor)
 }
 
-/// The value, if it lies within [`POSSIBLE`].
+/// The value, if it is in [`POSSIBLE`].
 pub fn checked(value: f64) -> Option<f64> {
     POSSIBLE.contains(&value).then_some(value)
 }

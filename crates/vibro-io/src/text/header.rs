@@ -8,10 +8,10 @@ use super::names::Name;
 use super::stated_scale::StatedScale;
 use vibro_record::Window;
 
-/// Statements of a header that are understood; the rest stays as notes.
+/// Statements of a header that are understood; all lines stay as notes.
 ///
-/// Every number here but `start` is positive, and so far from the limits of a double that its inverse and
-/// quotients are finite, too.
+/// Every number here except `start` is positive, and far enough from the limits of a double that its
+/// inverse and quotients are finite.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Stated {
     /// Number of spectral lines, not counting 0 Hz.
@@ -20,33 +20,33 @@ pub struct Stated {
     pub base_band: Option<f64>,
     /// Sampling rate in Hz.
     pub rate: Option<f64>,
-    /// Another sampling rate in Hz that the head states as well.
+    /// A second sampling rate in Hz that the header states.
     pub other_rate: Option<f64>,
-    /// Sampling rate that is not used: its mark may be the decimal one or group digits.
+    /// Rate not used because `1.000` or `1,000` is ambiguous: decimal mark or thousands separator.
     pub perhaps_rate: Option<PerhapsRate>,
-    /// Header line that says that fewer values were kept than were sampled, as written.
+    /// Header line, as written, which says that fewer values were kept than were sampled.
     pub decimation: Option<String>,
-    /// The decimal mark of the rows, where they show it.
+    /// Decimal mark of the rows, if they show it.
     pub mark: Option<u8>,
     /// Number of values that the header states.
     pub values: Option<usize>,
-    /// Whether a step of the abscissa is stated, as files of one series do.
+    /// True if a step is stated: the file may hold one evenly sampled series.
     pub of_one_series: bool,
-    /// The stated step; in s, or in Hz where the abscissa is a frequency.
+    /// The stated step in s, or in Hz if the abscissa is a frequency.
     step: Option<f64>,
-    /// Key of a step that has no unit and is taken to be in s.
+    /// Key of a step that has no unit and is assumed to be in s.
     pub assumed: Option<String>,
     /// Whether the header states that the abscissa is a frequency.
     pub lines_apart: bool,
-    /// First instant in s.
+    /// Time of the first sample in s.
     pub start: Option<f64>,
     /// Whether the header states that values are complex.
     pub complex: bool,
     /// Spacing of spectral lines in Hz.
     pub line_width: Option<f64>,
-    /// Unit as written.
+    /// Unit of the values, as written.
     pub unit: Option<String>,
-    /// Scale factors of the values, where they are not 1.
+    /// Scale factors of the values other than 1.
     pub scales: Vec<StatedScale>,
     /// Window of the spectrum.
     pub window: Option<Window>,
@@ -56,14 +56,14 @@ pub struct Stated {
     pub notes: Vec<(String, String)>,
 }
 
-/// A sampling rate with a mark before its last three digits: `1.000 Hz` may be 1 Hz or 1000 Hz.
+/// A sampling rate with a mark before its last three digits, such as `1.000 Hz`: 1 Hz or 1000 Hz.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PerhapsRate {
     /// As written.
     pub said: String,
-    /// Rate in Hz if the mark is the decimal one.
+    /// Rate in Hz if the mark is a decimal mark.
     pub decimal: f64,
-    /// Rate in Hz if the mark groups digits.
+    /// Rate in Hz if the mark separates thousands.
     pub grouped: f64,
 }
 
@@ -76,23 +76,23 @@ const RATE: &str = "sampling rate|sample rate|sampling frequency|sample frequenc
 const STEP: &str = "dt|delta t|sampling interval|sample interval|sampling period|time step|delta time|increment|clock|\
                     interval|time interval|tinc|sample period|scan interval|logging interval|abtastzeit|messintervall|x increment|xinc|x axis delta|hresolution|horizontal interval|delta|dx|sampling cycle|\
                     x delta|xdelta|abtastintervall|サンプリング周期";
-/// Keys of the quantity or the unit of the abscissa.
+/// Keys of the quantity or unit of the abscissa.
 const AXIS: &str = "x-axis|x axis|x-axis unit|x axis unit|xunit|xunits|x unit|hunit|horizontal units";
 
-/// Largest relative difference of two stated rates that rounding explains: a step of two digits, 1.0, is
-/// rounded by up to 5 %.
+/// Largest relative difference of two stated rates that rounding explains: a step of two digits, such as
+/// 1.0, is rounded by up to 5 %.
 const ROUNDED_RATE: f64 = 0.05;
 
-/// Most spectral lines that a header may state: far more than any analyser has.
+/// Largest number of spectral lines accepted from a header; any analyser has far fewer.
 const MOST_LINES: f64 = 1e9;
 
 impl Stated {
-    /// Reads header lines above rows with the decimal `mark`, where that is known.
+    /// Reads the header lines above rows with the decimal `mark`, if it is known.
     pub fn of<'a>(lines: impl Iterator<Item = &'a str>, mark: Option<u8>) -> Stated {
         let mut stated = Stated { mark, ..Stated::default() };
         for line in lines {
-            // `NPTS= 6000, DT= .01 SEC` are two statements; the comma in `fs=1,6 kHz; N=4096` is no mark
-            // between statements, since no key begins with a digit.
+            // `NPTS= 6000, DT= .01 SEC` are two statements. In `fs=1,6 kHz; N=4096` the comma does not
+            // separate statements, since no key begins with a digit.
             let between = [(';', ['=', ':']), ('|', ['=', ':']), (',', ['=', '=']), ('\t', ['=', ':'])];
             let several = |(mark, ends): &(char, [char; 2])| {
                 let has_key = |part: &str| {
@@ -130,7 +130,7 @@ impl Stated {
         stated
     }
 
-    /// Takes the value of a sampling rate, in Hz or as a step in s.
+    /// Takes the value of a sampling rate: in Hz, or a time step with its unit.
     fn take_rate(&mut self, value: &str, unit_in_key: &str) {
         let (mark, before) = (self.mark, self.rate);
         let step = || step_rate(value, unit_in_key, mark).filter(|_| !is_bare(value, unit_in_key));
@@ -147,43 +147,44 @@ impl Stated {
         self.perhaps_rate = self.perhaps_rate.take().or_else(|| perhaps(value, &with));
         self.of_one_series |= rate.is_some();
         self.step = rate.map(|rate| 1.0 / rate).or(self.step);
-        // A step of many seconds is more likely one in ms or µs.
+        // A step above 1 s without a unit is more likely in ms or µs.
         let unlikely = is_bare(value, unit_in_key) && rate.is_some_and(|rate| rate < 1.0);
         self.assumed = self.assumed.take().or(unlikely.then(|| key.to_owned()));
         self.rate = self.rate.or(rate);
         self.keeps_other(rate);
     }
 
-    /// Remembers a `rate` that differs from the used one by more than rounding explains.
+    /// Keeps a `rate` that differs from the used one by more than rounding explains.
     fn keeps_other(&mut self, rate: Option<f64>) {
         let differs = |rate: &f64| self.rate.is_some_and(|used| (rate / used - 1.0).abs() > ROUNDED_RATE);
         self.other_rate = rate.filter(differs).or(self.other_rate);
     }
 
-    /// Whether `n` values are all lines of the base band and 0 Hz. They are then a spectrum even beside a
-    /// sampling rate, since analysers print that, too.
+    /// Whether `n` values are the lines of the base band plus the one at 0 Hz. They are then a spectrum
+    /// even if a sampling rate is stated, since analysers print it in spectra, too.
     pub(crate) fn all_lines(&self, n: usize) -> bool {
         self.base_band.is_some() && self.lines.is_some_and(|lines| lines as usize + 1 == n)
     }
 
-    /// Whether a sampling rate is stated, also one with a doubtful mark.
+    /// Whether a sampling rate is stated, including one with an ambiguous mark.
     pub fn states_rate(&self) -> bool {
         self.rate.is_some() || self.perhaps_rate.is_some()
     }
 
-    /// Spacing of `n` spectral lines in Hz from the header.
+    /// Spacing in Hz of `n` spectral lines, from the header.
     pub fn spacing(&self, n: usize) -> Option<f64> {
         let band = self.base_band.map(|band| band / self.lines_of(n));
         if self.all_lines(n) { band } else { self.line_width.or(band) }
     }
 
-    /// Number of spectral lines without 0 Hz, from the header, else one less than the `n` values.
+    /// Number of spectral lines without 0 Hz: from the header, else `n` − 1.
     pub(crate) fn lines_of(&self, n: usize) -> f64 {
         self.lines.unwrap_or_else(|| n.saturating_sub(1).max(1) as f64)
     }
 }
 
-/// Splits `key: value` or `key = value`. The key is empty for other lines; a time of day is no key.
+/// Splits `key: value` or `key = value`. The key is empty for other lines. The hour of a time of day is not
+/// a key.
 pub fn split(line: &str) -> (&str, &str) {
     let at = line.find([':', '=']).filter(|at| {
         let key = line[..*at].trim();
@@ -197,8 +198,8 @@ pub fn split(line: &str) -> (&str, &str) {
     at.map_or(("", line.trim()), |at| (line[..at].trim(), line[at + 1..].trim()))
 }
 
-/// Splits `Sampling Freq(Hz) 100Hz` and `Sample rate 1200 Hz`: a value that begins with a digit, behind a key
-/// that ends with a bracket or is that of a rate. Else the key is empty.
+/// Splits `Sampling Freq(Hz) 100Hz` and `Sample rate 1200 Hz`, where the value begins with a digit and the
+/// key ends with a bracket or is the key of a rate. Otherwise the key is empty.
 fn behind_key(line: &str) -> (&str, &str) {
     let digit = |c: char| c.is_ascii_digit();
     let unit = line
@@ -213,7 +214,7 @@ fn behind_key(line: &str) -> (&str, &str) {
     unit.or_else(rate).map_or(("", line), |(key, value)| (key, value.trim()))
 }
 
-/// Whether a line says that only some of the sampled values are kept: `decimated by 2`, `resampled to 1 kHz`,
+/// Whether a line says that only some of the samples are kept: `decimated by 2`, `resampled to 1 kHz`,
 /// `every 8th sample`.
 fn is_decimated(line: &str) -> bool {
     let lower = line.to_lowercase();
@@ -231,7 +232,7 @@ fn is_decimated(line: &str) -> bool {
     })
 }
 
-/// Splits a unit off a `key`, in brackets or as its last word: `sample_rate_hz`. Punctuation in the key
+/// Splits the unit from a `key`, in brackets or as its last word: `sample_rate_hz`. Punctuation in the key
 /// becomes blanks.
 fn split_unit(key: &str) -> (String, String) {
     let (key, unit) = match key.find(['[', '(']) {
@@ -249,14 +250,14 @@ fn split_unit(key: &str) -> (String, String) {
     (key.to_owned(), unit.to_owned())
 }
 
-/// The rate with either meaning of the mark, where the rows do not show which.
+/// The rate with either meaning of an ambiguous mark, for rows that do not show their decimal mark.
 fn perhaps(value: &str, rate_with: &dyn Fn(Option<u8>) -> Option<f64>) -> Option<PerhapsRate> {
     let own = doubtful_mark(value)?;
     let (decimal, grouped) = (rate_with(Some(own))?, rate_with(Some(other_mark(own)))?);
     Some(PerhapsRate { said: value.to_owned(), decimal, grouped })
 }
 
-/// Stores the value of a known `key` in `stated`, if the value is possible.
+/// Stores the value of a known `key` in `stated`, if it is in the accepted range.
 fn keyed(key: &str, value: &str, stated: &mut Stated) {
     let (key, unit_in_key) = split_unit(key);
     let (value, unit_in_key) = (without_blanks(value), unit_in_key.as_str());
@@ -265,12 +266,12 @@ fn keyed(key: &str, value: &str, stated: &mut Stated) {
     let hertz = || hertz(value, unit_in_key, mark);
     let plain = || quantity(value, "", &[("", 1.0)], mark);
     let bare = is_bare(value, unit_in_key);
-    // `bandwidth`, `span` and `resolution` are no keys: headers of time traces use them, too, and for other
+    // `bandwidth`, `span` and `resolution` are not keys: headers of time traces also use them, for other
     // quantities.
     match key.trim() {
-        // Without a unit the keys of the next three arms are ignored, but for a step below 1 and an increment
-        // beside a start.
-        // SAC and related formats state DELTA, a step in s that is less than 1.
+        // The keys of the next three arms count only with a unit. Exceptions: `delta` below 1, and
+        // `increment` after a start value. SAC and related formats state DELTA, a step in s below 1,
+        // without a unit.
         "delta" if bare && plain().is_some_and(|step| step < 1.0) => {
             let step = plain();
             stated.rate = stated.rate.or(step.and_then(|step| checked(1.0 / step)));
@@ -308,7 +309,7 @@ fn keyed(key: &str, value: &str, stated: &mut Stated) {
         "unit" | "units" | "y unit" | "yunit" | "y axis unit" | "einheit" | "unidad" | "unidade"
         | "unité" | "unità" | "amplitude unit" | "engineering unit" => {
             let unit = Some(value.trim_matches(['[', ']']).to_owned());
-            // A list of units, one for each channel, is not the unit of all.
+            // A list of units, one for each channel, is not the unit of all channels.
             stated.unit = unit.filter(|v| !v.is_empty() && !v.contains([';', '\t']) && !v.contains(" and "));
         }
         "y axis" if value.ends_with([']', ')']) => {
@@ -382,7 +383,8 @@ mod tests {
         assert_eq!((s.lines, s.base_band), (Some(400.0), Some(20.0)));
     }
 
-    /// It may be 51.2 Hz or 51 200 Hz: where the rows do not show which, both are kept and none is used.
+    /// `51,200` may be 51.2 Hz or 51 200 Hz. If the rows do not show which, both are kept and neither is
+    /// used.
     #[test]
     fn a_rate_in_groups_of_digits_is_a_question() {
         for text in ["Sampling rate: 51,200", "Sample rate [Hz]: 51,200", "fs = 51,200 Hz", "fs = 51.200 Hz"]
@@ -394,7 +396,7 @@ mod tests {
         assert_eq!(of(&["Sampling rate: 51,2 kHz"]).perhaps_rate, None);
     }
 
-    /// `1.000` above decimal commas is a thousand, and one above decimal points.
+    /// `1.000 Hz` is 1000 Hz above rows with decimal commas, and 1 Hz above rows with decimal points.
     #[test]
     fn the_mark_of_the_rows_tells_what_the_mark_of_a_rate_is() {
         let rate = |line: &str, mark| Stated::of(std::iter::once(line), Some(mark)).rate;
@@ -407,7 +409,7 @@ mod tests {
             ("Abtastrate: 51,2 kHz", Some(51_200.0), Some(51_200.0)),
             ("fs: 1.000e3 Hz", Some(1000.0), Some(1000.0)),
             ("fs: 0.500 Hz", Some(0.5), Some(0.5)),
-            // Nobody groups the digits of kilohertz: it is a question.
+            // 1.000 kHz is never 1000 kHz, so it contradicts decimal commas in the rows: no rate is taken.
             ("fs: 1.000 kHz", None, Some(1000.0)),
             ("Abtastintervall: 1,000 ms", Some(1000.0), Some(1.0)),
             ("Taux: 1 000 Hz", Some(1000.0), Some(1000.0)),

@@ -11,8 +11,8 @@ use std::borrow::Cow;
 use std::ops::Range;
 use vibro_record::units::{Quantity, Unit};
 
-/// Finds the lines of `block` (counted upwards) that name the columns, and the names: a row of units below
-/// its names, perhaps above remarks; or names alone.
+/// Finds the lines of `block` (counted upwards) that name the columns, and the names. Either a row of units
+/// below a row of names, perhaps with remarks below, or names alone.
 pub fn names_in(
     block: &[Fields],
     clock: Option<&Range<usize>>,
@@ -23,14 +23,16 @@ pub fn names_in(
         let (units, upper) = (&block[*at], &block[*at + 1]);
         let outside = |i: &usize| !clock.is_some_and(|cells| cells.contains(i));
         let cells = (0..units.len()).filter(outside).map(|i| units[i].1.as_ref());
-        // `No.,OUT1` over `Unit,mm`: below a counter, which has no unit, a label may begin the row of units.
+        // `No.,OUT1` above `Unit,mm`: below a counter, which has no unit, the row of units may begin with a
+        // label.
         let labelled = usize::from(is_label(&units[0].1) && Name::parse(&upper[0].1).counts());
         let cells = cells.skip(labelled);
         let quantity = |cell: &str| {
             let used = number::prefix(cell.as_bytes(), b'.').map_or(0, |(_, used)| used);
             used > 0 && Unit::parse(&cell[used..]).is_some_and(|unit| unit.quantity() == Quantity::Time)
         };
-        // A row that begins with the unit of the time or frequency above it holds units, known or not.
+        // A row that begins with the unit of the time or frequency above it is a row of units, known or
+        // not.
         let of_axis = || {
             let kind = Unit::parse(&units[0].1).and_then(|unit| kind_of(&unit));
             let numbers = units
@@ -52,7 +54,8 @@ pub fn names_in(
         return Some((at..at + 2, named.collect()));
     }
     let lower = block.first().filter(|lower| named(lower) && !title)?;
-    // `Values;64;` states a number of values; `Angle,1,2` numbers channels from 1.
+    // Numbers such as in `Values;64;` state a number of values. Numbers from 1, as in `Angle,1,2`, number
+    // the channels.
     let numbers: Vec<f64> = lower.iter().filter_map(|(_, cell)| number::parse(cell.as_bytes())).collect();
     let counts = numbers.iter().zip(1u8..).any(|(number, n)| *number != f64::from(n));
     let first = Name::parse(&lower[0].1);
@@ -80,8 +83,8 @@ fn is_label(cell: &str) -> bool {
 
 const TYPES: [&str; 8] = ["f4", "f8", "float", "double", "single", "real32", "real64", "number"];
 
-/// Whether a line holds only types of numbers, `f8` or `float`, or repeats one label with something that is
-/// no unit: `Interp: zoh`.
+/// Whether a line holds only number types, `f8` or `float`, or repeats one label in all cells: `Interp:
+/// zoh`.
 pub fn is_types(line: &Line, separator: Separator) -> bool {
     let label =
         |cell: &str| Some(cell.split_once(": ")?.0.to_owned()).filter(|l| l == "Type" || l == "Interp");
@@ -100,8 +103,8 @@ pub fn is_types(line: &Line, separator: Separator) -> bool {
         && fields(line.text, separator).is_ok_and(|fields| fields.len() > 1 && fields.iter().all(known))
 }
 
-/// The statement in a line that gives every column the same rate, perhaps behind one key for all: `1200 Hz`,
-/// `Sample rate 1200 Hz`, `Messrate` and `1200 1/s`; `None` for other lines.
+/// The statement in a line that gives every column the same rate, perhaps after one key for all: `1200 Hz`,
+/// `Sample rate 1200 Hz`, `Messrate` and `1200 1/s`. `None` for other lines.
 pub fn rate_of_columns(line: &Line, separator: Separator) -> Option<String> {
     let cells = fields(line.text, separator).ok()?;
     let cells: Vec<&str> =
@@ -117,15 +120,15 @@ pub fn rate_of_columns(line: &Line, separator: Separator) -> Option<String> {
     Stated::of(std::iter::once(stated.as_str()), None).states_rate().then_some(stated)
 }
 
-/// Whether a line is a title above all columns, such as `Waveform Data`, or belongs to the preamble.
+/// Whether a line is a title above all columns, such as `Waveform Data`, or a line of the preamble.
 pub fn is_title(line: &Fields, width: usize, preamble: &Preamble) -> bool {
     let alone = !line[0].1.is_empty() && line.iter().filter(|(_, f)| !f.is_empty()).count() == 1;
     let keyed = line.len() > width && Preamble::is_of_columns(&line[0].1);
     keyed || alone && (width > 1 || (preamble.names_columns() && Name::of_unit(&line[0].1).is_none()))
 }
 
-/// The fields of a line above the row `values`, without the first `skipped` and without a blank last one
-/// below which the row has no value.
+/// The fields of a line above the row `values`, without the first `skipped` fields, and without a blank
+/// last field if the row has no value below it.
 pub fn headings<'a>(
     line: &Line<'a>,
     separator: Separator,
@@ -147,7 +150,8 @@ pub fn headings<'a>(
     Some(fields)
 }
 
-/// Whether fields may name columns: at least one has letters and is no number, and they are no `key: value`.
+/// Whether fields may name columns: at least one has letters and is not a number, and the line is not `key:
+/// value`.
 fn named(fields: &Fields) -> bool {
     let statement =
         fields.first().is_some_and(|(_, f)| f.contains(": ") || f.ends_with(':') || f.contains('='));

@@ -1,14 +1,14 @@
-//! Cuts text into lines and fields after RFC 4180, with any separator.
+//! Cuts text into lines and fields as in RFC 4180, with any separator.
 //!
-//! The crate `csv` is not used here: it reads `"2"3` as 23, lets a stray quote swallow the rest of a file,
-//! and does not tell the column of a line in which a field begins.
+//! The crate `csv` is not used: it reads `"2"3` as 23, a stray quote makes it read the rest of a file as
+//! one field, and it does not return the column at which a field begins.
 
 use super::clock;
 use super::unit_words::is_unit_row;
 use crate::number;
 use std::borrow::Cow;
 
-/// Mark between two values of a row.
+/// Separator between two values of a row.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Separator {
     /// Any run of spaces and tabs.
@@ -17,18 +17,18 @@ pub enum Separator {
     Char(u8),
 }
 
-/// Fields of a line, each with the byte at which it begins.
+/// Fields of a line, each with the byte offset at which it begins.
 pub type Fields<'a> = Vec<(usize, Cow<'a, str>)>;
 
-/// One line, or two that a quoted field joins.
+/// One line, or two lines joined by a quoted field.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Line<'a> {
     /// Number of the line in the file, from 1.
     pub number: u64,
-    /// Byte offset at which it begins.
+    /// Byte offset at which the line begins.
     pub at: usize,
     pub text: &'a str,
-    /// Text of a remark behind its mark; `None` for other lines.
+    /// Text of a remark after its mark; `None` for other lines.
     pub remark: Option<&'a str>,
 }
 
@@ -37,7 +37,7 @@ impl Line<'_> {
         self.text.trim().is_empty()
     }
 
-    /// Column, counted from 1, of a byte of this line.
+    /// Column, counted from 1 in characters, of a byte of this line.
     pub fn column(&self, byte: usize) -> u64 {
         self.text.char_indices().take_while(|(at, _)| *at < byte).count() as u64 + 1
     }
@@ -53,8 +53,8 @@ pub struct Lines<'a> {
 }
 
 impl<'a> Lines<'a> {
-    /// Lines from byte `at` on, the start of line `number`. A line that begins with one of `remarks` is a
-    /// remark.
+    /// Lines from byte `at` on, which is the start of line `number`. A line that begins with one of
+    /// `remarks` is a remark.
     pub fn new(text: &'a str, at: usize, number: u64, remarks: &'static [&'static str]) -> Lines<'a> {
         Lines { text, at, number, remarks }
     }
@@ -69,7 +69,7 @@ impl<'a> Iterator for Lines<'a> {
         let end = |from: usize| rest[from..].find('\n').map_or(rest.len(), |end| from + end);
         let mut text = &rest[..end(0)];
         let remark = remark(text, self.remarks);
-        // A quoted field may hold one line end: its quote opens on this line and closes on the next.
+        // A quoted field may contain one line end: its quote opens on this line and closes on the next.
         let open = |text: &str| text.matches('"').count() % 2 == 1;
         let both = &rest[..end((text.len() + 1).min(rest.len()))];
         if remark.is_none() && open(text) && !open(both) {
@@ -82,10 +82,10 @@ impl<'a> Iterator for Lines<'a> {
     }
 }
 
-/// Text of a remark behind its mark; `None` where the line is no remark.
+/// Text of a remark after its mark; `None` if the line is not a remark.
 fn remark<'a>(line: &'a str, marks: &[&str]) -> Option<&'a str> {
     let line = line.trim();
-    // Fortran prints `*****` for a number that does not fit: a missing value, no remark.
+    // Fortran prints `*****` for a number that does not fit into its field: a missing value, not a remark.
     let stars = line.len() > 1 && line.bytes().all(|b| b == b'*');
     let mark = marks.iter().find(|mark| line.starts_with(**mark) && !stars)?;
     // `#` alone in the first cell names a column of row numbers.
@@ -95,7 +95,7 @@ fn remark<'a>(line: &'a str, marks: &[&str]) -> Option<&'a str> {
     Some(line.trim_start_matches(mark).trim())
 }
 
-/// Length of the quoted text at the start of `bytes`, quotes included.
+/// Length in bytes of the quoted text at the start of `bytes`, including the quotes.
 fn quoted(bytes: &[u8]) -> Option<usize> {
     let mut at = 1;
     loop {
@@ -107,13 +107,13 @@ fn quoted(bytes: &[u8]) -> Option<usize> {
     }
 }
 
-/// Mark that serial monitors print behind the computer's clock.
+/// Mark that serial monitors print after the computer's clock.
 const ARROW: &str = " -> ";
 
 /// Cuts a line into fields without the blanks around them.
 ///
 /// # Errors
-/// The byte offset of text that follows a closing quote.
+/// The byte offset of text after a closing quote.
 pub fn fields(line: &str, separator: Separator) -> Result<Fields<'_>, usize> {
     let Separator::Char(mark) = separator else {
         let words = line.split([' ', '\t', '\r']).filter(|w| !w.is_empty() && *w != ARROW.trim());
@@ -150,8 +150,9 @@ pub fn fields(line: &str, separator: Separator) -> Result<Fields<'_>, usize> {
     }
 }
 
-/// Whether a line is a row with faults. It has as many cells as columns. All cells are missing values; or the
-/// first begins with a digit, one is a number and another is none, and they are no units.
+/// Whether a line is a row with faults. It has as many cells as there are columns, and either all non-blank
+/// cells are missing values; or the first cell begins with a digit, at least one cell is a number and one
+/// is a word, and the line is not a row of units.
 pub fn is_torn(line: &str, separator: Separator, columns: usize) -> bool {
     let cells = fields(line, separator).unwrap_or_default();
     let cells: Vec<&str> = cells.iter().map(|(_, cell)| cell.as_ref()).collect();
@@ -197,7 +198,7 @@ mod tests {
     fn a_quoted_field_joins_two_lines() {
         assert_eq!(lines("\"a\nb\",c\nd"), [(1, "\"a\nb\",c"), (3, "d")]);
         assert_eq!(lines("x;\"a\r\nb\"\r\nd"), [(1, "x;\"a\r\nb\""), (3, "d")]);
-        // Inches and remarks do not.
+        // A mark of inches and a remark do not join lines.
         assert_eq!(lines("5\" pipe\nb\nd"), [(1, "5\" pipe"), (2, "b"), (3, "d")]);
         assert_eq!(lines("# \"open\n1\n\"2\n"), [(1, "# \"open"), (2, "1"), (3, "\"2")]);
     }
@@ -225,7 +226,7 @@ mod tests {
             prop_assert!(total <= text.len());
         }
 
-        /// What is quoted by the rule of RFC 4180 comes back.
+        /// Fields quoted as in RFC 4180 are read back unchanged.
         #[test]
         fn quoting_is_undone(fields_in in prop::collection::vec("[a-z,;\"]{0,8}", 1..5)) {
             let quoted: Vec<String> = fields_in.iter().map(|f| format!("\"{}\"", f.replace('"', "\"\""))).collect();

@@ -1,4 +1,4 @@
-//! Reads the header of a column: its name and unit, and whether it is an abscissa, a counter, a phase or a
+//! Reads the heading of a column: its name and unit, and whether it is an abscissa, a counter, a phase or a
 //! part of complex values.
 
 use super::unit_words::{COUNTERS, DAY, HOUR, amplitude, bare_unit, is_angular, is_decibel, symbol};
@@ -12,7 +12,7 @@ use vibro_record::{AxisKind, Error, Finding, Result};
 pub struct Name {
     /// Name without the unit.
     pub name: String,
-    /// Unit as the header spells it; `None` where it states none.
+    /// Unit as the heading spells it; `None` if it states none.
     pub unit: Option<String>,
 }
 
@@ -23,7 +23,7 @@ pub enum ComplexPart {
     Imaginary,
 }
 
-/// The name of a column; without one `column` and its place `at`, counted from 1.
+/// The name of a column; `column` and its number `at`, from 1, if it has none.
 pub fn label(name: &str, at: usize) -> String {
     if name.is_empty() { format!("column {at}") } else { name.to_owned() }
 }
@@ -33,10 +33,10 @@ impl Name {
     /// `velocity mm/s` and `velocity_mm/s`.
     ///
     /// Text in square brackets is the unit, known or not. In every other spelling it must be a known unit;
-    /// behind a blank or an underscore it must also be one that cannot be part of a name.
+    /// after a blank or an underscore it must also be one that cannot be part of a name.
     pub fn parse(text: &str) -> Name {
         let text = text.trim();
-        // In `Y[0]` the bracket holds a number of the channel, no unit.
+        // In `Y[0]` the bracket holds a channel number, not a unit.
         let numbered = |(name, unit): &(&str, &str)| {
             unit.bytes().all(|b| b.is_ascii_digit())
                 && name.ends_with(|c: char| c.is_alphanumeric())
@@ -50,7 +50,7 @@ impl Name {
         let known = |name: &str, unit: &str| {
             let (name, unit) = (name.trim_end(), symbol(unit.trim()));
             let unit = long(name, unit).unwrap_or(unit);
-            // In `X (100g)` the bracket holds the range of the sensor, no unit.
+            // In `X (100g)` the bracket holds the range of the sensor, not a unit.
             let multiple = unit.starts_with(|c: char| c.is_ascii_digit()) && !unit.starts_with("1/");
             let known = || Unit::parse_or_opaque(amplitude(unit).0);
             (!name.is_empty()
@@ -86,7 +86,7 @@ impl Name {
             .unwrap_or_else(|| Name { name: text.to_owned(), unit: None })
     }
 
-    /// A column whose head is a unit in place of a name: `Second`, `Volts`; `None` for other words.
+    /// A column whose heading is a unit instead of a name: `Second`, `Volts`; `None` for other words.
     pub(crate) fn of_unit(field: &str) -> Option<Name> {
         let unit = symbol(field.trim());
         let word = unit != field.trim() || spelled(unit).is_some();
@@ -100,14 +100,14 @@ impl Name {
             unit => {
                 let unit = long(text, unit).unwrap_or(symbol(unit)).to_owned();
                 let own = Name::parse(text);
-                // A unit that both rows state is taken out of the name.
+                // A unit that both rows state is removed from the name.
                 let name = if own.unit.as_deref() == Some(unit.as_str()) { &own.name } else { text.trim() };
                 Name { name: name.to_owned(), unit: Some(unit) }
             }
         }
     }
 
-    /// Finding where the name states another unit than the row of units below it: `Acc [m/s²]` over `g`.
+    /// Finding if the name states another unit than the row of units below it: `Acc [m/s²]` above `g`.
     pub(crate) fn unit_differs(&self) -> Option<Finding> {
         let used = self.unit.as_deref()?;
         let own = Name::parse(&self.name).unit?;
@@ -117,7 +117,7 @@ impl Name {
         differ.then(|| found.name("column", self.name.as_str()))
     }
 
-    /// Reads `t/s`, `a/(m/s²)`: a quantity over its unit; `None` for other text.
+    /// Reads a quantity divided by its unit, `t/s` or `a/(m/s²)`; `None` for other text.
     pub(crate) fn over_unit(text: &str) -> Option<Name> {
         let (name, unit) = text.split_once('/')?;
         let unit = bare_unit(unit);
@@ -125,10 +125,10 @@ impl Name {
         known.then(|| Name { name: name.trim().to_owned(), unit: Some(unit.to_owned()) })
     }
 
-    /// Factor from the unit of this abscissa to s or Hz, and a finding where the unit is assumed or angular.
+    /// Factor from the unit of this abscissa to s or Hz, and a finding if the unit is assumed or angular.
     ///
     /// # Errors
-    /// If the unit is not understood.
+    /// If the unit is unknown.
     pub(crate) fn to_axis(&self, kind: &AxisKind) -> Result<(f64, Option<Finding>)> {
         let Some(text) = &self.unit else {
             let assumed = match bracketed(&self.name, '(', ')') {
@@ -151,7 +151,8 @@ impl Name {
         Ok((unit.hertz().unwrap_or(unit.factor()), angular))
     }
 
-    /// Kind of abscissa that the column holds, by its name; the `first` column may be one by its unit alone.
+    /// Kind of abscissa that the column holds, by its name; the `first` column may be an abscissa by its
+    /// unit alone.
     pub fn axis(&self, first: bool) -> Option<AxisKind> {
         let unit = self.unit.as_deref().map(Unit::parse_or_opaque);
         let by_unit = unit.as_ref().and_then(kind_of);
@@ -176,7 +177,7 @@ impl Name {
             return Some(AxisKind::Frequency).filter(|kind| omega || word.as_ref() == Some(kind));
         }
         let known = unit.as_ref().is_some_and(Unit::is_known);
-        // Revolutions a minute are a frequency where the name says so.
+        // Revolutions per minute are a frequency if the name says so.
         let is_frequency = unit.is_some_and(|unit| unit.quantity() == Quantity::Frequency);
         let fits = |word: &AxisKind| {
             !known || by_unit.as_ref() == Some(word) || is_frequency && *word == AxisKind::Frequency
@@ -200,8 +201,8 @@ impl Name {
         behind().or_else(before)
     }
 
-    /// An unknown unit in round brackets behind the name: one to three letters that are no word such as `rms`
-    /// or `max` and no direction.
+    /// An unknown unit in round brackets after the name: one to three letters that are neither a word such
+    /// as `rms` or `max` nor a direction.
     pub fn unknown_unit(&self) -> Option<&str> {
         let (name, unit) = bracketed(&self.name, '(', ')')?;
         let short = (1..=3).contains(&unit.chars().count()) && unit.chars().all(char::is_alphabetic);
@@ -210,7 +211,7 @@ impl Name {
         (self.unit.is_none() && short && !word && name.ends_with(' ')).then_some(unit)
     }
 
-    /// Whether the name or the unit is that of a counter, which numbers rows or samples.
+    /// Whether the name or unit is one of a counter, which numbers rows or samples.
     pub fn counts(&self) -> bool {
         let key = self.name.to_lowercase();
         let key = key.trim_end_matches('.');
@@ -218,22 +219,23 @@ impl Name {
         self.unit.as_ref().map_or(named, |unit| COUNTERS.contains(&unit.to_lowercase().as_str()))
     }
 
-    /// Whether the name may be that of a counter, such as `loggingSample(N)`. Its values must then count,
-    /// too.
+    /// Whether the name may be one of a counter, such as `loggingSample(N)`. The column is a counter only
+    /// if its values also count.
     pub fn may_count(&self) -> bool {
         let plain = self.unit.as_deref().is_none_or(|unit| unit == NATURAL);
         self.counts() || plain && COUNT_WORDS.contains(&self.last_word().as_str())
     }
 
-    /// Factor of the unit to s, where it is one of time.
+    /// Factor of the unit to s, if it is a unit of time.
     pub fn seconds(&self) -> Option<f64> {
         let unit = Unit::parse(self.unit.as_deref()?)?;
         (unit.quantity() == Quantity::Time).then_some(unit.factor())
     }
 
-    /// The quantity in the name where it contradicts the unit: a count in newtons, or a temperature in
-    /// degrees of an angle. `naturals`: a counter of the table has the unit N, for natural numbers; N is then
-    /// newton only where the name says force. A column is a count only if all its values are `whole`.
+    /// The quantity in the name if it contradicts the unit: a count in newtons, or a temperature in degrees
+    /// of an angle. `naturals`: a counter of the table has the unit N, for natural numbers; N is then
+    /// newton only in a column whose name says force. A column is a count only if all its values are
+    /// `whole`.
     pub fn against_unit(&self, naturals: bool, whole: impl Fn() -> bool) -> Option<&'static str> {
         let unit = self.unit.as_deref()?;
         let quantity = Unit::parse(unit)?.quantity();
@@ -252,7 +254,7 @@ impl Name {
         unit.filter(|_| named).map(|unit| unit.factor())
     }
 
-    /// The last word of the name in lower case: `sample` of `loggingSample`, `loop_sample` and `Sample`.
+    /// The last word of the name in lower case: `sample` in `loggingSample`, `loop_sample` and `Sample`.
     pub fn last_word(&self) -> String {
         let name = self.name.trim_end_matches(|c: char| !c.is_alphanumeric());
         let begins = |(at, c): &(usize, char)| {
@@ -262,7 +264,7 @@ impl Name {
         name[begin..].trim_start_matches(|c: char| !c.is_alphanumeric()).to_lowercase()
     }
 
-    /// Whether the name fits an abscissa as well as values, such as `x`.
+    /// Whether the name may be one of an abscissa as well as of values, such as `x`.
     pub(crate) fn is_vague(&self) -> bool {
         ABSCISSAE.contains(&self.name.to_lowercase().as_str())
     }
@@ -287,7 +289,8 @@ impl Name {
     }
 }
 
-/// Names that may be those of an abscissa, of values or of dates: such a column must rise to be the abscissa.
+/// Names that may be those of an abscissa, of values or of dates. Such a column must rise to be the
+/// abscissa.
 const ABSCISSAE: [&str; 12] = [
     "x",
     "x-axis",
@@ -303,7 +306,7 @@ const ABSCISSAE: [&str; 12] = [
     "tiempo",
 ];
 
-/// Names of a time column that state no more than its unit, and that unit.
+/// Headings that are only the unit of a time column, and that unit.
 const WHOLE: [(&str, &str); 6] = [
     ("in s", "s"),
     ("seconds_elapsed", "s"),
@@ -329,17 +332,17 @@ pub(super) const NATURAL: &str = "N";
 /// Words that begin or end the name of a phase.
 const PHASES: [&str; 5] = ["phase", "phasenwinkel", "fase", "angle", "фаза"];
 
-/// Words in the name of a force: its N is newton.
+/// Words in the name of a force: the unit N is then newton.
 const FORCES: [&str; 3] = ["force", "load", "kraft"];
 
-/// Last words of a temperature's name. Degrees alone are then a temperature of unknown scale, no angle.
+/// Last words of a temperature's name. Degrees are then a temperature of unknown scale, not an angle.
 const TEMPERATURES: [&str; 4] = ["temperature", "temp", "temperatur", "température"];
 
-/// Words that begin the name of an acceleration: its unit `G` is standard gravity, not gauss.
+/// Words that begin the name of an acceleration: the unit `G` is then standard gravity, not gauss.
 const ACCELERATIONS: [&str; 3] = ["acc", "beschl", "shock"];
 
-/// Unit whose spelling is understood only with the name: `d`, `H`, `Min` or `MS` of a time, `G` of an
-/// acceleration. `None` for all others.
+/// Unit whose spelling is clear only with the name: `d`, `H`, `Min` or `MS` of a time, `G` of an
+/// acceleration. `None` for all other units.
 fn long(name: &str, unit: &str) -> Option<&'static str> {
     if unit.trim() == "G" {
         return ACCELERATIONS.iter().any(|word| name.to_lowercase().starts_with(word)).then_some("g");
@@ -357,7 +360,7 @@ fn long(name: &str, unit: &str) -> Option<&'static str> {
     (named.axis(true) == Some(AxisKind::Time) && !named.is_vague()).then_some(found)
 }
 
-/// Splits a text that ends with a bracket into the text before it and the content.
+/// Splits a text that ends with a bracket into the text before the bracket and its content.
 fn bracketed(text: &str, open: char, close: char) -> Option<(&str, &str)> {
     let inner = text.strip_suffix(close)?;
     let mut depth = 1;

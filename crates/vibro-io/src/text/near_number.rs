@@ -1,27 +1,27 @@
-//! Cells that a person reads as numbers and a program does not: a unit, a unit prefix or a printed power of
-//! ten stands behind the digits.
+//! Cells that people read as numbers but programs do not: digits followed by a unit, a unit prefix or a
+//! printed power of ten.
 
 use crate::number;
 use vibro_record::units::Unit;
 
-/// Prefixes of units that instruments print as factors behind a number: `839.06m` is 0.83906.
+/// Unit prefixes that instruments print as factors after a number: `839.06m` is 0.83906.
 const PREFIXES: [(&str, i32); 9] =
     [("p", -12), ("n", -9), ("u", -6), ("µ", -6), ("μ", -6), ("m", -3), ("k", 3), ("M", 6), ("G", 9)];
 
-/// The number at the start of a cell, and the text behind it.
+/// The number at the start of a cell, and the text after it.
 fn behind(cell: &str) -> Option<(&str, &str)> {
     let used =
         [b'.', b','].iter().filter_map(|mark| Some(number::prefix(cell.as_bytes(), *mark)?.1)).max()?;
     Some((cell.get(..used)?, cell.get(used..)?.trim_start()))
 }
 
-/// The unit behind the number in a cell, if it is a known one.
+/// The unit after the number in a cell, if it is a known one.
 pub fn unit_of(cell: &str) -> Option<&str> {
     let (_, unit) = behind(cell)?;
     Unit::parse(unit).filter(|_| unit.starts_with(|c: char| c.is_alphabetic() || c == '%')).map(|_| unit)
 }
 
-/// Hint on how to export a cell with a unit prefix or a power of ten behind its digits.
+/// Hint on how to export a cell whose digits are followed by a unit prefix or a power of ten.
 pub fn plain_form(cell: &str) -> Option<String> {
     let (digits, text) = behind(cell)?;
     let prefix = || PREFIXES.iter().find(|(prefix, _)| *prefix == text).map(|(_, power)| power.to_string());

@@ -1,7 +1,7 @@
 //! Detects columns of numbers, with or without header lines, as analysers print them.
 //!
 //! ```text
-//! SPS390 SPECTRUM            header lines: free text, `key: value`, or remarks behind # % ! * ' " //
+//! SPS390 SPECTRUM            header lines: free text, `key: value`, or remarks after # % ! * ' " //
 //! 20 Hz 400 lines
 //!   4.001992e-02             one value a line; or columns between blanks, tabs, commas or semicolons
 //!   2.001233e-02
@@ -21,19 +21,19 @@ use crate::options::Options;
 use num_complex::Complex64;
 use vibro_record::{Error, Result};
 
-/// Marks that begin a remark above the rows. Between rows only the first five (`BETWEEN`) do, since there a
-/// quote begins a cell.
+/// Marks that begin a remark above the rows. Between rows only the first five (`BETWEEN`) do, since a quote
+/// there begins a cell.
 const REMARKS: [&str; 7] = ["#", "%", "!", "*", "//", "'", "\""];
 const BETWEEN: &[&str] = REMARKS.split_at(5).0;
 
-/// Number of rows from which the dialect is detected. If one has a comma, which may separate or be decimal,
-/// all rows in the head of the file are used.
+/// Number of rows from which the dialect is detected. If one of them has a comma, which may be a separator
+/// or a decimal mark, all rows in the head of the file are used.
 const ENOUGH: usize = 24;
 
 /// Finds the dialect from the first rows.
 ///
 /// # Errors
-/// If there is no row of numbers, or if it cannot be told whether commas are decimal marks.
+/// If there is no row of numbers, or if it is ambiguous whether commas are decimal marks.
 pub fn detect(text: &Text, options: &Options) -> Result<Dialect> {
     let (above, mut rows) = first_rows(text);
     let said = |l: &Line| l.remark.unwrap_or(l.text.trim()).to_owned();
@@ -52,11 +52,11 @@ pub fn detect(text: &Text, options: &Options) -> Result<Dialect> {
     let imaginary = |c: &str| {
         number::parse_with(c.as_bytes(), decimal).is_none() && complex(c.as_bytes(), decimal).is_some()
     };
-    // A line with a comma holds two numbers, not one complex number.
+    // In a line with a comma there are two numbers, not one complex number.
     let whole = !first.text.contains(',') && imaginary(first.text.trim());
     let complex = whole || cells.iter().any(|(_, c)| imaginary(c));
-    // Rows above the first good one that do not parse belong to the table: reading reports them, with line
-    // and column.
+    // Rows above the first good one that cannot be parsed belong to the table. Reading them reports the
+    // error with line and column.
     let torn = |l: &&Line| l.remark.is_none() && is_torn(l.text, separator, cells.len());
     let named = above.len() - above.iter().rev().take_while(torn).count();
     if named < above.len() && name_line::above(&header[..named], cells.len(), separator).is_some() {
@@ -98,13 +98,13 @@ fn first_rows<'a>(text: &'a Text) -> (Vec<Line<'a>>, Vec<Line<'a>>) {
         } else if rows.is_empty() {
             above.push(line);
         } else if line.remark.is_none() {
-            break; // reading the rows will complain, with the place
+            break; // reading the rows will report the error with its place
         }
     }
     (above, rows)
 }
 
-/// Error on a text without rows of numbers that begins with the line `first`.
+/// Error for a text without rows of numbers that begins with the line `first`.
 fn without_rows(first: Option<&String>) -> Error {
     let found = match first {
         Some(line) => format!("no table of numbers; the first line is {:?}", shorten(line)),
@@ -117,7 +117,7 @@ fn without_rows(first: Option<&String>) -> Error {
 
 /// Names of the columns in the last line of the header.
 fn names_above(header: &[String], rows: &[Line], columns: usize, separator: Separator) -> Option<Vec<Name>> {
-    // A first column that numbers the rows often has no name.
+    // A first column that counts the rows often has no name.
     let number = |line: &Line| number::parse(fields(line.text, separator).ok()?.first()?.1.as_bytes());
     let counted = || rows.windows(2).all(|w| number(&w[0]).map(|n| n + 1.0) == number(&w[1]));
     let named = |columns| name_line::above(header, columns, separator);
@@ -133,8 +133,8 @@ fn cells<'a>(line: &Line<'a>) -> Option<Fields<'a>> {
     marks.filter_map(cut).find(|cells| cells.len() > 1).or_else(|| cut(Separator::Blank))
 }
 
-/// Error for a file without a row of numbers: names the first cell that is no number. The row is the first
-/// of the last lines, all with numbers in the same cells.
+/// Error for a file without a row of numbers: names the first cell that is not a number. It is in the first
+/// of the last lines, all of which have numbers in the same cells.
 fn stray(lines: &[Line]) -> Option<Error> {
     let begins = |cell: &str| number::prefix(cell.as_bytes(), b'.').is_some();
     let numbers = |line: &Line| -> Vec<bool> {
@@ -182,8 +182,8 @@ fn stray(lines: &[Line]) -> Option<Error> {
     }))
 }
 
-/// Header line made of `300 0.005` above rows of three or more columns: number of values and step in s, as
-/// Fortran programs write them.
+/// Header line made from `300 0.005` above rows of three or more columns: number of values and step in s,
+/// as Fortran programs write them.
 fn count_and_step(rows: &[Line]) -> Option<String> {
     let columns = |i: usize| rows.get(i).map_or(0, |line| line.text.split_whitespace().count());
     let (count, step) = rows.first()?.text.trim().split_once(char::is_whitespace)?;
@@ -193,8 +193,8 @@ fn count_and_step(rows: &[Line]) -> Option<String> {
         .then(|| format!("NPTS={count}, DT={}", step.trim()))
 }
 
-/// Whether a line is a row: every token is a number, a piece of a complex number, a missing value or a
-/// clock time, and at least one is a number.
+/// Whether a line is a row: every token is a number, a part of a complex number, a missing value or a clock
+/// time, and at least one is a number.
 fn is_row(line: &[u8]) -> bool {
     let timed = line.contains(&b':');
     let mut numbers = 0;
@@ -216,7 +216,7 @@ fn is_row(line: &[u8]) -> bool {
     numbers > 0
 }
 
-/// Finds separator and decimal mark; an error where a comma may be either.
+/// Detects separator and decimal mark; an error if a comma may be either.
 fn marks(rows: &[Line], options: &Options) -> Result<(Separator, u8)> {
     const COMMA: Separator = Separator::Char(b',');
     let any = |test: &dyn Fn(&str) -> bool| rows.iter().any(|r| test(r.text.trim()));
@@ -233,8 +233,8 @@ fn marks(rows: &[Line], options: &Options) -> Result<(Separator, u8)> {
             .setting("decimal")
     };
     let comma = match options.decimal_comma {
-        // All rows are whole numbers, and one has a comma that cannot separate two of them: it groups
-        // digits.
+        // All rows are whole numbers, and one has a comma that cannot separate two integers: it separates
+        // thousands.
         Some(false) if explicit.is_none() && any(&no_integers) && !any(&|line| !is_whole(line)) => {
             return Ok((Separator::Blank, b'.'));
         }
@@ -252,7 +252,7 @@ fn marks(rows: &[Line], options: &Options) -> Result<(Separator, u8)> {
         {
             false
         }
-        // Commas are decimal marks where fields are separated by blanks, or a comma cannot separate two
+        // Commas are decimal marks if blanks separate the fields, or if a comma cannot separate two
         // integers.
         None if any(&|line| line.split_ascii_whitespace().count() > 1) || any(&no_integers) => true,
         None => return Err(doubtful()),
@@ -260,7 +260,7 @@ fn marks(rows: &[Line], options: &Options) -> Result<(Separator, u8)> {
     Ok(if comma { (explicit.unwrap_or(Separator::Blank), b',') } else { (explicit.unwrap_or(COMMA), b'.') })
 }
 
-/// Whether a line is a whole number, with or without marks between groups of three digits.
+/// Whether a line is a whole number, with or without thousands separators.
 fn is_whole(line: &str) -> bool {
     number::may_be_grouped(line.as_bytes()) || line.bytes().all(|b| b.is_ascii_digit() || b == b'-')
 }
@@ -272,12 +272,12 @@ fn no_integers(line: &str) -> bool {
     left == "-0" || leading_zero || right.contains(['e', 'E', 'd', 'D'])
 }
 
-/// Whether every row is one number with decimals, and some have their digits grouped in threes: `1.234,50` or
+/// Whether every row is one number with decimals, and some have thousands separators: `1.234,50` or
 /// `1,234.50`.
 fn grouped(rows: &[Line]) -> bool {
     let digits = |text: &str| !text.is_empty() && text.bytes().all(|b| b.is_ascii_digit());
-    // Number of groups of three digits behind the first group; `None` if the line is no such number.
-    // `0.123` has no groups.
+    // Number of groups of three digits after the first group: 0 for `0.123`. `None` if the line is not such
+    // a number.
     let groups = |line: &str, group: char, decimal: char| {
         let (whole, decimals) = line.strip_prefix(['-', '+']).unwrap_or(line).split_once(decimal)?;
         let (first, rest) = whole.split_once(group).unwrap_or((whole, ""));
@@ -292,8 +292,8 @@ fn grouped(rows: &[Line]) -> bool {
     })
 }
 
-/// Reads a complex number, `(re+imj)`, `re + im i` and the like, or a pair as circuit simulators print it. A
-/// bare number has the imaginary part 0.
+/// Reads a complex number, `(re+imj)`, `re + im i` and the like, or a pair as circuit simulators print it.
+/// A bare number has the imaginary part 0.
 pub fn complex(text: &[u8], decimal: u8) -> Option<Complex64> {
     let text = text.trim_ascii();
     if let Some(comma) = text.iter().position(|b| *b == b',').filter(|_| decimal == b'.') {
@@ -307,8 +307,8 @@ pub fn complex(text: &[u8], decimal: u8) -> Option<Complex64> {
         return number::parse_with(text, decimal).map(Into::into);
     };
     let imaginary = imaginary.strip_suffix(b"*").unwrap_or(imaginary).trim_ascii();
-    // The parts are split at the last sign that is not part of an exponent; `1.5+210` is two parts, no
-    // exponent without its letter.
+    // The parts are split at the last sign that is not part of an exponent. `1.5+210i` is two parts, since
+    // an exponent needs its letter.
     let sign = |at: &usize| matches!(imaginary[*at], b'+' | b'-') && !b"eEdDqQ".contains(&imaginary[*at - 1]);
     let (real, imaginary) = match (1..imaginary.len()).rfind(sign) {
         None => (0.0, number::parse_with(imaginary, decimal)?),
@@ -321,8 +321,8 @@ pub fn complex(text: &[u8], decimal: u8) -> Option<Complex64> {
     Some(Complex64::new(real, imaginary))
 }
 
-/// Real and imaginary part, both with an exponent, since `1,234` may be one number; or level in dB and angle
-/// in degrees: `(-3.1e+00dB,4.5e+01°)`.
+/// Real and imaginary part, both with an exponent, since `1,234` may be one number. Or level in dB and
+/// angle in degrees: `(-3.1e+00dB,4.5e+01°)`.
 fn pair(first: &[u8], second: &[u8]) -> Option<Complex64> {
     let level = first.strip_prefix(b"(").and_then(|first| first.strip_suffix(b"dB"));
     if let Some(level) = level.map(number::parse) {
@@ -385,7 +385,8 @@ mod tests {
             let columns = with(text, &point).unwrap().columns;
             assert_eq!(columns, text.lines().next().unwrap().split(',').count(), "{text}");
         }
-        // No groups of three, an exponent, a leading zero: commas separate.
+        // No thousands separators, since the digits are not in threes, have an exponent or a leading zero:
+        // commas separate.
         for text in ["0.123,50\n", "1.234,50\n1.2345,5\n", "1.234,5e1\n", "1.234,50\n12,5\n0.100,5\n"] {
             assert_eq!(shape(text), (Separator::Char(b','), b'.', 2, false), "{text}");
         }
@@ -397,7 +398,7 @@ mod tests {
             assert_eq!(complex(text.as_bytes(), b'.'), Some(Complex64::new(1.5, -2e-3)), "{text}");
         }
         assert_eq!(complex(b"2j", b'.'), Some(Complex64::new(0.0, 2.0)));
-        // Not exponents without their letter.
+        // No exponent without its letter.
         for (text, re, im) in [
             ("1.5+210i", 1.5, 210.0),
             ("(1101.5-201j)", 1101.5, -201.0),

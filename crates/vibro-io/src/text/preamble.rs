@@ -1,11 +1,12 @@
-//! Reads the preamble above and beside the rows of a table: keys with values, of the file or of its columns.
+//! Reads the preamble above and beside the rows of a table: keys and values, for the file or for each
+//! column.
 //!
 //! ```text
 //! Sample rate; 1000; Hz                  key and value in cells
 //! XInc:,5e-4                             … or with a colon
-//! "VUnit","V","A"                        one value for each column, or for each but the abscissa
-//! Record Length,128,,-0.005,0.25         beside the first rows
-//! X,CH1,Start,Increment                  a word over a number, beside the names
+//! "VUnit","V","A"                        one value for each column, or for each except the abscissa
+//! Record Length,128,,-0.005,0.25         to the left of the first rows
+//! X,CH1,Start,Increment                  a word above a number, to the right of the names
 //! ```
 
 use super::decoded::Text;
@@ -17,10 +18,10 @@ use crate::number;
 use std::borrow::Cow;
 use vibro_record::AxisKind;
 
-/// Most rows that are searched for a preamble beside the first of them.
+/// Most rows that are searched for a preamble beside them.
 pub const BESIDE: usize = 40;
 
-/// The lines of a preamble as cells: a key, then one value for all columns or one for each.
+/// The lines of a preamble as cells: a key, then one value for all columns or one for each column.
 #[derive(Debug, Default)]
 pub struct Preamble(Vec<Vec<String>>);
 
@@ -53,7 +54,7 @@ pub const UNIT: &[&str] = &[
 ];
 const AXIS_UNIT: &[&str] = &["horizontal units", "horz units", "hunit", "xunits", "x units"];
 
-/// A cell as a key: lower case, with blanks for `_` and no mark behind it.
+/// A cell as a key: in lower case, with blanks for `_`, without a trailing `:` or `=`.
 pub fn key(cell: &str) -> String {
     cell.trim_end_matches([':', '=']).trim().replace('_', " ").to_lowercase()
 }
@@ -77,7 +78,7 @@ impl Preamble {
         self.values(SOURCE).is_some()
     }
 
-    /// Unit of the abscissa, where it is one of time or frequency. Some instruments print `S` for seconds.
+    /// Unit of the abscissa, if it is one of time or frequency. Some instruments print `S` for seconds.
     pub fn axis_unit(&self) -> Option<String> {
         let unit = &self.values(AXIS_UNIT)?[0];
         let named = Name::with_unit_row("", if unit == "S" { "s" } else { unit });
@@ -90,9 +91,9 @@ impl Preamble {
         found.get(1..).filter(|values| values.iter().any(|value| !value.is_empty()))
     }
 
-    /// Gives columns the names and units that they lack, where the preamble has one for each, or for each but
-    /// the abscissa; returns whether it has. Below a vertical scale, `whole` numbers are counts of a
-    /// converter, without that unit.
+    /// Fills in missing names and units of columns, if the preamble has one for each column or for each
+    /// except the abscissa; returns whether it has. If the preamble has a vertical scale and the values are
+    /// `whole` numbers, they are converter counts and get no unit.
     pub fn name<'a>(&'a self, names: &mut [Name], whole: bool) -> bool {
         let n = names.len();
         let axis = names.first().and_then(|name| name.axis(true));
@@ -103,7 +104,7 @@ impl Preamble {
             named.unit.clone().filter(|_| named.axis(true) == axis)
         };
         let own = self.axis_unit().and_then(|unit| of_axis(&unit));
-        // A line may end with blank cells, which may be values or not: both counts are tried.
+        // A line may end with blank cells, which may or may not be values: both counts are tried.
         let fit = |values: &'a [String], all: &dyn Fn(&[String]) -> bool| {
             let said = values.iter().rposition(|value| !value.is_empty()).map_or(0, |last| last + 1);
             let fits = |n_values: &usize| {
@@ -135,7 +136,7 @@ impl Preamble {
 }
 
 /// Dialect of a table with a preamble in the first columns of its first rows, as Tektronix oscilloscopes
-/// write it: key, value and unit, then time and value. Further down the first columns are empty.
+/// write it: key, value and unit, then time and value. Below the preamble its columns are empty.
 pub fn beside_rows(text: &Text) -> Option<Dialect> {
     let separator = Separator::Char(b',');
     let lines = Lines::new(&text.head, 0, 1, &[]).filter(|line| !line.is_blank()).take(BESIDE);
@@ -180,8 +181,8 @@ pub fn beside_rows(text: &Text) -> Option<Dialect> {
     })
 }
 
-/// Takes statements out of the cells beyond the `width` of the rows: a word over a number, `Start` over
-/// `-2e-3`, or `t0 = -5e-7`.
+/// Removes statements from the cells to the right of the `width` columns of the rows: a word above a
+/// number, `Start` above `-2e-3`, or `t0 = -5e-7`.
 pub fn beside(upper: Option<&mut Fields>, lower: &mut Fields, width: usize) -> Vec<String> {
     let over = |upper: &Fields| {
         let mut pairs = upper.iter().zip(&*lower).skip(width);
@@ -206,14 +207,14 @@ fn is_pair(key: &str, value: &str) -> bool {
     key.contains(char::is_alphabetic) && number::parse(value.as_bytes()).is_some()
 }
 
-/// A preamble line as `key: value`: spreadsheets have key, value and unit in cells.
+/// A preamble line as `key: value`; spreadsheets have key, value and unit in cells.
 pub fn key_and_value(line: &Line, separator: Separator) -> String {
     let whole = || line.remark.unwrap_or(line.text.trim()).to_owned();
     let Some(cells) = fields(line.text, separator).ok().filter(|_| line.remark.is_none()) else {
         return whole();
     };
     let mut cells: Vec<String> = cells.into_iter().map(|(_, cell)| cell.into_owned()).collect();
-    // Rows of one column show no separator; a key with its unit in brackets and a number behind it do.
+    // Rows of one column show no separator. A key with a unit in brackets, followed by a number, shows it.
     if let Some((key, value)) = line.text.split_once([',', ';']).filter(|_| cells.len() == 1)
         && key.ends_with([')', ']'])
         && number::parse(value.as_bytes()).is_some()
@@ -223,7 +224,7 @@ pub fn key_and_value(line: &Line, separator: Separator) -> String {
     if cells[0].trim_end_matches(':').contains([':', '=']) { whole() } else { statement(&cells) }
 }
 
-/// Key and values of a preamble line as text; equal values are written once.
+/// Key and values of a preamble line as text; values that are all equal are written once.
 fn statement(cells: &[String]) -> String {
     let mut cells = cells.iter().map(|cell| cell.trim()).filter(|cell| !cell.is_empty());
     let key = cells.next().unwrap_or_default();
@@ -232,7 +233,7 @@ fn statement(cells: &[String]) -> String {
         values.truncate(1);
     }
     let Some(first) = values.first() else { return key.to_owned() };
-    // A number is followed by its unit; other values are those of several columns.
+    // A number is followed by its unit; other values are one for each column.
     let joint = if number::prefix(first.as_bytes(), b'.').is_some() { " " } else { "; " };
     format!("{}: {}", key.trim_end_matches(':'), values.join(joint))
 }

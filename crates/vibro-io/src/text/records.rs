@@ -1,4 +1,4 @@
-//! Makes records from columns: applies units, joins complex parts.
+//! Makes records from columns: applies units and joins real and imaginary parts.
 
 use super::abscissa::CommonAxis;
 use super::cautions;
@@ -25,13 +25,13 @@ pub struct Built {
     pub record: Record,
     /// Extremes and first values of a column whose values were not kept in memory.
     pub ends: Option<Extremes>,
-    /// Place of the column in a row, counted from 0.
+    /// Index of the column in a row, from 0.
     pub at: usize,
     /// Factor from the values as written to SI units.
     pub factor: f64,
 }
 
-/// What the records of one file have in common.
+/// Data shared by the records of one file.
 pub struct RecordContext<'a> {
     pub text: &'a Text<'a>,
     pub tail: &'a [u8],
@@ -39,12 +39,13 @@ pub struct RecordContext<'a> {
     pub is_table: bool,
     pub options: &'a Options,
     pub stated: Stated,
-    /// Whether a counter has the unit N, for natural numbers: N of another column may then not be newton.
+    /// Whether a counter has the unit N, for natural numbers. The unit N of another column then need not be
+    /// newton.
     naturals: bool,
 }
 
 impl<'a> RecordContext<'a> {
-    /// For a text with the last bytes `tail`, whose head states `stated`.
+    /// For a text with the last bytes `tail`, whose header states `stated`.
     pub fn new(
         text: &'a Text<'a>,
         tail: &'a [u8],
@@ -59,7 +60,7 @@ impl<'a> RecordContext<'a> {
     /// One record for each column of values. Findings on the file as a whole are added to `findings`.
     ///
     /// # Errors
-    /// If the columns contradict each other or what was stated.
+    /// If the columns contradict each other or the options.
     pub fn records(mut self, rows: Rows, findings: &mut Vec<Finding>) -> Result<Vec<Built>> {
         let n = rows.columns.iter().map(Held::len).max().unwrap_or(0);
         if !rows.remarks.is_empty() {
@@ -72,7 +73,7 @@ impl<'a> RecordContext<'a> {
             table.remove(0);
         }
         let printed = self.abscissa(&table).map(|at| table.remove(at));
-        // Counters are left out, unless the table holds nothing else.
+        // Counters are left out, unless the table has no other columns.
         let first = if self.is_table { self.without_counters(&mut table, findings) } else { None };
         if let Some(axis) = &printed {
             self.without_copies(axis, &mut table);
@@ -117,7 +118,7 @@ impl<'a> RecordContext<'a> {
         Ok(built)
     }
 
-    /// Columns with values. Those with a name and without any value are named in a finding.
+    /// Columns with values. A finding lists named columns without any value.
     fn with_values(&self, rows: Rows, findings: &mut Vec<Finding>) -> Vec<Column> {
         let names = self.dialect.names.clone().unwrap_or_else(|| vec![Name::default(); self.dialect.columns]);
         let sparse = rows.sparse.into_iter().chain(std::iter::repeat(None));
@@ -134,8 +135,8 @@ impl<'a> RecordContext<'a> {
         table
     }
 
-    /// Takes out the columns that only count, unless there are no others; gives the first value of the first.
-    /// Of the first column everyone expects it, any other is named.
+    /// Removes the columns that only count, unless there are no others, and returns the first value of the
+    /// first counter. A finding lists them, except a counter in the first column, where it is usual.
     fn without_counters(&mut self, table: &mut Vec<Column>, findings: &mut Vec<Finding>) -> Option<f64> {
         let counter =
             |(at, column): (usize, &Column)| column.counts() && (at == 0 || !column.name.name.is_empty());
@@ -155,16 +156,17 @@ impl<'a> RecordContext<'a> {
         first
     }
 
-    /// Takes out the columns that hold the same instants as the abscissa.
+    /// Removes the columns that hold the same instants as the abscissa.
     fn without_copies(&self, axis: &Column, table: &mut Vec<Column>) {
-        // Where every channel has its own time column, copies of the abscissa are left out.
+        // If every channel has a time column of its own, copies of the abscissa are left out.
         let again = |c: &Column| c.name.axis(true) == axis.name.axis(true) && c.values == axis.values;
         let plain = self.dialect.names.is_none() && table.iter().any(|c| !again(c));
         table.retain(|column| !((self.is_table || plain) && again(column)));
         table.retain(|column| !(self.is_table && column.is_clock_of(axis)));
     }
 
-    /// Finding that the head states more spectral lines, or other than `n` values.
+    /// Finding if the header states more spectral lines than were read, or another number of values than
+    /// `n`.
     fn fewer_than_stated(&self, over: &CommonAxis, n: usize) -> Option<Finding> {
         if let Some(declared) = over.declared {
             return Some(Finding::caution("fewer-lines").count("declared", declared).count("n", n));
@@ -173,8 +175,8 @@ impl<'a> RecordContext<'a> {
         self.stated.values.filter(of_time).map(|declared| assemble::fewer(declared, n))
     }
 
-    /// Joins real and imaginary parts of one quantity, and over frequency a response function's magnitude
-    /// with the phase column behind it. Columns over time are not joined.
+    /// Joins real and imaginary parts of one quantity. Over frequency, also joins the magnitude of a
+    /// frequency response function with the phase column after it. Columns over time are not joined.
     fn joined(&self, table: Vec<Column>, axis: &Axis, found: &mut Vec<Finding>) -> Result<Vec<Column>> {
         let parts = !self.dialect.complex && axis.kind != AxisKind::Time;
         let unnamed = self.dialect.names.is_none() && axis.kind == AxisKind::Frequency;
@@ -201,7 +203,7 @@ impl<'a> RecordContext<'a> {
                 out.push(column);
                 continue;
             };
-            // A unit in the header of one part holds for both.
+            // A unit in the header of one part applies to both.
             if real.name.unit.is_some() && column.name.unit.is_some() && real.name.unit != column.name.unit {
                 let found = format!("{:?} and {:?} have different units", real.label(), column.label());
                 return Err(Error::usage(found, "one unit for real and imaginary part"));
@@ -260,7 +262,8 @@ impl<'a> RecordContext<'a> {
         Ok(Built { record, ends, at: at - 1, factor })
     }
 
-    /// Name, notes and history of the record of column `at` of the rows, which is the `i`th with values.
+    /// Name, notes and history of the record of column `at` of the rows, which is the `i`th column with
+    /// values.
     fn meta(&self, i: usize, at: usize, name: String) -> Meta {
         let title = self.stated.name.as_deref().unwrap_or_default();
         let name = match (self.dialect.columns, self.is_table) {
@@ -290,7 +293,8 @@ impl<'a> RecordContext<'a> {
         meta
     }
 
-    /// Says that the head holds another unit of the same quantity than the name: `Unit: mm/s` over `v (m/s)`.
+    /// Finding if the header states another unit of the same quantity than the column's name: `Unit: mm/s`
+    /// above `v (m/s)`.
     fn head_differs(&self, name: &Name) -> Option<Finding> {
         let (head, used) = (self.stated.unit.as_deref()?, name.unit.as_deref()?);
         let (of_head, of_name) = (Unit::parse(head)?, Unit::parse(used)?);
@@ -298,14 +302,14 @@ impl<'a> RecordContext<'a> {
         same.then(|| Finding::caution("unit-head-differs").name("head", head).name("used", used))
     }
 
-    /// What remarks and the unit of a column say of its spectrum.
+    /// Scaling, window and other spectral properties that remarks and the unit of a column state.
     fn spectral(&self, name: &str, unit: Option<(&str, Option<Scaling>)>) -> Spectral {
         let (unit, scaling) = unit.unwrap_or_default();
         let by_unit = if is_density(unit) { Some(Scaling::Psd) } else { scaling };
         let own = self.remark_about("window", name).and_then(|window| Window::from_name(&window));
         Spectral {
             scaling: self.remark_about("scaling", name).and_then(|s| Scaling::from_name(&s)).or(by_unit),
-            // A file with remarks on single columns has no window for all.
+            // In a file with remarks on single columns, no window applies to all columns.
             window: own
                 .or(self.stated.window.filter(|_| !self.remarks("window").any(|v| v.contains(" of ")))),
             enbw: self.remark_about("enbw", name).and_then(|e| number::parse(e.as_bytes())),
@@ -318,8 +322,8 @@ impl<'a> RecordContext<'a> {
         self.stated.notes.iter().filter(move |(k, _)| k.eq_ignore_ascii_case(key)).map(|(_, v)| v.as_str())
     }
 
-    /// Lower-case value of the remark on this column (`key: value of name`), else of one on all columns
-    /// without `of`.
+    /// Lower-case value of the remark on this column (`key: value of name`), else of a remark on all
+    /// columns, which has no `of`.
     fn remark_about(&self, key: &str, name: &str) -> Option<String> {
         let of = format!(" of {name}");
         let own = self.remarks(key).find_map(|v| v.strip_suffix(of.as_str()));
@@ -328,14 +332,14 @@ impl<'a> RecordContext<'a> {
     }
 }
 
-/// `g²/Hz`, `(m/s^2)^2/Hz`: a square over hertz is a power spectral density.
+/// `g²/Hz`, `(m/s^2)^2/Hz`: a squared unit per hertz is a power spectral density.
 fn is_density(unit: &str) -> bool {
     let power = unit.trim().strip_suffix("/Hz").map(str::trim_end);
     power.is_some_and(|p| p.ends_with('²') || p.ends_with("^2") || p.ends_with(")2"))
 }
 
-/// Refuses rows of several channels or sensors below each other, which a column numbers. Where all columns
-/// go in turns, they are values.
+/// Refuses rows of several channels or sensors below each other, which one column numbers. If all columns
+/// repeat in a cycle, they are values.
 fn of_one_channel(table: &[Column]) -> Result<()> {
     let turns: Vec<Option<[f64; 2]>> = table.iter().map(Column::numbers_channels).collect();
     let first = turns.iter().position(Option::is_some).filter(|_| turns.contains(&None));
@@ -346,7 +350,7 @@ fn of_one_channel(table: &[Column]) -> Result<()> {
         .hint("keep the rows of one number in a file, those of the others each in a file of their own"))
 }
 
-/// Refuses rows without times where a counter shows that samples are missing: no sampling rate holds for
+/// Refuses rows without times if a counter shows that samples are missing: no sampling rate applies to
 /// them.
 fn without_gaps(table: &[Column]) -> Result<()> {
     let gap = table.iter().find_map(|column| Some((column.label(), column.leaves_out()?)));

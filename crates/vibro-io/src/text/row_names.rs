@@ -1,4 +1,4 @@
-//! Removes row names in quotes, below a line of names that is one cell shorter, as `write.table` of R writes
+//! Removes quoted row names below a line of names that is one cell shorter, as `write.table` of R writes
 //! them.
 //!
 //! ```text
@@ -17,10 +17,10 @@ use vibro_record::Result;
 /// Most rows below the line of names that are checked.
 const ENOUGH: usize = 3;
 
-/// The text with tabs between its cells and without the names of rows; `None` for any other text.
+/// The text with tabs between its cells and without the row names; `None` for any other text.
 ///
 /// # Errors
-/// If it cannot be read.
+/// If the text cannot be read.
 pub fn without(text: &Text) -> Result<Option<Source>> {
     if !text.head.starts_with('"') {
         return Ok(None);
@@ -42,7 +42,7 @@ pub fn without(text: &Text) -> Result<Option<Source>> {
     text.source.with_bytes(kept).map(Some)
 }
 
-/// Whether the first line has one name less than the rows below have cells, and these begin with a quoted
+/// Whether the first line has one name fewer than the rows have cells, and all rows begin with a quoted
 /// cell.
 fn named(text: &Text, separator: Separator) -> bool {
     let mut lines = Lines::new(&text.head, 0, 1, &[]).take(ENOUGH + 1);

@@ -1,4 +1,4 @@
-//! The careful path: reads one row after the other, so that an error names line and column.
+//! The careful path: reads row after row, so that an error names line and column.
 
 use super::clock::Stopwatch;
 use super::decoded::{in_line, shorten};
@@ -17,33 +17,34 @@ use std::ops::Range;
 use vibro_record::units::notation::counted;
 use vibro_record::{Error, Result, Values};
 
-/// Columns of numbers, and the missing values, blank lines and remarks among them.
+/// Columns of numbers, their missing values, and the blank lines and remarks between the rows.
 #[derive(Debug, Default, PartialEq)]
 pub struct Rows {
-    /// Values of each column, NaN where missing. All have one length, but for those in `sparse`.
+    /// Values of each column, NaN where missing. All columns have the same length, except those in
+    /// `sparse`.
     pub columns: Vec<Held>,
-    /// For each column with a value only in every second, third, … row: the first row with a value, and the
-    /// distance in rows from one value to the next.
+    /// For each column with a value only in every second, third, … row: index of the first row with a
+    /// value, and rows from one value to the next.
     pub sparse: Vec<Option<(usize, usize)>>,
-    /// For each column whether it has no value in any row: nothing is missing there. Empty from the fast
-    /// path.
+    /// For each column, whether it has no value in any row; its blanks then do not count as missing. Empty
+    /// from the fast path.
     pub without_values: Vec<bool>,
     /// Number of missing values.
     pub missing: usize,
     /// Number of gaps (blank lines) between blocks of rows of one length.
     pub separators: usize,
-    /// Number of rows that were left out, since the abscissa and all values are missing in them.
+    /// Number of rows left out because the abscissa and all values are missing in them.
     pub empty: usize,
-    /// Remarks between and below the rows.
+    /// Remarks between and after the rows.
     pub remarks: Vec<String>,
 }
 
 /// Reads all rows from the first one on.
 ///
 /// # Errors
-/// On the first field that is no number, the first row with another number of fields, or a missing value in a
-/// column that is the abscissa by its name; except in tables, on a blank line between rows of several
-/// columns. On missing values, all in one error, unless `allow_missing`.
+/// On the first field that is not a number, on the first row with another number of fields, and on a
+/// missing value in a column that is the abscissa by its name. In text without column names, also on a
+/// blank line between rows of several columns. On missing values, all in one error, unless `allow_missing`.
 pub fn read(text: &str, dialect: &Dialect, allow_missing: bool) -> Result<Rows> {
     let rows = read_but(text, dialect, allow_missing, &[])?;
     if rows.columns.is_empty() {
@@ -52,8 +53,8 @@ pub fn read(text: &str, dialect: &Dialect, allow_missing: bool) -> Result<Rows> 
     Ok(rows)
 }
 
-/// As [`read`], with no missing values in `unused` columns. Where others have no value at all, gives no
-/// columns, only which these are.
+/// As [`read`]; columns marked in `unused` may be empty. If `unused` is empty and some columns hold no
+/// value, returns only `without_values`, for a second pass.
 fn read_but(text: &str, dialect: &Dialect, allow_missing: bool, unused: &[bool]) -> Result<Rows> {
     let abscissa = dialect.named_abscissa();
     let parser = FieldParser { text, dialect };
@@ -98,14 +99,14 @@ fn read_but(text: &str, dialect: &Dialect, allow_missing: bool, unused: &[bool])
 /// The cells of all rows so far, column by column.
 struct Cells<'a> {
     dialect: &'a Dialect,
-    /// Columns in which nothing is missing, since they have no value.
+    /// Columns without any value; their blank cells do not count as missing.
     unused: &'a [bool],
     abscissa: Option<usize>,
     clock: Stopwatch,
     columns: Vec<Vec<Complex64>>,
     missing: Missing,
-    /// Missing values with one for each blank line: only the end shows whether blank lines are missing
-    /// values.
+    /// As `missing`, with each blank line counted as one. Which of the two applies is known after the last
+    /// row.
     with_blanks: Missing,
     blanks: Vec<Blank>,
 }
@@ -124,7 +125,8 @@ impl<'a> Cells<'a> {
         }
     }
 
-    /// Blank lines between rows: missing values of one column, and refused between rows of several.
+    /// Takes blank lines between rows: in one column a possible missing value each; with several columns an
+    /// error.
     fn blank_lines(&mut self, lines: Range<u64>) -> Result<()> {
         if self.columns.len() > 1 {
             let expected = "rows of numbers, one behind the other";
@@ -136,7 +138,7 @@ impl<'a> Cells<'a> {
         Ok(())
     }
 
-    /// The cell of column `i` in a line: its byte offset and text.
+    /// Takes the cell of column `i` in a line, given as byte offset and text.
     fn take(
         &mut self,
         parser: &FieldParser,
@@ -169,7 +171,7 @@ impl<'a> Cells<'a> {
         Ok(())
     }
 
-    /// The columns of the `rows`, without gaps in those of a lower rate.
+    /// The columns of the `rows`; those of a lower rate without their blank cells.
     fn into_rows(self, mut rows: Rows, allow_missing: bool) -> Result<Rows> {
         let Cells { dialect, unused, mut columns, mut missing, with_blanks, blanks, .. } = self;
         if separate(&blanks) {
@@ -207,7 +209,8 @@ impl<'a> Cells<'a> {
     }
 }
 
-/// Refuses missing values, unless they are allowed. Where columns only end early, the error says what to do.
+/// Refuses missing values unless they are `allowed`. If columns only end early, the error tells how to
+/// export them.
 fn checked(missing: Missing, columns: &[Vec<Complex64>], allowed: bool) -> Result<usize> {
     let gaps = |values: &[Complex64]| values.iter().filter(|v| v.re.is_nan()).count();
     let behind = |values: &[Complex64]| values.iter().rev().take_while(|v| v.re.is_nan()).count();
@@ -216,18 +219,18 @@ fn checked(missing: Missing, columns: &[Vec<Complex64>], allowed: bool) -> Resul
     checked.map_err(|why| if end_early { why.hint(END_EARLY).setting("allow_missing") } else { why })
 }
 
-/// Hint where columns have different lengths.
+/// Hint for columns of different lengths.
 const END_EARLY: &str = "write the columns that end early to a file of their own, with their axis; or keep what is missing as such";
 
-/// Hint where rows of another table follow a line of words.
+/// Hint for a line of words that is followed by rows of another table.
 pub const TABLES: &str =
     "write each table of the file to a file of its own, the lines above its rows with it";
 
-/// Words on a line of their own that end the rows.
+/// Words that end the rows when alone on a line.
 const ENDS: [&str; 3] = ["end", "endcurve", "eof"];
 
-/// First row with a value and distance in rows to the next, where values come at even distance and no other
-/// row has one: a channel of a lower rate.
+/// For a channel of a lower rate: index of the first row with a value, and rows from one value to the next.
+/// Only where all values are evenly spaced.
 fn sparse(values: &[Complex64]) -> Option<(usize, usize)> {
     let has = |i: &usize| !values[*i].re.is_nan();
     let mut with = (0..values.len()).filter(has);
@@ -237,10 +240,10 @@ fn sparse(values: &[Complex64]) -> Option<(usize, usize)> {
     (every > 1 && regular && values.len() > 3 * every).then_some((first, every))
 }
 
-/// A gap of blank lines: the number of rows before it, and the numbers of its lines.
+/// A gap of blank lines: the number of rows before it, and its line numbers.
 type Blank = (usize, Range<u64>);
 
-/// Whether gaps of equal length separate blocks of equal length: then blank lines are no missing values.
+/// Whether gaps of equal length separate blocks of equal length; blank lines then are not missing values.
 fn separate(blanks: &[Blank]) -> bool {
     let alike = |w: &[Blank]| {
         w[1].0 - w[0].0 == blanks[0].0 && (w[0].1.end - w[0].1.start) == (w[1].1.end - w[1].1.start)
@@ -248,7 +251,7 @@ fn separate(blanks: &[Blank]) -> bool {
     blanks.len() >= FEWEST_BLANKS && blanks.windows(2).all(alike)
 }
 
-/// Fewest gaps that count as even: fewer may be even by chance.
+/// Fewest gaps that count as even; fewer may be even by chance.
 const FEWEST_BLANKS: usize = 3;
 
 /// Inserts a missing value (NaN) for each blank line.
@@ -295,7 +298,7 @@ impl FieldParser<'_> {
         })
     }
 
-    /// Whether any row below this line holds a number.
+    /// Whether any row after this line holds a number.
     fn rows_behind(&self, line: &Line) -> bool {
         let behind = (line.at + line.text.len()).min(self.text.len());
         let has = |line: &Line| {
@@ -308,7 +311,7 @@ impl FieldParser<'_> {
 
     fn ragged(&self, line: &Line, fields: &Fields) -> Error {
         let n = self.dialect.columns;
-        // Where a field is no number, naming it helps more than the number of fields.
+        // A field that is not a number is a better message than the number of fields.
         let odd = fields.iter().find(|(_, f)| self.value(f).is_none() && !self.is_missing(f));
         if let Some((at, field)) = odd.filter(|_| self.dialect.names.is_none()) {
             return self.not_a_number(line, *at, field);
@@ -350,7 +353,7 @@ impl FieldParser<'_> {
         if let Some(form) = plain_form(field) {
             return error.hint(form);
         }
-        // The first cell of a row is not called missing: NaN is no remedy there.
+        // In the first cell the hint is to remove the line, not to write NaN.
         if self.dialect.names.is_some() && line.text[..at].trim_matches([' ', '"']).is_empty() {
             return error.hint(self.hint(line, "remove the line, or put # before it"));
         }
@@ -358,8 +361,8 @@ impl FieldParser<'_> {
         error.hint(self.hint(line, hint)).setting("allow_missing")
     }
 
-    /// The hint for an error in `line`: another table begins there, the file is cut off there, or else
-    /// `hint`.
+    /// The hint for an error in `line`: [`TABLES`] if another table begins there, [`CUT_OFF`] if the text
+    /// ends with this line, otherwise `hint`.
     fn hint(&self, line: &Line, hint: &'static str) -> &'static str {
         if self.dialect.cut(line).is_ok_and(|fields| self.begins_with_word(&fields)) && self.rows_behind(line)
         {
@@ -399,7 +402,7 @@ mod tests {
         let plain = rows("t,a\n0,1.5\n1,-2e-3\n\n# end\n\u{1a}", false).unwrap();
         assert_eq!((column(&plain, 0), column(&plain, 1)), ([0.0, 1.0].as_slice(), [1.5, -2e-3].as_slice()));
         assert_eq!(plain.remarks, ["end"]);
-        // The first mark decides, however late it comes.
+        // The first decimal mark decides for all rows, however late it occurs.
         let comma = rows("t;a\n0;1\n1;\"2,5\"\n", false).unwrap();
         assert_eq!(column(&comma, 1), [1.0, 2.5]);
     }

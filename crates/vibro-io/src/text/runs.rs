@@ -1,4 +1,4 @@
-//! Splits runs of a measurement that are side by side, each with its own times.
+//! Splits the runs of a measurement that are side by side, each with its own times.
 //!
 //! ```text
 //! Time (s) Run #1,Force (N) Run #1,Time (s) Run #2,Force (N) Run #2
@@ -14,7 +14,7 @@ use super::word_columns::without;
 use crate::source::Source;
 use vibro_record::{AxisKind, Result};
 
-/// For each of several runs, which columns belong to other runs; empty for a text without such runs.
+/// For each run, which columns belong to other runs; empty for a text without runs side by side.
 pub fn others_of(dialect: &Dialect) -> Vec<Vec<bool>> {
     let names = dialect.names.as_deref().unwrap_or_default();
     let labels: Option<Vec<&str>> = names.iter().map(|name| Some(name.run()?.1)).collect();
@@ -30,7 +30,7 @@ pub fn others_of(dialect: &Dialect) -> Vec<Vec<bool>> {
     times.iter().map(|run| labels.iter().map(|label| label != run).collect()).collect()
 }
 
-/// The text of one run: without the columns of `others`, and without rows in which the run has ended.
+/// The text of one run: without the columns marked in `others`, and without the rows after the run's end.
 ///
 /// # Errors
 /// If the text cannot be read.
@@ -39,7 +39,7 @@ pub fn alone(text: &Text, dialect: &Dialect, others: &[bool]) -> Result<Source> 
     let whole = encoding::decode(&bytes);
     let (mut kept, mut ended) = (String::with_capacity(whole.len()), 1);
     for line in Lines::new(&whole, 0, 1, dialect.remarks).filter(|line| !line.is_blank()) {
-        // Blank lines keep the line numbers those of the file.
+        // Blank lines keep the line numbers as in the file.
         kept.extend((ended..line.number).map(|_| '\n'));
         ended = line.number;
         let cells = fields(line.text, dialect.separator).unwrap_or_default();

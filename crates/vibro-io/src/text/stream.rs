@@ -1,4 +1,4 @@
-//! Reads columns of a long text again, block by block, so that values need no memory between two readings.
+//! Reads columns of a long text a second time, block by block, so that memory is needed for one block only.
 
 use super::fast::{Blocks, RowShape, parsed};
 use crate::source::Source;
@@ -10,17 +10,17 @@ pub(crate) struct Columns {
     path: PathBuf,
     shape: RowShape,
     blocks: Blocks,
-    /// Column number from 0 and factor to SI of each channel that is handed out.
+    /// Column index from 0 and factor to SI of each channel that is returned.
     handed: Vec<(usize, f64)>,
-    /// Values of all columns in a block.
+    /// Values of all columns in one block.
     values: Vec<Vec<f64>>,
 }
 
 impl Columns {
-    /// Opens columns of a clean text, up to the byte `end`.
+    /// Opens the columns of a clean text up to the byte `end`.
     ///
     /// # Errors
-    /// If it cannot be opened.
+    /// If the file cannot be opened.
     pub fn open(source: &Source, shape: RowShape, end: u64, handed: Vec<(usize, f64)>) -> Result<Columns> {
         let blocks = Blocks::of(source, &shape, end)?;
         let values = vec![Vec::new(); shape.columns];

@@ -1,14 +1,14 @@
 //! Detects tables with names above their columns: CSV and TSV.
 //!
 //! ```text
-//! # a remark                         remarks behind # or %, kept as notes
+//! # a remark                         remarks after # or %, kept as notes
 //! Sample rate; 1000; Hz              preamble: `key: value`, or key and value in cells
 //! time [s]; velocity [mm/s]          names, with units in the usual spellings (see `names`) …
 //! s; mm/s                            … or with a second row that holds the units
 //! 0,000; 1,5                         rows; comma, semicolon or tab separates, a comma or point is decimal
 //! ```
-//! A time, a frequency or a counter is the abscissa by its name. Columns `X_re` and `X_im` over frequency are
-//! one complex record.
+//! Time, frequency or a counter is recognised as the abscissa by its name. Columns `X_re` and `X_im` over
+//! frequency become one complex record.
 
 use super::clock;
 use super::decoded::{Text, in_line, shorten};
@@ -26,7 +26,7 @@ use std::ops::Range;
 use vibro_record::units::Unit;
 use vibro_record::{AxisKind, Error, Finding, Result};
 
-/// Separators in the order of trial: a comma last, since numbers hold it most often.
+/// Separators in the order of trial: the comma last, since numbers may contain it.
 const SEPARATORS: [u8; 3] = *b"\t;,";
 
 const REMARKS: &[&str] = &["#", "%"];
@@ -34,10 +34,10 @@ const REMARKS: &[&str] = &["#", "%"];
 /// Most lines above the rows that are searched for names.
 const DEEPEST: usize = 4;
 
-/// Finds the first row of numbers with names right above it; `None` where there is none.
+/// Finds the first row of numbers with names directly above it; `None` if there is none.
 ///
-/// In a file with the ending of a table (csv, tsv) one column is enough, and a header that does not fit its
-/// rows is still a header, so that reading can name the row at fault.
+/// In a file named as a table (csv, tsv) one column is enough. A header that does not fit its rows is still
+/// a header there, so that reading can name the faulty row.
 pub fn detect(text: &Text, options: &Options) -> Option<Dialect> {
     if let Some(found) = beside_rows(text) {
         return Some(found);
@@ -49,7 +49,8 @@ pub fn detect(text: &Text, options: &Options) -> Option<Dialect> {
     for line in Lines::new(&text.head, 0, 1, REMARKS).filter(|l| !l.is_blank()) {
         if line.remark.is_none() && line.number > begin {
             let counts = SEPARATORS.map(|mark| row(line.text, mark, options));
-            // A separator that cuts this line into as many cells as the line before was tried there.
+            // A separator that cuts this line into as many cells as the line before was tried there
+            // already.
             let new = (0..SEPARATORS.len()).filter(|i| counts[*i] != before[*i]);
             let rows: Vec<(Separator, Option<usize>)> =
                 new.map(|i| (Separator::Char(SEPARATORS[i]), counts[i])).collect();
@@ -58,8 +59,8 @@ pub fn detect(text: &Text, options: &Options) -> Option<Dialect> {
                 |n: usize| rows.iter().filter(move |(_, count)| count.is_some_and(|c| (c > 1) == (n > 1)));
             for (separator, count) in of(2) {
                 let count = count.unwrap_or(0);
-                // Rows above this one that do not parse belong to the table: reading reports them, with line
-                // and column.
+                // Rows above this one that cannot be parsed belong to the table. Reading them reports the
+                // error with line and column.
                 let torn = above.iter().rev().take_while(|l| is_torn(l.text, *separator, count)).count();
                 let (upper, torn) = above.split_at(above.len() - torn);
                 let torn = torn.first().and_then(|first| fit(upper, *first, *separator, count, &text.head));
@@ -71,7 +72,7 @@ pub fn detect(text: &Text, options: &Options) -> Option<Dialect> {
                     found => misfit = misfit.or(found.map(|(found, _)| found)),
                 }
             }
-            // One column is tried last: `1,5` under `a,b` is two cells, no number with a decimal comma.
+            // One column is tried last: `1,5` under `a,b` is two cells, not a number with a decimal comma.
             let alone = |(separator, _): &(Separator, _)| fit(&above, line, *separator, 1, &text.head);
             let mut below = Lines::new(&text.head, line.at, line.number, REMARKS)
                 .filter(|l| !l.is_blank() && l.remark.is_none());
@@ -92,14 +93,16 @@ pub fn detect(text: &Text, options: &Options) -> Option<Dialect> {
     misfit.filter(|_| text.called_csv()).map(|found| decided(found, text, options))
 }
 
-/// Number of fields of a row: all are numbers, missing or a clock, and at least one is a number. Else `None`.
+/// Number of fields of a row: all are numbers, missing values or a clock, and at least one is a number.
+/// `None` for other lines.
 fn row(text: &str, mark: u8, options: &Options) -> Option<usize> {
     let fields = fields(text, Separator::Char(mark)).ok()?;
     let clock = clock::columns(&fields).unwrap_or(0..0);
     let point = options.decimal_comma != Some(true);
-    // Where commas separate, a number with a decimal comma must be in quotes.
+    // With commas as separators, a number with a decimal comma must be in quotes.
     let comma = options.decimal_comma != Some(false) && (mark != b',' || text.contains('"'));
-    // A preamble may hold `Overload, 0`. A single number with both marks is ambiguous, and the user is asked.
+    // A preamble may contain `Overload, 0`. A single number with both marks is ambiguous, so the user is
+    // asked.
     let word = |text: &str| {
         text.starts_with(|c: char| c.is_ascii_alphabetic()) && !text.to_lowercase().starts_with("nan")
     };
@@ -122,8 +125,8 @@ fn row(text: &str, mark: u8, options: &Options) -> Option<usize> {
     (numbers > 0).then_some(fields.len())
 }
 
-/// Sets the decimal mark in the dialect: as stated, else the last comma or point of the first number that has
-/// one.
+/// Sets the decimal mark in the dialect: the stated one, else the last comma or point of the first number
+/// that has one.
 fn decided(found: Dialect, text: &Text, options: &Options) -> Dialect {
     let rows = found.rows(&text.head).filter(|line| line.remark.is_none());
     let cells = rows.flat_map(|line| found.cut(&line).unwrap_or_default().into_iter().enumerate());
@@ -136,11 +139,12 @@ fn decided(found: Dialect, text: &Text, options: &Options) -> Dialect {
     Dialect { decimal: if comma == Some(true) { b',' } else { b'.' }, stated, ..found }
 }
 
-/// Refuses a column with `1,000` beside `998`: the mark may group digits. A finding names columns that hold
-/// only numbers like `1,000`. A number like `1,5` in any column shows the decimal mark and ends the doubt.
+/// Refuses a column with `1,000` beside `998`, since its mark may separate thousands. A finding lists
+/// columns that hold only numbers like `1,000`. A number like `1,5` in any column shows the decimal mark
+/// and removes the doubt.
 ///
 /// # Errors
-/// Names the first doubtful cell.
+/// Names the first ambiguous cell.
 pub fn grouped(text: &Text, dialect: &Dialect) -> Result<Option<Finding>> {
     let mut columns = vec![(None, false); dialect.columns];
     for line in dialect.rows(&text.head).filter(|line| line.remark.is_none() && !dialect.stated) {
@@ -173,8 +177,8 @@ pub fn grouped(text: &Text, dialect: &Dialect) -> Result<Option<Finding>> {
     }))
 }
 
-/// The dialect of rows that begin at `first`, with names from the lines above, in rows of their own or behind
-/// keys; and whether there are as many names as columns.
+/// The dialect of rows that begin at `first`, and whether there are as many names as columns. The names are
+/// in rows of their own above or in the preamble after its keys.
 fn fit(
     above: &[Line],
     first: Line,
@@ -187,7 +191,7 @@ fn fit(
     let rows: Vec<Fields> = rows.take(BESIDE).map_while(|l| fields(l.text, separator).ok()).collect();
     // Keys of a preamble may have a column of their own, which is empty in the rows.
     let skipped = usize::from(rows.len() > 1 && rows.iter().all(|row| row.len() > 1 && row[0].1.is_empty()));
-    // A line without any cell above the values holds none of their names.
+    // A line that has no cell above the values cannot name their columns.
     let empty = |line: &Line| {
         let cells = fields(line.text, separator).unwrap_or_default();
         skipped > 0 && cells.iter().skip(skipped).all(|(_, cell)| cell.is_empty())
@@ -252,19 +256,20 @@ fn fit(
     Some((dialect, fits(columns)))
 }
 
-/// The cells of date and time in the first row of `values` below a `block` of names, with their milliseconds.
+/// The cells of date and time in the first row of `values` below a `block` of names, including a cell of
+/// milliseconds.
 fn clock_cells(block: &[Fields], values: &[(usize, Cow<str>)]) -> Option<Range<usize>> {
     clock::columns(values).map(|cells| {
         let ms = block.iter().any(|line| line.get(cells.end).is_some_and(|(_, cell)| cell == "ms"));
-        // A clock that prints parts of a second has its milliseconds already.
+        // A clock that prints decimals of a second already includes the milliseconds.
         let whole = !clock::printed_seconds(&clock::joined(&values[cells.clone()])).contains('.');
         cells.start..cells.end + usize::from(ms && whole)
     })
 }
 
-/// Names a first column time or frequency whose name is only the unit of one: `min,CH1`.
+/// Names the first column time or frequency if its name is only a unit of one of them: `min,CH1`.
 fn name_by_unit(names: &mut [Name]) {
-    // `s` is time only where all other names are units, too.
+    // `s` is time only if all other names are also units.
     let units = names.iter().skip(1).all(|name| Unit::parse(&name.name).is_some());
     let Some(first) = names.first_mut().filter(|first| first.unit.is_none()) else { return };
     let timed = Name::with_unit_row("", &first.name);
@@ -274,10 +279,10 @@ fn name_by_unit(names: &mut [Name]) {
     }
 }
 
-/// What the lines of a head state, each as `key: value` where it has a key.
+/// The statements of header lines, as `key: value` if a line has a key.
 fn statements(head: &[&Line], separator: Separator) -> Vec<String> {
-    // A rate behind its key takes precedence over a row with one rate a column, which may be those of a
-    // filter.
+    // A rate after its key takes precedence over a row with one rate for each column, which may be those of
+    // a filter.
     let mut keyed: Vec<String> = head.iter().map(|l| key_and_value(l, separator)).collect();
     if !Stated::of(keyed.iter().map(String::as_str), None).states_rate() {
         for (line, keyed) in head.iter().zip(&mut keyed).filter(|(line, _)| line.remark.is_none()) {
@@ -289,17 +294,17 @@ fn statements(head: &[&Line], separator: Separator) -> Vec<String> {
     keyed
 }
 
-/// Number of the line `data:` that announces the rows; 0 where there is none.
+/// Number of the line `data:` that announces the rows; 0 if there is none.
 pub(super) fn beginning(head: &str) -> u64 {
     let number = |line: &str| line.starts_with(|c: char| c.is_ascii_digit() || "+-. \t".contains(c));
     let begin = |at: &usize| head[..*at].rfind('\n').map_or(0, |end| end + 1);
-    // Fast: only lines with a colon are looked at, and few heads hold one.
+    // Fast, since only lines with a colon are examined, and few headers have one.
     let says = |at: &usize| {
         let rest = head[at + 1..].lines().next().unwrap_or_default();
         head[begin(at)..*at].eq_ignore_ascii_case("data")
             && rest.trim_matches([',', ';', '\t', ' ']).is_empty()
     };
-    // Rows must follow the line and not come before it; a single number before it may be the value of a key.
+    // Rows must follow the line and not precede it; a single number before it may be the value of a key.
     let begins = |at: &usize| {
         let before = head[..begin(at)].lines().rev().take(2).filter(|line| number(line)).count();
         before < 2 && head[*at..].lines().nth(1).is_some_and(number)
@@ -363,7 +368,8 @@ mod tests {
         assert_eq!(said, ["by hand", "Sample rate: 1000 Hz", "Operator: A;B", "12: 13", "more"]);
     }
 
-    /// Free text above thousands of rows, and no names: to try each of them as the first took minutes here.
+    /// Free text above thousands of rows, and no names: trying each row as the first row of a table took
+    /// minutes.
     #[test]
     fn rows_without_names_are_given_up_at_once() {
         let rows: String = (0..10_000).map(|i| ["1,2,3\n", "4,5,6\n"][i % 2]).collect();

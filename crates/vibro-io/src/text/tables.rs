@@ -1,4 +1,4 @@
-//! Chooses between two tables in one text: the longer is read, where the other is short beside it.
+//! Chooses between two tables in one text: the longer one is read if the other is much shorter.
 
 use super::decoded::Text;
 use super::encoding;
@@ -6,8 +6,8 @@ use crate::number;
 use crate::source::Source;
 use vibro_record::{Finding, Result};
 
-/// Least ratio of the numbers of rows of the longer and the shorter table: a summary of rows is at least this
-/// much shorter.
+/// Least ratio of the row counts of the longer and the shorter table. A summary of the rows is at least
+/// this much shorter.
 pub(crate) const LONGER: usize = 10;
 
 /// Number of lines that begin with a number.
@@ -22,8 +22,8 @@ pub(crate) fn rows(bytes: &[u8]) -> usize {
     count(&encoding::decode(bytes))
 }
 
-/// The text with only the longer of two tables, of which the second begins at `line`, and a finding on the
-/// other; `None` where neither is [`LONGER`] times as long. Lines keep their numbers.
+/// The text with only the longer of two tables, the second of which begins at `line`, and a finding on the
+/// other. `None` if neither is [`LONGER`] times as long. Lines keep their numbers.
 ///
 /// # Errors
 /// If the file cannot be read.

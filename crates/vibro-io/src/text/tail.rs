@@ -1,4 +1,5 @@
-//! Checks the end of a text of numbers for a cut-off row, and finds the resolution of the printed abscissa.
+//! Checks the end of a text of numbers for a row cut off, and determines the resolution of the printed
+//! abscissa.
 
 use super::clock;
 use super::decoded::Text;
@@ -10,16 +11,16 @@ use std::borrow::Cow;
 use std::io::{Read, Seek, SeekFrom};
 use vibro_record::{Error, Finding, Result};
 
-/// Number of bytes at the end that are looked at.
+/// Bytes at the end of the file that are examined.
 const LOOK: u64 = 4096;
-/// Fewest rows above the last one that must have the same digits before the last one can be called short.
+/// Fewest rows above the last one, all with equal digits, before the last one can be called short.
 const ROWS: usize = 3;
 
-/// Hint where the last row of a file cannot be read.
+/// Hint for a last row that cannot be read.
 pub(crate) const CUT_OFF: &str =
     "the file ends within this row, so the export was cut off: export it again, or remove the row";
 
-/// The last rows of a source, without a part of a row: that has fewer digits, too.
+/// The last whole rows: a first row cut by the tail's start would look short, too.
 pub fn of(source: &Source) -> Result<Cow<'_, [u8]>> {
     let from = source.len().saturating_sub(LOOK);
     let rows = |bytes: &[u8]| bytes.iter().position(|b| *b == b'\n').filter(|_| from > 0).unwrap_or(0);
@@ -33,8 +34,8 @@ pub fn of(source: &Source) -> Result<Cow<'_, [u8]>> {
     Ok(tail.split_off(rows(&tail)).into())
 }
 
-/// Doubt that the last number is cut off: `text` has no line end, and the number has fewer digits than all
-/// those of its column in the rows above.
+/// Doubt that the last number is cut off: `text` does not end with a line end, and the number has fewer
+/// digits than its column in all rows above, which agree.
 pub(crate) fn cut_off(text: &[u8], separator: Separator, decimal: u8) -> Option<Finding> {
     if text.last().is_none_or(|b| matches!(b, b'\n' | b'\r' | 0x1a)) {
         return None;
@@ -47,7 +48,7 @@ pub(crate) fn cut_off(text: &[u8], separator: Separator, decimal: u8) -> Option<
         .map(|row| row.rsplit(|b| *b == mark || b.is_ascii_whitespace()).next().unwrap_or(row));
     let last = rows.next()?;
     let found = digits(last, decimal)?;
-    // Rows end at the line of names, which are no numbers.
+    // The rows end upwards at the line of names, which are not numbers.
     let above: Vec<(usize, usize)> = rows.map_while(|cell| digits(cell, decimal)).collect();
     let usual = *above.first()?;
     let agree = above.len() >= ROWS && above.iter().all(|d| *d == usual);
@@ -56,7 +57,7 @@ pub(crate) fn cut_off(text: &[u8], separator: Separator, decimal: u8) -> Option<
         .then(|| Finding::doubt("last-number-cut-off").name("found", String::from_utf8_lossy(last).as_ref()))
 }
 
-/// Number of digits behind the decimal mark and in the exponent; `None` for text that is no number.
+/// Number of digits after the decimal mark and in the exponent; `None` for text that is not a number.
 fn digits(cell: &[u8], decimal: u8) -> Option<(usize, usize)> {
     number::parse_with(cell, decimal)?;
     let end = cell.iter().position(u8::is_ascii_alphabetic).unwrap_or(cell.len());
@@ -65,8 +66,8 @@ fn digits(cell: &[u8], decimal: u8) -> Option<(usize, usize)> {
     Some((behind, exponent.iter().filter(|b| b.is_ascii_digit()).count()))
 }
 
-/// Half a unit in the last digit of a printed column, in its unit, from the rows in the head and at the end
-/// of the text: the largest values of a rising column have the most digits.
+/// Half a unit in the last digit of a printed column, in the column's unit. Reads the rows in the head and
+/// at the end of the text: the largest values, at the end of a rising column, have the most digits.
 pub fn resolution(text: &Text, tail: &[u8], dialect: &Dialect, column: usize) -> f64 {
     let mut digits = Digits::default();
     let mut take = |line: Line| {
@@ -88,7 +89,7 @@ pub fn resolution(text: &Text, tail: &[u8], dialect: &Dialect, column: usize) ->
     digits.resolution()
 }
 
-/// Digits that a column is printed with: a fixed number of decimals, or of significant digits.
+/// Digits of a printed column: largest counts of decimals and of significant digits, and largest magnitude.
 #[derive(Debug, Default)]
 pub(crate) struct Digits {
     significant: i32,
@@ -110,9 +111,9 @@ impl Digits {
         self.largest = self.largest.max(value.abs());
     }
 
-    /// Half a unit in the last digit, in the unit of the column. Numbers printed with `%.3f` share their last
-    /// decimal, those with `%.6g` their number of digits. The coarser of both bounds holds for either, and
-    /// for the shortest form that reads back.
+    /// Half a unit in the last digit, in the unit of the column. Numbers printed with `%.3f` share the
+    /// number of decimals, those with `%.6g` the number of significant digits. The format is unknown, so
+    /// the coarser bound is used; it also holds for shortest round-trip printing.
     pub fn resolution(&self) -> f64 {
         let leading = if self.largest > 0.0 { self.largest.log10().floor() as i32 + 1 } else { 0 };
         let unit = |exponent: i32| 10f64.powi(exponent);
@@ -148,7 +149,7 @@ mod tests {
     fn a_long_file_is_judged_wherever_its_tail_begins() {
         for end in ["\n", "\r\n"] {
             let rows = format!("1.234567E-03{end}").repeat(2 * LOOK as usize / 12);
-            // A first line of every length moves the start of the tail through all bytes of a row.
+            // First lines of 0 to 15 characters move the start of the tail through all bytes of a row.
             for phase in 0..=15 {
                 let text = format!("{}{end}{rows}1.234", "x".repeat(phase));
                 assert!(is_cut_off(&text), "phase {phase}, {end:?}");
@@ -191,7 +192,7 @@ mod tests {
         assert!(close(of(&["1.000E-03", "1.234E+01"]), 0.5e-2));
         assert!(close(of(&["0.0009765", "10.0001"]), 0.5e-4));
         assert!(close(of(&["0", "1", "2"]), 0.5));
-        // Shortest forms: 0.1 + 0.2 has 17 digits, and so may the others have had.
+        // Shortest round-trip form: one value with 17 digits shows full double precision for the column.
         assert!(of(&["0", "0.1", "0.30000000000000004", "0.5"]) < 1e-16);
     }
 }

@@ -76,7 +76,7 @@ fn a_rate_in_the_preamble_or_stated() {
     assert_eq!(spectrum.records[0].axis(), &Axis::frequency(0.0, 100.0, 2));
 }
 
-/// A spectrum of 0 to 50 Hz; printed with one decimal, 12.5 Hz apart.
+/// A spectrum of 0 to 50 Hz with lines 12.5 Hz apart, printed with one decimal.
 #[test]
 fn a_base_band_must_go_with_the_frequency_column() {
     let spectrum = |frequencies: &[f64]| {
@@ -88,18 +88,19 @@ fn a_base_band_must_go_with_the_frequency_column() {
         read_with(&Reader::new().base_band(Some(band)), text).map(|r| r.records[0].axis().clone())
     };
     assert_eq!(step(&whole, 50.0).unwrap(), Axis::frequency(0.0, 12.5, 5));
-    // Half a tenth is what the digits leave open at the end.
+    // Half a unit in the last digit, 0.05 Hz, is within the printed resolution.
     assert!(step(&whole, 50.04).is_ok() && step(&whole, 50.2).is_err());
     let error = step(&whole, 100.0).unwrap_err().to_string();
     assert!(error.contains("from 0 to 50 Hz") && error.contains("base band of 100 Hz"), "{error}");
-    // Lines without 0 Hz end at the base band; a zoomed spectrum does not begin at 0 Hz, nor end there.
+    // Lines without 0 Hz end at the base band. A zoomed spectrum neither begins at 0 Hz nor ends at the
+    // base band.
     assert_eq!(step(&spectrum(&[12.5, 25.0, 37.5, 50.0]), 50.0).unwrap(), Axis::frequency(12.5, 12.5, 4));
     assert!(step(&spectrum(&[100.0, 112.5, 125.0, 137.5, 150.0]), 50.0).is_err());
-    // A transform of n samples ends one line below: the column is believed.
+    // A transform of n samples ends one line below the base band: the column is used.
     let half_open = spectrum(&[0.0, 12.5, 25.0, 37.5]);
     assert_eq!(step(&half_open, 50.0).unwrap(), Axis::frequency(0.0, 12.5, 4));
     assert!(step(&half_open, 62.5).is_err() && step(&half_open, 44.0).is_err());
-    // A kilohertz column says so.
+    // The heading states kHz.
     let kilo = "f [kHz],v [m/s]\n0,1\n0.025,1\n0.05,1\n";
     assert_eq!(step(kilo, 50.0).unwrap(), Axis::frequency(0.0, 25.0, 3));
 }
@@ -175,7 +176,7 @@ fn a_column_that_only_counts_is_left_out() {
     let between = of("t [s],Counter,a [g],frame\n0.0,7,5,1\n0.1,8,6,2\n");
     assert_eq!(between.records.len(), 1);
     assert!(has_finding(&between.findings, "columns-count", &["columns=Counter, frame"]));
-    // Not counting: a record.
+    // Values that do not count the rows: a record.
     assert_eq!(of("n,a [g]\n1,5\n3,6\n").records.len(), 2);
     assert_eq!(of("index\n0\n1\n").records.len(), 1);
 }
@@ -268,12 +269,12 @@ fn angular_frequencies_become_hertz() {
     let recording = of("omega [rad/s],a [g]\n0,1\n1,2\n2,3\n");
     assert_eq!(recording.records.len(), 1);
     let axis = recording.records[0].axis();
-    // One division by 2π.
+    // Exact: one division by 2π.
     assert_eq!((&axis.kind, axis.step()), (&AxisKind::Frequency, Some(1.0 / std::f64::consts::TAU)));
     assert!(has_finding(&recording.findings, "axis-angular", &[]), "{:?}", recording.findings);
 }
 
-/// One cycle a minute is 1/60 Hz; as a speed it stays a channel.
+/// One cycle per minute is 1/60 Hz as a frequency axis; as a speed it stays a channel.
 #[test]
 fn cycles_a_minute_become_hertz() {
     for unit in ["CPM", "cpm", "RPM", "rpm", "1/min"] {
@@ -283,7 +284,7 @@ fn cycles_a_minute_become_hertz() {
             let recording = of(format!("{head}\n0,1\n60,2\n120,3\n180,4\n"));
             let [Record::Spectrum(spectrum)] = &recording.records[..] else { panic!("{head}") };
             assert_eq!(spectrum.axis.kind, AxisKind::Frequency, "{head}");
-            // The quotient of 60 by 60, rounded twice.
+            // Tolerance: 60 divided by 60, rounded twice.
             assert!((spectrum.axis.step().unwrap() - 1.0).abs() < 1e-15, "{head}: {:?}", spectrum.axis);
             assert_eq!(spectrum.meta.unit.symbol(), "m/s");
         }
@@ -301,7 +302,7 @@ fn missing_values_kept_are_counted() {
     assert!(has_finding(&kept.findings, "missing-kept", &["n=1"]));
 }
 
-/// Which texts are taken for CSV when nobody says so, under a name without an ending.
+/// Texts that are detected as CSV without an option, in files without an extension.
 #[test]
 fn plain_columns_are_left_to_the_reader_of_plain_columns() {
     let sniffed = |name: &str, text: &[u8]| {
@@ -313,12 +314,12 @@ fn plain_columns_are_left_to_the_reader_of_plain_columns() {
         assert!(!sniffed("x", text.as_bytes()), "{text:?}");
     }
     assert!(!sniffed("x.csv", b"t,a\n0,\x001\n"));
-    // A head that ends within a row.
+    // The head ends within a row.
     let long = format!("t,a\n{}", "0.125,1\n".repeat(10_000));
     assert!(sniffed("x", long.as_bytes()));
 }
 
-/// 20 000 rows, more than the first bytes hold: times, a velocity that falls and rises, and a distance that
+/// 20 000 rows, more than the head holds: times, a velocity that falls and rises, and a distance that
 /// rises.
 fn long_text() -> String {
     let row = |i: u32| format!("{},{},{}\n", f64::from(i) / 1024.0, (i * 7919) % 1009, 3 * i);
@@ -348,7 +349,7 @@ fn a_text_that_is_read_again_has_the_values_of_one_that_is_held() {
     }
 }
 
-/// Settings in rows of two cells, as of a logger: none is a row of units.
+/// Settings of a logger in rows of two cells: none is a row of units.
 #[test]
 fn rows_of_settings_above_the_names() {
     for blank in ["", ",", "\n"] {
@@ -386,7 +387,7 @@ fn a_survey_says_what_reading_says() {
     assert_eq!((headers[1].max_abs, headers[1].max_at, headers[1].n), (Some(9.0 * 1e-3), Some(0.0), 2));
 }
 
-/// As PASCO's programs and Vernier's write them.
+/// In the formats of PASCO's and Vernier's programs.
 #[test]
 fn runs_side_by_side_have_times_of_their_own() {
     let rows = "0;1;0;5\n0,5;2;0,25;6\n1;0;0,5;7\n;;0,75;8\n";
@@ -410,7 +411,7 @@ fn runs_side_by_side_have_times_of_their_own() {
         let why = read_with(&Reader::new(), format!("{names}\n{odd}")).unwrap_err();
         assert_eq!(why.line(), Some(3), "{why}");
     }
-    // A time behind its values is known, too.
+    // A time column after its values is also recognised.
     let behind = of("Force Run #1 (N),Time Run #1 (s)\n1,0\n2,0.5\n0,1\n");
     assert_eq!((behind.records.len(), behind.records[0].axis()), (1, &Axis::time(0.0, 0.5, 3)));
 }
@@ -430,11 +431,11 @@ fn two_clocks_in_one_file_are_refused() {
     };
     let why = read_text(text(2e-4, 0.0)).unwrap_err().to_string();
     assert!(why.contains("\"Time A\" and \"Time B\" run over 0.0049 and 0.0098"), "{why}");
-    // One that runs a hundredth faster drifts apart, here by less than the digits of the first.
+    // A clock that runs 1 % fast drifts apart, here by less than the printed digits of the first clock.
     let row = |i: i32| format!("{:.4},{:.3},{}\n", 1e-4 * f64::from(i), 0.101 * f64::from(i), 2 * i % 5);
     let drifts = read_text("t (s),elapsed (ms),a (g)\n".to_owned() + &(0..50).map(row).collect::<String>());
     assert!(has_finding(&drifts.unwrap().findings, "columns-rise-evenly", &["columns=elapsed"]));
-    // The same clock read elsewhere is no other.
+    // The same clock, also with another start, is not a second clock.
     assert!(read_text(text(1e-4, 0.0)).is_ok() && read_text(text(1e-4, 7.0)).is_ok());
 }
 
@@ -445,7 +446,7 @@ fn rows_of_several_channels_are_refused_and_whole_numbers_are_read() {
         let text = head.to_owned() + &(0..60).map(row).collect::<String>();
         read_table(&Source::memory("x.csv", text.into_bytes()).unwrap(), &Options::default(), false)
     };
-    // In turns under any name; where one sensor is read twice as often, under one that says so.
+    // In a cycle under any name; also if one sensor is read twice as often, under a name that says sensor.
     for (head, number) in [
         ("t (s),which,a (g)\n", (|i| 1 + i % 2) as fn(i32) -> i32),
         ("t (s),Sensor ID,a (g)\n", |i| if i % 3 == 0 { 7 } else { 9 }),
@@ -454,7 +455,7 @@ fn rows_of_several_channels_are_refused_and_whole_numbers_are_read() {
         let why = of(head, number).unwrap_err().to_string();
         assert!(why.contains("and back"), "{why}");
     }
-    // A level in volts, a sensor of its own file, a state that changes now and then, and a count.
+    // Accepted: a level in volts, one sensor number, a state that changes now and then, and a count.
     for (head, number) in [
         ("t (s),U (V),a (g)\n", (|i| 1 + i % 2) as fn(i32) -> i32),
         ("t (s),Sensor ID,a (g)\n", |_| 7),
@@ -480,7 +481,7 @@ fn rates_of_a_filter_are_no_sampling_rate() {
     assert_eq!((found.records.len(), found.records[0].axis()), (2, &Axis::time(0.0, 1e-3, 3)));
 }
 
-/// `frame` counts pictures, too; a load in newtons is one by its name and by its decimals.
+/// `frame` may also be a counter; a load in newtons is a force by its name and by its decimals.
 #[test]
 fn the_load_on_a_frame_is_a_force() {
     for rows in ["0,1.5\n1,2.5\n2,0.5\n", "0,12\n1,-7\n2,3\n"] {
@@ -511,7 +512,7 @@ fn a_number_that_is_cut_off_is_seen_behind_every_line_end() {
     }
 }
 
-/// The digits of the abscissa are those of its text, also where rows are read as bytes: 1024 Hz in whole
+/// The printed digits of the abscissa are also found in a table on the fast path: 1024 Hz printed in whole
 /// milliseconds.
 #[test]
 fn the_digits_of_a_long_table_are_those_of_its_first_and_last_rows() {
@@ -521,12 +522,12 @@ fn the_digits_of_a_long_table_are_those_of_its_first_and_last_rows() {
     }
     let recording = of(text);
     let step = recording.records[0].axis().step().unwrap();
-    // Both ends are rounded by half a millisecond at most.
+    // Both ends are rounded by at most half a millisecond.
     assert!((step - 1.0 / 1024.0).abs() <= 1e-3 / 19_999.0, "{step}");
 }
 
-/// A clock of whole seconds has its thousandths in the column `ms` beside it; one that prints them does not
-/// get them twice.
+/// A clock of whole seconds has its milliseconds in the column `ms` beside it. A clock that prints
+/// milliseconds does not get them twice.
 #[test]
 fn milliseconds_beside_a_clock_count_once() {
     for whole in [true, false] {
@@ -558,11 +559,11 @@ fn what_a_head_says_beside_the_values_is_said() {
         found.all_findings()
     );
     assert!(has_finding(&found.findings, "columns-rise-evenly", &["columns=turns"]), "{:?}", found.findings);
-    // A ramp in mm is a measurement, and a factor of 1 none.
+    // A ramp in mm is a measurement, and a factor of 1 changes nothing.
     let found = of(format!("SLOPE,1,1\nRATE,1000 Hz\nforce [N],way [mm]\n{counted}"));
     let own = |found: &Finding| found.code == "rate-from-head";
     assert!(found.all_findings().iter().all(own), "{:?}", found.all_findings());
-    // Statements of which one does not mean what the other does.
+    // Statements that resemble a rate, or two that contradict each other.
     let rate = |head: &str| match &plain(&format!("{head}\n{}", rows(&|i| format!("{}\n", (i * i) % 7)))) {
         Record::Trace(trace) => trace.rate(),
         _ => panic!(),
@@ -582,7 +583,7 @@ fn the_cell_that_is_no_number_is_named() {
     assert!(found.contains("line 2, column 3") && found.contains("\"4.2 mm/s\""), "{found}");
 }
 
-/// A unit in the cells is never dropped: a time in ms would be one in s.
+/// A unit in the cells is never dropped: a time in ms would be read in s.
 #[test]
 fn units_in_the_cells_are_those_of_the_values_or_are_refused() {
     for text in [
@@ -601,14 +602,14 @@ fn units_in_the_cells_are_those_of_the_values_or_are_refused() {
         assert!(has_finding(&found.findings, "units-in-cells", &["time (ms)"]), "{:?}", found.findings);
         assert!(!has_finding(&found.findings, "axis-unit-assumed", &[]), "{:?}", found.findings);
     }
-    // What is no unit, or has another in its name, stays a column of words.
+    // The unit cells stay a column of words if the name already has a unit.
     let plain = read_with(&Reader::new(), "time (s),unit,x\n0,m,1\n0.5,m,2\n1,m,3\n").unwrap();
     assert_eq!(plain.records[0].axis(), &Axis::time(0.0, 0.5, 3));
     assert!(has_finding(&plain.findings, "columns-of-words", &["columns=unit (m)"]), "{:?}", plain.findings);
     let glued = "time,level\n0ms,4\n0.5ms,5\n1ms,6\n";
     let why = read_with(&Reader::new(), glued).unwrap_err();
     assert!(why.advice().ends_with("name [ms]"), "{}", why.advice());
-    // Done as it says.
+    // The hint works.
     let mended = glued.replace("ms", "").replacen("time", "time [ms]", 1);
     assert_eq!(of(mended).records[0].axis(), &Axis::time(0.0, 0.5e-3, 3));
 }
@@ -641,7 +642,7 @@ fn columns_of_one_word_are_left_out_and_said() {
             found.findings
         );
     }
-    // What changes may tell channels apart, or be the time: the times of all else must rise.
+    // Changing words may name channels or be the time, so the remaining times must rise.
     for (cell, read) in [
         ((|i| format!("{} / 12", 7 + i / 20)) as fn(u32) -> String, true),
         (|i| format!("2020-01-24 12-00-{i:02}_500"), true),
@@ -668,13 +669,13 @@ fn columns_of_one_word_are_left_out_and_said() {
         let left_out = untimed.is_ok_and(|found| has_finding(&found.findings, "columns-of-words", &[]));
         assert_eq!(left_out, one_word && read, "{}", cell(25));
     }
-    // Rows of several channels below each other are not one channel.
+    // Rows of several channels below each other are refused.
     let long = "time,name,value\n0,ax,1\n0,ay,2\n1,ax,3\n1,ay,4\n";
     let why = read_with(&Reader::new(), long).unwrap_err().to_string();
     assert!(why.contains("line 3, column 3") && why.contains("\"ay\" below \"ax\""), "{why}");
 }
 
-/// A unit that the name contradicts is told and not applied; all others are.
+/// A unit that the name contradicts is reported and not applied; all other units are applied.
 #[test]
 fn a_unit_is_none_where_the_name_says_so() {
     let of = |names: &str, row: &dyn Fn(u32) -> String| {
@@ -690,7 +691,7 @@ fn a_unit_is_none_where_the_name_says_so() {
     let (counts, floor) = ("loggingSample(N)", "floors(N)");
     let both = of(&format!("{counts},{floor},push force (N)"), &|i| format!("{},3,{}", i + 5, i % 7));
     assert_eq!(told(&both), ["floors [] told", "push force [N]"]);
-    // With a sample lost it is no count of the rows.
+    // With a sample lost, the column no longer counts the rows.
     let gap = of(counts, &|i| (i + i / 9).to_string());
     assert_eq!(told(&gap), ["loggingSample [] told"]);
     let newton = of("preload (N),F2 (N)", &|i| format!("{},3", i + 1));
@@ -702,7 +703,7 @@ fn a_unit_is_none_where_the_name_says_so() {
     assert_eq!(told(&degrees), right);
 }
 
-/// Two rates in one table: the slower channel has its own step.
+/// Two sampling rates in one table: the slower channel has its own step.
 #[test]
 fn blank_cells_in_every_second_row_are_a_lower_rate() {
     let found = of("t [s],a [g],F [N]\n0,1,\n0.5,2,5\n1,3,\n1.5,4,6\n2,5,\n2.5,6,7\n3,7,\n");
@@ -712,7 +713,7 @@ fn blank_cells_in_every_second_row_are_a_lower_rate() {
         (&Axis::time(0.5, 1.0, 3), &[5.0, 6.0, 7.0][..])
     );
     assert!(has_finding(&found.all_findings(), "column-sparse", &["every=2"]), "{:?}", found.all_findings());
-    // One blank more, or one less, is a gap.
+    // One blank cell more or less is a gap.
     for text in [
         "t [s],F [N]\n0,\n0.5,5\n1,\n1.5,\n2,\n2.5,7\n3,\n",
         "t [s],F [N]\n0,\n0.5,5\n1,\n1.5,6\n2,8\n2.5,7\n3,\n",
@@ -731,7 +732,7 @@ fn what_stands_behind_the_rows_is_said_or_begins_another_table() {
     assert!(why.contains("line 4") && why.contains("each table"), "{why}");
 }
 
-/// As crash tests, analysers of functions and loggers of several runs have it.
+/// As in files of crash tests, analysers of response functions and loggers of several runs.
 #[test]
 fn heads_say_where_time_begins_and_whether_values_are_complex() {
     let found = plain("Time of first sample :-2.0E-02\nSampling interval :1.0E-04\n1.5\n2.5\n0.5\n");
@@ -748,7 +749,7 @@ fn heads_say_where_time_begins_and_whether_values_are_complex() {
     );
 }
 
-/// Numbers about a series above its rows do not hide that it is one.
+/// Numbers above the rows that describe the series do not prevent the question.
 #[test]
 fn a_series_below_a_block_of_numbers_is_asked_about() {
     let mut rows = String::new();
@@ -763,7 +764,7 @@ fn a_series_below_a_block_of_numbers_is_asked_about() {
     assert!(why.contains("10 columns that may continue each other"), "{why}");
 }
 
-/// The columns of times disagree: days in place of ms.
+/// Refused if the time columns disagree, here 5 s per row in `t [ms]` beside 1 s in the clock.
 #[test]
 fn a_clock_beside_other_times_must_agree_with_them() {
     let rows = |step: f64| {
@@ -775,7 +776,7 @@ fn a_clock_beside_other_times_must_agree_with_them() {
     assert_eq!((found.records.len(), found.records[0].axis()), (1, &Axis::time(0.0, 1.0, 5)));
     let why = read_with(&Reader::new(), rows(5000.0)).unwrap_err().to_string();
     assert!(why.contains("one clock"), "{why}");
-    // Hundredths, or frames of a film: not thousandths.
+    // A clock that ends in two digits, hundredths or film frames, is refused.
     assert!(read_with(&Reader::new(), "t,a\n0:00:00:03,1\n0:00:00:06,2\n").is_err());
 }
 
@@ -816,7 +817,7 @@ fn labels_beside_names_and_units() {
     }
 }
 
-/// A quantity over its unit, after DIN 1313.
+/// A quantity divided by its unit, as in DIN 1313.
 #[test]
 fn quantities_over_their_units() {
     let found = of("t/ms;F/N;a/(m/s²)\n0,0;1,5;2\n0,5;2;1\n1,0;3;2\n");
@@ -853,7 +854,7 @@ fn levels_and_angles_of_circuit_simulators() {
     assert_eq!(values[0], Complex64::new(1.5, -2.0));
 }
 
-/// Seconds before the trigger, in a head of several units.
+/// Seconds before the trigger, in a header with several units.
 #[test]
 fn what_seismographs_say_of_their_trigger() {
     let found = of(
@@ -863,7 +864,7 @@ fn what_seismographs_say_of_their_trigger() {
     assert_eq!(found.records[0].meta().unit.symbol(), "");
 }
 
-/// Units that are not known stand below a time in s all the same.
+/// Unknown units are recognised as units in a row that begins with `s` below a time.
 #[test]
 fn units_below_an_axis_need_not_be_known() {
     let found = of("Time,Light,Spread\ns,lux,G²/Hz\n0,1,2\n0.5,3,4\n1,5,7\n");
@@ -873,7 +874,7 @@ fn units_below_an_axis_need_not_be_known() {
     assert_eq!(found.records[0].axis(), &Axis::time(0.0, 0.5, 3));
     let found = of("Sample;Relative Zeit [ms];Weg [mm]\n0;-200,0;1,5\n1;-196,0;2,5\n2;-192,0;0,5\n");
     let axis = found.records[0].axis();
-    // Differences of printed numbers round to 1e-16 of the largest.
+    // Tolerance: rounding of differences of printed numbers.
     assert!((axis.step().unwrap() - 0.004).abs() < 1e-15 && axis.kind == AxisKind::Time, "{axis:?}");
     assert_eq!((found.records.len(), axis.start()), (1, -0.2));
 }
@@ -912,7 +913,7 @@ proptest! {
 
 #[test]
 fn a_preamble_in_the_first_columns() {
-    // As oscilloscopes of Tektronix write it: the last key stands beside the last but one row here.
+    // As Tektronix oscilloscopes write it; here the last key is beside the last row but one.
     let text = "Record Length,6.0e+00,,-0.002,0.5,\nSample Interval,1.0e-03,,-0.001,1.5,\n,,,0,-0.25,\nSource,CH1,,0.001,0,\n\
                 Vertical Units,V,,0.002,2,\nHorizontal Units,s,,0.003,1,\n,,,0.004,7,\n";
     let found = Reader::new().from_reader("F0000CH1.CSV", text.as_bytes()).unwrap();
@@ -974,7 +975,7 @@ fn rows_below_the_names_that_do_not_parse_are_no_names() {
     }
     let error = Reader::new().from_reader("x.txt", "time[s] a[g] b[g]\n0 ? 1\n1 2 3\n2 3 4\n".as_bytes());
     assert!(error.unwrap_err().to_string().contains("line 2, column 3"));
-    // Channel numbers under a title are names; a row of units may hold a 1.
+    // Channel numbers under a title are names; a row of units may contain a 1.
     assert_eq!(of("Recorder,a,b\nx-axis,1,2\n0,1.5,2\n1,2.5,3\n").records[0].meta().name, "1");
     assert_eq!(of("No,Time,Acc\n1,s,V\n1,0,2.5\n2,1,3\n3,2,3\n").records.last().unwrap().meta().name, "Acc");
 }
@@ -996,7 +997,8 @@ fn grouped_whole_numbers_are_asked_about_and_read_as_stated() {
             assert_eq!(values(&other.records[0]), [998.0, -1.0], "{text}");
         }
     }
-    // A zero before the mark, other numbers of decimals, or decimals in every cell: no groups.
+    // A zero before the mark, different numbers of decimals, or decimals in every cell: no thousands
+    // separators.
     for text in ["t;a\n0;0,125\n1;1,125\n2;3\n", "t;a\n0;1,125\n1;1,5\n2;3\n", "t;a\n0;1,125\n1;1,500\n"] {
         assert_eq!(values(&of(text).records[0])[1], if text.contains("1,5") { 1.5 } else { 1.125 }, "{text}");
     }
@@ -1009,7 +1011,7 @@ fn decimal_commas_in_quotes_between_commas() {
     assert_eq!(*recording.records[0].axis(), Axis::time(0.0, 1e-3, 2));
 }
 
-/// Noise in columns under a step is one series or channels: only a person knows.
+/// Noise in columns below a stated step may be one series or several channels, so the user is asked.
 #[test]
 fn columns_under_the_step_of_a_series_are_asked_about() {
     let mut noise = vibro_math::Noise::new(7);
@@ -1028,7 +1030,7 @@ fn columns_under_the_step_of_a_series_are_asked_about() {
     for head in ["Sampling rate: 1000 Hz\n", "NPTS= 15, DT= .001 SEC\n", ""] {
         assert_eq!(with(head, Reader::new()).unwrap().records.len(), 5, "{head}");
     }
-    // The first line of Fortran programs: the count proves it.
+    // The first line as Fortran programs write it: the number of values shows that it is one series.
     let series = with("  75  0.001\n", Reader::new()).unwrap();
     assert_eq!((values(&series.records[0]), series.records[0].axis().step()), (&drawn[..], Some(1e-3)));
     let error = with("  80  0.001\n", Reader::new()).unwrap_err().to_string();
@@ -1062,7 +1064,7 @@ fn units_of_times_that_mean_something_else_elsewhere() {
         }
     }
     assert_eq!(of("Time,a\nh,V\n0,1\n1,2\n").records[0].axis().step(), Some(3600.0));
-    // Statistics above the names are no units.
+    // Statistics above the names are not units.
     assert_eq!(of("Time,Force\n(s),(N)\nMin,-1\nMax,1\n0,1\n1,2\n").records[0].meta().name, "Force");
     let others = of("Time (s),Drop (d),Acc (Min),AI 2 (Gs),CH1(MV)\n0,1,2,3,4\n1,1,2,3,4\n");
     assert!(others.records.iter().zip([1.0, 2.0, 3.0, 4.0]).all(|(r, v)| values(r) == [v, v]));
@@ -1099,7 +1101,7 @@ fn three_digits_behind_every_mark_are_said_to_be_groups_perhaps() {
     assert!(said(&rows("0;16.166\n1;17.216\n2;18.104\n"), &["other=comma"]));
     let plain = Reader::new().from_reader("x.txt", &b"fs: 1000 Hz\nForce (N)\n16,129\n17,041\n"[..]).unwrap();
     assert!(said(&plain, &["cell=16,129"]), "{:?}", plain.findings);
-    // What shows the mark to be the decimal one, in any column; what a person states.
+    // No finding if any column shows that the mark is decimal, or if the user states it.
     assert!(!said(&rows("0;16.166\n1;0.216\n2;18.104\n"), &[]));
     assert!(!said(&of("Time (s);Force (N)\n0.000;16.166\n0.001;17.216\n"), &[]));
     let stated = Reader::new()
@@ -1133,7 +1135,7 @@ fn a_scale_that_a_head_states_is_said_where_values_may_lack_it() {
         ("Gain: 0 dB", "V"),
         ("Multiplier: 1", "V"),
         ("Scale: linear", "V"),
-        // A unit of motion says that the sensitivity is in the values.
+        // With a unit of motion, the sensitivity is already included in the values.
         ("Sensitivity: 10.2 mV/(m/s²)", "m/s²"),
         ("Gain: 10", "m/s²"),
     ] {
@@ -1166,7 +1168,7 @@ fn values_that_stand_several_times_each_are_said() {
         let found = said(&|i| sine(i / n)).unwrap_or_else(|| panic!("{n}"));
         assert!(found.contains(&format!("Number({n}.0)")) && found.contains("\"A\""), "{found}");
     }
-    // Coarse digits, a switch, steps that rise evenly, and plain values.
+    // Not reported: a coarsely quantised signal, a switch, even steps, a rest before a motion, and a sine.
     let others: [&dyn Fn(usize) -> f64; 5] = [
         &|i| (4.0 * (0.05 * i as f64).sin()).round(),
         &|i| f64::from((i / 4).is_multiple_of(2)),
@@ -1208,7 +1210,7 @@ fn magnitude_and_phase_of_a_function_are_one_complex_record() {
     let values = &record.values;
     assert!((values[0] - Complex64::new(0.0, 2.0 * 9.806_65)).norm() < 1e-12, "{values:?}");
     assert!((values[1] - Complex64::new(-4.0 * 9.806_65, 0.0)).norm() < 1e-12, "{values:?}");
-    // A response beside its force is no function; an angle beside a function no phase.
+    // A response beside its force is not a function, and an angle beside a function is not its phase.
     for names in ["Frequency (Hz),Amp (µm),Phase (deg)", "Frequency (Hz),Magnitude (g/N),Tilt (deg)"] {
         assert_eq!(table(names).records.len(), 2, "{names}");
     }
@@ -1256,7 +1258,7 @@ fn days_of_a_sheet_with_decimal_commas_and_epochs_in_microseconds() {
         .concat();
     let epoch = of(format!("ts,\"Accel, m/s²\"\n{rows}"));
     assert!((epoch.records[0].axis().step().unwrap() - 5e-4).abs() < 1e-9);
-    // A date that is a number stands beside its clock.
+    // A date printed as a number is in a column beside its clock.
     let rows: String =
         (0..20).map(|i| format!("20240501,12:00:{i:02}.000,{}\n", i * i % 7)).collect::<Vec<_>>().concat();
     let dated = of(format!("Date,Time,acc (g)\n{rows}"));
@@ -1274,7 +1276,7 @@ fn seconds_and_their_parts_in_two_columns() {
         let step = found.records[0].axis().step().unwrap();
         assert!((step - 1e-3).abs() < 1e-9, "{names}: {step}");
     }
-    // A cell that is no whole number.
+    // A cell that is not a whole number: the columns are not joined.
     let odd = of("sec,usec,acc (g)\n1.5,3,2.5\n2.5,4,3.5\n3.5,9,4.5\n");
     assert_eq!((odd.records.len(), odd.records[0].axis().start()), (2, 1.5));
 }
@@ -1288,7 +1290,7 @@ fn a_head_that_says_that_the_abscissa_is_a_frequency() {
     let Record::Spectrum(spectrum) = plain(&format!("{head}{rows}")) else { panic!() };
     assert_eq!(spectrum.axis.step(), Some(1.0));
     assert!(spectrum.meta.unit.is_level(), "{:?}", spectrum.meta);
-    // A rate would make a trace of the spectrum.
+    // A rate would turn the spectrum into a time trace.
     let rated = Reader::new().rate(Some(100.0)).from_reader("x.txt", format!("{head}{rows}").as_bytes());
     assert!(rated.unwrap_err().to_string().contains("holds a frequency"));
 }
@@ -1312,7 +1314,7 @@ fn two_rates_of_a_head_and_scales_of_channels_are_said() {
         assert!(has_finding(&found(head), "scale-in-head", &[]), "{head}: {:?}", found(head));
     }
     assert!(!has_finding(&found("Attenuation: 1x"), "scale-in-head", &[]));
-    // A stated calibration answers it.
+    // A stated calibration removes the finding.
     let mut answered = of("Gain: 10\ntime [s],u [V]\n0,1\n0.1,2\n");
     assert!(has_finding(&answered.findings, "scale-in-head", &[]), "{:?}", answered.findings);
     answered.take_trace(None, Some(0.1)).unwrap();
@@ -1331,7 +1333,7 @@ fn samples_that_a_counter_leaves_out_are_missed() {
         assert!(error.contains("goes from 49 to 57") && error.contains("7 there"), "{name}: {error}");
         assert_eq!(of(text(0, &head)).records.len(), 1, "{name}");
     }
-    // What rises otherwise counts no samples.
+    // A column that rises by other steps is not a sample counter.
     assert_eq!(of(text(7, "Sample rate: 1000 Hz\nPosition (mm),Acc (m/s²)")).records.len(), 2);
 }
 
@@ -1348,10 +1350,10 @@ fn decimal_commas_below_a_rate_tell_that_its_point_groups_digits() {
         assert_eq!(rate(&format!("{head}\nA (V);B (V)\n0,5;1,5\n2,5;3,5\n")), Some(1600.0), "{head}");
     }
     assert_eq!(rate("Sample rate: 1,000 Hz\nA (V);B (V)\n0.5;1.5\n2.5;3.5\n"), Some(1000.0));
-    // Whole numbers tell nothing.
+    // Whole numbers do not show the decimal mark.
     let whole = of("Abtastrate: 1.000 Hz\nA (V);B (V)\n5;15\n25;35\n");
     assert!(has_finding(&whole.findings, "abscissa-unsaid", &["decimal=1", "grouped=1000"]));
-    // Decimation is said: the rate may be that before it.
+    // Decimation is reported: the rate may be the one before decimation.
     let kept = of("Sampling rate: 2000 Hz, decimated by 2\nA (V);B (V)\n0.5;1.5\n2.5;3.5\n");
     assert!(has_finding(&kept.findings, "rate-decimated", &["rate=2000"]), "{:?}", kept.findings);
     for head in [
@@ -1374,7 +1376,7 @@ fn what_a_preamble_states() {
         ("Sampling rate: 2 MHz", Some(0.5e-6)),
         ("Start: 0\nIncrement: 0.5", Some(0.5)),
         ("Increment;0,5;ms", Some(0.5e-3)),
-        // May be 51.2 or 51 200; may be any.
+        // Ambiguous: 51.2 or 51 200 Hz; a step or a rate without a unit.
         ("Sample Rate: 51,200", None),
         ("Increment;100", None),
         ("Rate: 10", None),
@@ -1393,7 +1395,7 @@ fn an_epoch_is_taken_off_before_it_is_scaled() {
     let rows: String = (0..50).map(|i| (1_700_000_000_000_u64 + i).to_string() + ",1\n").collect();
     let recording = of("Timestamp (ms),Acc (g)\n".to_owned() + &rows);
     assert_eq!(recording.records[0].axis(), &Axis::time(0.0, 1e-3, 50));
-    // A few hours in ms are no epoch.
+    // A few seconds in ms are not times since 1970.
     assert_eq!(of("Time (ms),a\n5000,1\n5001,2\n5002,3\n").records[0].axis().start(), 5.0);
 }
 
@@ -1433,7 +1435,7 @@ fn missing_values_are_no_names() {
     }
 }
 
-/// `ImageJ` saves a summary of its tracks above their rows; a logger may write a summary below them.
+/// `ImageJ` saves a summary of its tracks above their rows; a logger may append a summary.
 #[test]
 fn of_two_tables_the_longer_is_read_and_the_other_counted() {
     let rows = (0..30).map(|i| format!("{i}\t{}\t50.5\n", 2 * i + i % 3)).collect::<Vec<_>>().concat();
@@ -1450,7 +1452,7 @@ fn of_two_tables_the_longer_is_read_and_the_other_counted() {
             assert!(has_finding(&found.findings, "table-left-out", &["n=2"]), "{:?}", found.findings);
         }
     }
-    // Tables that compare are for a person to choose from.
+    // Tables of similar length: the user must choose.
     let two = format!("{names}{rows}Track 2\n{names}{rows}");
     let said = Reader::new().from_reader("x.csv", two.as_bytes()).unwrap_err().to_string();
     assert!(said.contains("line 32") && said.contains("to a file of its own"), "{said}");
@@ -1516,14 +1518,14 @@ fn values_of_one_sign_and_an_analysers_number_are_lines_of_the_base_band() {
     assert!(has_finding(&found, "values-are-lines", &["n=801", "band=400"]), "{found:?}");
     let levels = lines(&|i| -60.0 + (i as f64).sin(), 800);
     assert_eq!(levels.records[0].axis().kind, AxisKind::Frequency);
-    // Another number of values, or values of both signs, are a trace.
+    // Another number of values, or values of both signs, are a time trace.
     for trace in [lines(&|i| (i as f64).sin().abs(), 1024), lines(&|i| (i as f64).sin(), 801)] {
         assert_eq!(trace.records[0].axis().step(), Some(1.0 / 1024.0));
         assert!(!has_finding(&trace.all_findings(), "values-are-lines", &[]));
     }
 }
 
-/// Times in whole ms, every 50th row lost: an even step of 50/49 ms prints the same.
+/// Times in whole ms, every 50th row lost: times with an even step of 50/49 ms would be printed equally.
 #[test]
 fn times_of_one_digit_may_hide_lost_rows() {
     let rows = |head: &str| {
@@ -1533,7 +1535,7 @@ fn times_of_one_digit_may_hide_lost_rows() {
     };
     let found = rows("").findings;
     assert!(has_finding(&found, "axis-rounded-or-lost", &["long=60", "n=2939"]), "{found:?}");
-    // A head that states the rate of the even step decides.
+    // A rate in the header that agrees with the even step removes the doubt.
     let known = rows("Sampling rate: 980 Hz\n").findings;
     assert!(!has_finding(&known, "axis-rounded-or-lost", &[]), "{known:?}");
 }
@@ -1549,7 +1551,7 @@ fn marks_of_missing_values_and_zeros_that_fill_up_are_said() {
     assert!(has_finding(&marked, "missing-marked", &["mark=-9999", "n=4"]), "{marked:?}");
     let filled = table(&|i| if i < 150 { signal(i) } else { 0.0 });
     assert!(has_finding(&filled, "filled-with-zeros", &["n=50", "end=0.15"]), "{filled:?}");
-    // Values near the mark are measured, and a signal that rests at 0 is no filling.
+    // Values of a magnitude near the mark are measured, and a signal that rests at 0 is not padded.
     let near = table(&|i| if i % 50 == 9 { 999.0 } else { 300.0 * signal(i) });
     let rests = table(&|i| if (20..150).contains(&i) { signal(i) } else { 0.0 });
     for found in [near, rests, table(&signal)] {
@@ -1565,7 +1567,7 @@ fn heads_against_names_and_steps_of_many_seconds_are_said() {
     let differs = of("Unit: mm/s\nt [s],v (m/s)\n0,1\n1,2\n");
     let found = differs.all_findings();
     assert!(has_finding(&found, "unit-head-differs", &["head=mm/s", "used=m/s"]), "{found:?}");
-    // The same unit, and one of another quantity, is no contradiction.
+    // The same unit, or a unit of another quantity, is not a contradiction.
     for head in ["Unit: m/s", "Unit: N"] {
         let found = of(format!("{head}\nt [s],v (m/s)\n0,1\n1,2\n")).all_findings();
         assert!(!has_finding(&found, "unit-head-differs", &[]), "{found:?}");

@@ -1,4 +1,4 @@
-//! Joins times in two columns, whole seconds and parts of a second, as C and ROS print them.
+//! Joins times that are printed in two columns, whole seconds and a fraction, as C and ROS do.
 //!
 //! ```text
 //! tv_sec,tv_usec,acc
@@ -13,7 +13,7 @@ use super::names::Name;
 use crate::source::Source;
 use vibro_record::Result;
 
-/// Last words of the names of both columns, and the number of digits of the parts of a second.
+/// Last words of the names of both columns, and number of digits of the fraction of a second.
 const PAIRS: [(&str, &str, usize); 5] = [
     ("sec", "usec", 6),
     ("sec", "nsec", 9),
@@ -22,11 +22,11 @@ const PAIRS: [(&str, &str, usize); 5] = [
     ("secs", "usecs", 6),
 ];
 
-/// The text with both columns as one, `time (s)`; `None` where it has none, or cells that are no whole
-/// numbers.
+/// The text with both columns joined to one, `time (s)`. `None` if there is no such pair of columns, or if
+/// a cell is not a whole number.
 ///
 /// # Errors
-/// If it cannot be read.
+/// If the text cannot be read.
 pub fn joined(text: &Text, dialect: &Dialect) -> Result<Option<Source>> {
     let names = dialect.names.as_deref().unwrap_or_default();
     let words: Vec<String> = names.iter().map(Name::last_word).collect();

@@ -4,7 +4,7 @@ use crate::number;
 use vibro_record::Scaling;
 use vibro_record::units::{Quantity, Unit};
 
-/// Words in place of a unit above a counter.
+/// Words that a counter has instead of a unit.
 pub(super) const COUNTERS: [&str; 6] = ["sequence", "samples", "points", "no.", "rn", "#"];
 
 /// Name of the unit hour, which has no symbol among the units of values.
@@ -28,8 +28,7 @@ pub(super) fn symbol(text: &str) -> &str {
     }
 }
 
-/// Splits a unit into the bare unit and the scaling that its ending states, RMS or peak: `Vrms`, `mm/s RMS`,
-/// `g pk`.
+/// Splits a unit into the bare unit and the scaling in its ending, RMS or peak: `Vrms`, `mm/s RMS`, `g pk`.
 pub(crate) fn amplitude(unit: &str) -> (&str, Option<Scaling>) {
     const SAID: [(&str, Scaling); 4] =
         [("rms", Scaling::Rms), ("peak", Scaling::Peak), ("pk", Scaling::Peak), ("eff", Scaling::Rms)];
@@ -42,13 +41,14 @@ pub(crate) fn amplitude(unit: &str) -> (&str, Option<Scaling>) {
     SAID.into_iter().find_map(without).unwrap_or((unit, None))
 }
 
-/// Whether the unit is an angle over a time: 1/(2π) takes rad/s to Hz.
+/// Whether the unit is an angle per time: the factor 1/(2π) converts rad/s to Hz.
 pub(super) fn is_angular(unit: &str) -> bool {
     Unit::parse(unit).is_some_and(|u| u.quantity() == Quantity::AngularVelocity)
 }
 
-/// Whether a row of fields holds units only. All are blank, known or in brackets. Or the first is known, and
-/// at least half are, and all others are short and no numbers: `EU` is one, `Samples,1000` are none.
+/// Whether a row of fields holds only units. Either each is a known unit or in brackets. Or the first and
+/// at least half are known units, and all others are short and not numbers: `EU` may be a unit,
+/// `Samples,1000` is no row of units. Blank fields do not count.
 pub(crate) fn is_unit_row<'a>(fields: impl Iterator<Item = &'a str>) -> bool {
     let (mut total, mut known, mut sure, mut short, mut first) = (0, 0, 0, 0, None);
     for field in fields.filter(|f| !f.trim().is_empty()) {
@@ -77,7 +77,7 @@ pub(super) fn bare_unit(field: &str) -> &str {
     let field = field.strip_prefix("Unit:").unwrap_or(field).trim_start();
     let inner = |open, close| field.strip_prefix(open).and_then(|f| f.strip_suffix(close));
     match inner('[', ']').or(inner('(', ')')) {
-        // `(m/s²)/(N)` also begins and ends with a bracket, but is no unit in brackets.
+        // `(m/s²)/(N)` also begins and ends with a bracket, but is not a unit in brackets.
         Some(unit) if !unit.contains(['[', ']', '(', ')']) => unit.trim(),
         _ => field,
     }

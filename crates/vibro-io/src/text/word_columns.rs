@@ -1,5 +1,5 @@
-//! Leaves out columns of text beside columns of numbers: names of frames, states such as `7 / 12`, dates in a
-//! spelling that is no clock, the unit of the values before it.
+//! Leaves out columns of text between columns of numbers: frame names, states such as `7 / 12`, dates in a
+//! format that is not recognised as a clock, and the unit of the value before it.
 
 use super::clock;
 use super::decoded::{Text, in_line, shorten};
@@ -17,20 +17,20 @@ use std::ops::Range;
 use vibro_record::units::Unit;
 use vibro_record::{Error, Finding, Result};
 
-/// Number of last rows in the head that show which columns hold text.
+/// Number of last rows in the head that decide which columns hold text.
 const ENOUGH: usize = 24;
 
-/// A column of states such as `7 / 12` returns to an earlier text at most once in this many rows. One that
-/// returns more often may name the channel or sensor of a row; dates and frame numbers never return.
+/// A column of states such as `7 / 12` returns to an earlier text at most once in 10 rows. A column that
+/// returns more often may name the channel or sensor of each row. Dates and frame numbers never return.
 const STATE: usize = 10;
 
-/// A text without its columns of text, and what these hold.
+/// A text without its columns of text, and findings on them.
 pub struct LeftOut {
     pub source: Source,
-    /// Findings that name the columns left out and what they hold.
+    /// Findings that name the columns left out and their content.
     pub found: Vec<Finding>,
-    /// Whether a text left out changes from row to row. It may then name channels or be the time, unless the
-    /// times that are left rise.
+    /// Whether a text that was left out changes from row to row. It may then name channels or be the time,
+    /// unless the remaining times rise.
     pub changes: bool,
 }
 
@@ -38,32 +38,32 @@ pub struct LeftOut {
 struct Head {
     /// One name for each column; empty for a column of text without a name.
     names: Vec<String>,
-    /// Byte range of this line in the kept text.
+    /// Byte range of this line in `kept`.
     at: Range<usize>,
 }
 
-/// What the cells of a column of text hold.
+/// Content of the cells of a column of text.
 #[derive(Default)]
 struct Held {
     first: String,
     last: String,
-    /// Error that names the first change of text.
+    /// Error that names the first change of the text.
     mixed: Option<Error>,
     /// Hashes of all texts of the column.
     words: HashSet<u64>,
-    /// Number of cells that differ from the cell above; `returns` counts those of them whose text came
-    /// earlier.
+    /// Number of cells that differ from the cell above; `returns` counts those whose text occurred earlier.
     changes: usize,
     returns: usize,
-    /// Whether a text that begins with a letter returns: it may name the channel of its rows.
+    /// Whether a text that begins with a letter occurs again: it may name the channel of its row.
     names: bool,
 }
 
-/// The text without its columns of text, which have no number in any row. `None` where there are none: the
-/// text is unreadable for another reason.
+/// The text without its columns of text, which hold no number in any row. `None` if there are none: the
+/// text then is unreadable for another reason.
 ///
 /// # Errors
-/// If the texts of a column return often: rows of several channels or sensors may be below each other.
+/// If a column often returns to earlier texts: rows of several channels or sensors may be below each
+/// other.
 pub fn left_out(text: &Text) -> Result<Option<LeftOut>> {
     let head: Vec<Line> = lines(&text.head).filter(|line| line.remark.is_none()).collect();
     let Some((separator, first, columns)) = columns(&head) else {
@@ -77,7 +77,7 @@ pub fn left_out(text: &Text) -> Result<Option<LeftOut>> {
     if let Some(held) = scan.held.iter_mut().find(named)
         && let Some(why) = held.mixed.take()
     {
-        // Words that change in most rows name sensors; those that change now and then may be states of one
+        // Words that change in most rows name sensors; words that change now and then may be states of one
         // sensor.
         let turns = 2 * held.changes > rows;
         return Err(why.hint(if turns {
@@ -91,7 +91,7 @@ pub fn left_out(text: &Text) -> Result<Option<LeftOut>> {
     Ok(Some(LeftOut { source, found, changes: scan.held.iter().any(|held| held.changes > 0) }))
 }
 
-/// The text without its columns of text, and what these hold.
+/// The text without its columns of text, and the content of these.
 struct Scan {
     kept: String,
     held: Vec<Held>,
@@ -100,18 +100,18 @@ struct Scan {
 }
 
 impl Scan {
-    /// Scans the whole text; `None` where a column of text also holds a number.
+    /// Scans the whole text; `None` if a column of text also holds a number.
     fn of(whole: &str, separator: Separator, first: u64, columns: &[bool]) -> Option<Scan> {
         let (mut kept, mut ended, mut rows) = (String::with_capacity(whole.len()), 1, 0);
         let (mut head, mut held) = (None, Vec::new());
         held.resize_with(columns.len(), Held::default);
         for line in lines(whole) {
-            // A bracket belongs to the name before it: a blank must not cut them.
+            // A bracket belongs to the name before it, so no blank may separate them.
             let above = line.number < first && separator == Separator::Blank;
             let name = above.then(|| line.text.replace(" [", "[").replace(" (", "("));
             let line = Line { text: name.as_deref().unwrap_or(line.text), ..line };
             let cells = fields(line.text, separator).unwrap_or_default();
-            // Blank lines keep the line numbers those of the file.
+            // Blank lines keep the line numbers as in the file.
             kept.extend((ended..line.number).map(|_| '\n'));
             ended = line.number;
             let (begin, is_row) = (kept.len(), line.number >= first);
@@ -136,8 +136,8 @@ impl Scan {
         Some(Scan { kept, held, head, rows })
     }
 
-    /// Adds units that have cells of their own behind the values to the names of these, and makes the
-    /// findings on what the columns of text hold.
+    /// Moves units that have a column of their own after the values into the names of these. Returns the
+    /// findings on the content of the columns of text.
     fn named_with_units(&mut self, separator: Separator, columns: &[bool]) -> Vec<Finding> {
         let units: Vec<Option<&str>> = (0..columns.len()).map(|i| self.unit_behind(i, columns)).collect();
         let name = |i: usize| self.head.as_ref().map_or("", |head| &head.names[i]);
@@ -161,7 +161,8 @@ impl Scan {
         said
     }
 
-    /// The unit of column `i` from the cells behind it, where it has none and they all hold the same unit.
+    /// Unit of column `i` from the column after it, if column `i` has no unit and all those cells hold the
+    /// same one.
     fn unit_behind(&self, i: usize, columns: &[bool]) -> Option<&str> {
         let names = &self.head.as_ref()?.names;
         let values = !columns[i] && !names[i].is_empty() && Name::parse(&names[i]).unit.is_none();
@@ -189,7 +190,7 @@ fn one_a_column(cells: &Fields, columns: &[bool]) -> Option<Vec<String>> {
 }
 
 impl Head {
-    /// The line of names of the columns of values, each with its unit from `units` in brackets.
+    /// The line of names of the value columns, each with its unit from `units` in brackets.
     fn with(&self, units: &[Option<&str>], separator: Separator, columns: &[bool]) -> String {
         let mark = if let Separator::Char(mark) = separator { char::from(mark) } else { ' ' };
         let values = self.names.iter().zip(units.iter().copied()).zip(columns).filter(|(_, text)| !**text);
@@ -223,7 +224,7 @@ impl Held {
         cell.clone_into(&mut self.last);
     }
 
-    /// First and last text, for the finding; `None` where they hold no letter or digit.
+    /// First and last text, for the finding; `None` if there is no letter or digit in the first.
     fn said(&self) -> Option<String> {
         let first = Some(shorten(&self.first)).filter(|first| first.contains(char::is_alphanumeric))?;
         let to = if self.changes > 0 { format!(" … {}", shorten(&self.last)) } else { String::new() };
@@ -231,8 +232,8 @@ impl Held {
     }
 }
 
-/// Adds a line to `kept` with blanks in place of its cells of text and their separators: all other characters
-/// keep their columns.
+/// Adds a line to `kept`, with blanks in place of the cells of text and their separators. All other
+/// characters keep their column numbers.
 pub fn without(kept: &mut String, line: &Line, cells: &Fields, separator: Separator, text: &[bool]) {
     let begin = kept.len();
     kept.push_str(&line.text[..cells[0].0]);
@@ -253,9 +254,9 @@ pub fn without(kept: &mut String, line: &Line, cells: &Fields, separator: Separa
     }
 }
 
-/// Separator, line number of the first row, and which columns hold text, as more than half of their cells
-/// with content in the last rows do. All these rows have as many cells, and values or blanks in all other
-/// columns.
+/// Separator, line number of the first row, and which columns hold text: those in which more than half of
+/// the non-blank cells of the last rows are text. All these rows have the same number of cells, and values
+/// or blanks in all other columns.
 fn columns(lines: &[Line]) -> Option<(Separator, u64, Vec<bool>)> {
     let of = |line: &Line, separator| -> Vec<Cell> {
         fields(line.text, separator).unwrap_or_default().iter().map(|(_, cell)| Cell::of(cell)).collect()
@@ -272,7 +273,7 @@ fn columns(lines: &[Line]) -> Option<(Separator, u64, Vec<bool>)> {
         2 * count(Cell::Text) > sample.len() - count(Cell::Blank)
     };
     let text: Vec<bool> = (0..n).map(text).collect();
-    // The line of names ends the search upwards: it is text in all columns.
+    // The search upwards ends at the line of names, which has text in all columns.
     let is_row = |row: &&Vec<Cell>| {
         row.iter().zip(&text).all(|(cell, text)| *text || matches!(cell, Cell::Value | Cell::Blank))
     };
@@ -282,14 +283,14 @@ fn columns(lines: &[Line]) -> Option<(Separator, u64, Vec<bool>)> {
         .then(|| (separator, lines[lines.len() - rows].number, text))
 }
 
-/// What a cell holds.
+/// Content of a cell.
 #[derive(Clone, Copy, PartialEq)]
 enum Cell {
     Text,
     /// A number or a time.
     Value,
     Blank,
-    /// Begins with a number: `1.5 V`, `(1-2j)`.
+    /// Begins with a number but is not one: `1.5 V`, `(1-2j)`.
     Neither,
 }
 
@@ -304,7 +305,7 @@ impl Cell {
         }
         let inner = cell.trim_start_matches(['(', '[', '"']).as_bytes();
         let begins = number::prefix(inner, b'.').is_some() && !cell.starts_with("0x");
-        // Digits before a mark are text: `7 / 12`, `2020-01-24 12-00-00_500`.
+        // Digits before one of the marks / - _ : are text: `7 / 12`, `2020-01-24 12-00-00_500`.
         let behind = cell.trim_start_matches(|c: char| c.is_ascii_digit());
         let marked = behind.len() < cell.len() && behind.trim_start().starts_with(['/', '-', '_', ':']);
         let whole = complex(bytes, b'.').or_else(|| complex(bytes, b',')).is_some();

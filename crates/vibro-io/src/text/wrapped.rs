@@ -1,5 +1,5 @@
-//! Reads one series written over several columns, row after row, as PEER's AT2 and other Fortran programs
-//! write it.
+//! Reads one series printed over several columns, row after row, as PEER's AT2 files and other Fortran
+//! programs print it.
 
 use super::decoded::Text;
 use super::dialect::Dialect;
@@ -9,15 +9,15 @@ use crate::held::Held;
 use crate::number;
 use vibro_record::{Error, Result};
 
-/// Most rows that are compared to see whether they continue each other.
+/// Most rows that are compared to detect whether they continue each other.
 const LOOK: usize = 100_000;
 /// Fewest rows for that comparison.
 const FEWEST: usize = 12;
 
-/// All values, row after row; `None` where the text holds anything else.
+/// All values, row after row; `None` if the text holds anything else.
 ///
 /// # Errors
-/// If it cannot be read.
+/// If the text cannot be read.
 pub fn flat(text: &Text, dialect: &Dialect) -> Result<Option<Vec<f64>>> {
     let bytes = text.source.all()?;
     let whole = encoding::decode(&bytes);
@@ -34,8 +34,8 @@ pub fn flat(text: &Text, dialect: &Dialect) -> Result<Option<Vec<f64>>> {
     Ok(Some(values))
 }
 
-/// Whether all rows but the last are full, and the last is shorter but has its line end; and the first column
-/// falls somewhere, so that it is no abscissa.
+/// Whether all rows but the last are full, the last is shorter but has its line end, and the first column
+/// does not always rise, so that it is no abscissa.
 pub fn ends_short(text: &Text, dialect: &Dialect) -> bool {
     let Ok(bytes) = text.source.all() else { return false };
     let whole = encoding::decode(&bytes);
@@ -60,28 +60,28 @@ pub fn ends_short(text: &Text, dialect: &Dialect) -> bool {
         && full.iter().all(|row| row.0 == dialect.columns)
 }
 
-/// Whether columns look like one series, row after row: the steps from one value to the next, also into the
-/// next row, are smaller on average than the steps down a column.
+/// Whether the columns look like one series printed row after row. Then the steps from one value to the
+/// next, also into the next row, are smaller on average than the steps down a column.
 pub fn continues(columns: &[Held]) -> bool {
     let columns: Vec<&[f64]> = columns.iter().map(Held::reals).collect();
     if columns.len() < 3 || columns[0].len() < FEWEST {
-        // The values of a single line are one series.
+        // More than 12 values in a single line are one series.
         return columns.len() > FEWEST && columns[0].len() == 1;
     }
     let rows = columns[0].len().min(LOOK);
     let last = columns.len() - 1;
     let step = |a: f64, b: f64| (b - a).abs();
-    // The first quarter of the rows is left out: it may hold numbers about the series.
+    // The first quarter of the rows is left out, since it may hold numbers that describe the series.
     let from = 1 + rows / 4;
     let within = columns.windows(2).flat_map(|w| (from..rows).map(|i| step(w[0][i], w[1][i])));
     let over = (from..rows).map(|i| step(columns[last][i - 1], columns[0][i]));
     let down = columns.iter().flat_map(|c| (from..rows).map(|i| step(c[i - 1], c[i])));
     let (within, over, down) = (mean(within), mean(over), mean(down));
-    // Channels that change slowly about one level have smaller steps down than across.
+    // Channels that change slowly about one level have smaller steps down a column than along a row.
     within > 0.0 && over < 2.0 * within && within < 0.7 * down && over < 0.7 * down
 }
 
-/// Whether there are three columns or more and the first is no abscissa.
+/// Whether there are at least three columns and the first does not always rise, so that it is no abscissa.
 pub fn no_abscissa(columns: &[Held]) -> bool {
     let first = columns.first().filter(|_| columns.len() > 2).map(Held::reals);
     first.is_some_and(|first| first.windows(2).any(|w| w[1] <= w[0]))
@@ -117,7 +117,7 @@ mod tests {
     fn a_series_is_told_from_channels() {
         assert!(continues(&columns(5, |i| (0.05 * i as f64).sin())));
         assert!(continues(&columns(8, |i| (0.02 * i as f64).sin() + 0.3 * (0.11 * i as f64).cos())));
-        // Three axes of one motion, each at a level of its own; a sine with its harmonics; noise.
+        // No series: three axes of one motion at different levels; a sine and its harmonics; noise.
         let channel = |i: usize| (0.05 * (i / 3) as f64 + (i % 3) as f64).sin() + 0.2 * (i % 3) as f64;
         assert!(!continues(&columns(3, channel)));
         assert!(!continues(&columns(4, |i| (0.05 * (i / 4) as f64 * (1 + i % 4) as f64).sin())));

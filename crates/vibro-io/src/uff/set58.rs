@@ -34,8 +34,8 @@ pub use heading::LINES;
 pub(crate) use layout::{KINDS, Layout};
 pub use ordinate::UnitSystem;
 
-/// Reads the data set whose number `line` was taken last, up to and with its closing delimiter. If its header
-/// is cut short, returns the number of its lines and an error.
+/// Reads the data set whose number `line` was read last, up to and including its closing delimiter. If its
+/// header is cut short, returns the number of header lines and an error.
 ///
 /// # Errors
 /// If header or values are not what the format requires.

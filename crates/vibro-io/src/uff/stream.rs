@@ -1,17 +1,17 @@
-//! One file, taken line by line and in binary blocks, and the lines that open and close its data sets.
+//! One file, read line by line and in binary blocks, and the lines that open and close its data sets.
 
 use vibro_record::Place;
 
-/// Byte order mark of UTF-8, which some editors put first.
+/// Byte order mark of UTF-8, which some editors add at the start.
 const MARK: &[u8] = b"\xef\xbb\xbf";
 
 /// One file from its first to its last byte.
 pub struct Stream<'a> {
     bytes: &'a [u8],
     at: usize,
-    /// Byte at which the last line taken begins.
+    /// Byte at which the last line read begins.
     start: usize,
-    /// Lines taken so far; `None` after a binary block, where line numbers mean nothing.
+    /// Lines read so far; `None` after a binary block, after which line numbers have no meaning.
     lines: Option<u64>,
 }
 
@@ -22,7 +22,7 @@ impl<'a> Stream<'a> {
         Stream { bytes, at, start: at, lines: Some(0) }
     }
 
-    /// Takes the next line, without its line feed; `None` at the end of the file.
+    /// Reads the next line, without its line feed; `None` at the end of the file.
     pub fn next_line(&mut self) -> Option<&'a [u8]> {
         let rest = self.rest();
         let end = rest.iter().position(|b| *b == b'\n').unwrap_or(rest.len());
@@ -33,7 +33,8 @@ impl<'a> Stream<'a> {
         Some(&rest[..end])
     }
 
-    /// Takes the next line of a data set; `None` at the end of the file and before a delimiter, which stays.
+    /// Reads the next line of a data set; `None` at the end of the file and before a delimiter, which is
+    /// not read.
     pub fn line_within(&mut self) -> Option<&'a [u8]> {
         let before = Stream { ..*self };
         let line = self.next_line()?;
@@ -44,14 +45,14 @@ impl<'a> Stream<'a> {
         Some(line)
     }
 
-    /// Takes `bytes` that are one line with its end.
+    /// Skips `bytes`, which are one line with its end.
     pub fn take_line(&mut self, bytes: usize) {
         self.start = self.at;
         self.at += bytes;
         self.lines = self.lines.map(|lines| lines + 1);
     }
 
-    /// Takes a binary block.
+    /// Reads a binary block.
     pub fn take_block(&mut self, bytes: usize) -> &'a [u8] {
         let block = &self.rest()[..bytes];
         self.at += bytes;
@@ -59,8 +60,8 @@ impl<'a> Stream<'a> {
         block
     }
 
-    /// Skips everything up to and including the next delimiter. Returns the number of lines before it that
-    /// are not blank, and whether there is a delimiter.
+    /// Skips everything up to and including the next delimiter. Returns the number of non-blank lines
+    /// before it, and whether there is a delimiter.
     pub fn pass_set(&mut self) -> (usize, bool) {
         let mut lines = 0;
         while let Some(line) = self.line_within() {
@@ -69,23 +70,23 @@ impl<'a> Stream<'a> {
         (lines, self.next_line().is_some())
     }
 
-    /// The bytes not taken yet.
+    /// The bytes not read yet.
     pub fn rest(&self) -> &'a [u8] {
         &self.bytes[self.at..]
     }
 
-    /// Whether the line taken last ended with a line feed, and not with the file.
+    /// Whether the last line read ended with a line feed, and not with the file.
     pub fn terminated(&self) -> bool {
         self.bytes[..self.at].ends_with(b"\n")
     }
 
-    /// Place of the last line taken: its number, or its byte after a binary block.
+    /// Place of the last line read: its number, or its byte after a binary block.
     pub fn place(&self) -> Place {
         let byte = if self.lines.is_none() { Some(self.start as u64) } else { None };
         Place { line: self.lines, byte, ..Place::default() }
     }
 
-    /// Place of the byte that lies `back` bytes before the first one not taken.
+    /// Place of the byte `back` bytes before the first unread one.
     pub fn byte_place(&self, back: usize) -> Place {
         Place { byte: Some((self.at - back) as u64), ..Place::default() }
     }
@@ -100,7 +101,7 @@ pub fn is_delimiter(line: &[u8]) -> bool {
 }
 
 /// The number on the line after an opening `-1`, in its first six columns, and whether a `b` for binary
-/// values follows it; `None` where the line is something else.
+/// values follows it; `None` for any other line.
 pub fn set_number(line: &[u8]) -> Option<(u32, bool)> {
     let start = line.iter().position(|b| *b != b' ')?;
     let end = start + line[start..].iter().take_while(|b| b.is_ascii_digit()).count();
@@ -115,8 +116,7 @@ pub fn set_number(line: &[u8]) -> Option<(u32, bool)> {
 
 /// Whether `bytes`, which follow binary values, begin with a closing `-1`, alone or after one line end.
 ///
-/// It must be in its exact columns: values are searched for it, and looser forms would be found in the wrong
-/// place.
+/// It must be in its exact columns: values are searched for it, and a looser form would also match values.
 pub fn closes(bytes: &[u8]) -> bool {
     let bytes = bytes.strip_prefix(b"\r").unwrap_or(bytes);
     let bytes = bytes.strip_prefix(b"\n").unwrap_or(bytes);

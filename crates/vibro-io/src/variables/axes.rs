@@ -15,20 +15,20 @@ use vibro_record::code;
 use vibro_record::units::{Quantity, Unit};
 use vibro_record::{Axis, AxisKind, Error, Finding, Grid, Meta, Result};
 
-/// Shafts turn slower than this, in Hz: a `rate` below it may be a speed of rotation.
+/// Fastest shaft in Hz: a `rate` below it may be a speed of rotation.
 const SHAFT: f64 = 1000.0;
 
 /// Days since the year 0, as MATLAB counts them, of dates from 2001 to 2096.
 const DATENUM: std::ops::Range<f64> = 730_852.0..765_700.0;
-/// Mean step from which times without a unit count as clock ticks and give no axis. A smaller limit refuses
-/// slow records in s; a larger one takes ticks for seconds.
+/// Mean step from which times without a unit count as clock ticks and give no axis. A smaller limit would
+/// refuse slow records in s; a larger one would read ticks as seconds.
 const TICKS: f64 = 1000.0;
 /// Magnitude of a start in s from which times are counted from their first value before scaling: larger
 /// starts leave a double too few digits for the steps.
 const FAR: f64 = 1e6;
 
-/// Kind of abscissa that a vector of this name holds; its origin in the stored unit and its factor to s or
-/// Hz; a finding on an assumed unit. `None` if the vector is no abscissa.
+/// Kind of abscissa that a vector of this name holds, its origin in the stored unit and its factor to s or
+/// Hz, and a finding on an assumed unit. `None` if the vector is not an abscissa.
 fn kind(
     dialect: &Dialect,
     name: &str,
@@ -40,7 +40,7 @@ fn kind(
     let seconds = key == "tout" || key == "X" && !name.ends_with('X');
     let mut said = Name::parse(if seconds { "time" } else { key });
     said.unit = unit.filter(|unit| !unit.is_empty()).map(str::to_owned).or(said.unit);
-    // A channel in s or Hz need not be the abscissa of others.
+    // A channel with the unit s or Hz need not be the abscissa of other channels.
     let by_unit = Name { name: String::new(), ..said.clone() }.axis(true).is_some();
     let by_name = Name { unit: None, ..said.clone() }.axis(true).is_some();
     let kind = said.axis(true).filter(|_| !said.is_vague() && (by_name || !by_unit))?;
@@ -67,15 +67,15 @@ struct Scalar {
     name: String,
     meaning: Meaning,
     trust: Trust,
-    /// Kind of abscissa; `None` for an increment or a start whose unit does not say it.
+    /// Kind of abscissa; `None` for an increment or a start whose unit does not state it.
     kind: Option<AxisKind>,
     /// Value in s or Hz; for a sampling rate, the step in s.
     value: f64,
 }
 
 impl Scalar {
-    /// The statement of a scalar about the struct or vector `scope`; `None` if its name states none or its
-    /// value is impossible.
+    /// The statement of a scalar about the struct or vector `scope`; `None` if its name has no known
+    /// meaning or its value is impossible.
     fn of(
         dialect: &Dialect,
         (name, said): &(String, String),
@@ -134,17 +134,17 @@ impl Scalar {
 pub struct Axes<'a> {
     pub dialect: &'static Dialect,
     options: &'a Options,
-    /// Vectors that are abscissae, times before frequencies: name, axis, relative standard uncertainty of its
-    /// step.
+    /// Vectors that are abscissae, times before frequencies: name, axis and relative standard uncertainty
+    /// of the step.
     vectors: Scoped<(String, Axis, f64)>,
     scalars: Scoped<Scalar>,
-    /// For each struct: depth of the outermost arrays in it, and the greatest dimension of those.
+    /// For each struct: depth of the outermost arrays in it, and their largest dimension.
     outer: HashMap<String, (Reverse<usize>, Option<u64>)>,
     /// Vectors that rise evenly but are not used as abscissae: name, length and step.
     even: Vec<(String, usize, f64)>,
 }
 
-/// By struct: depth of the outermost arrays in it, and the greatest length of those.
+/// For each struct: depth of the outermost arrays in it, and their largest dimension.
 fn outermost(
     dialect: &Dialect,
     arrays: &[(String, Array)],
@@ -161,7 +161,7 @@ fn outermost(
 }
 
 impl<'a> Axes<'a> {
-    /// Takes the rising vectors named as abscissae out of `arrays` where another array has their length.
+    /// Removes the rising vectors named as abscissae from `arrays` if another array has their length.
     /// `notes` are the scalars and texts.
     pub fn find<'n>(
         dialect: &'static Dialect,
@@ -208,7 +208,7 @@ impl<'a> Axes<'a> {
             }
             let label = format!("vector {name:?}");
             let drift = drift(vector, *single) * factor;
-            // Seconds since 1970 leave too few digits for their steps.
+            // Seconds since 1970 as doubles leave too few digits for the steps.
             let first = if (vector[0] * factor).abs() >= FAR { vector[0] } else { from };
             let vector = vector.iter().map(|v| (v - first) * factor).collect();
             let JudgedAxis { mut axis, step_relative_std: clock, found } =
@@ -227,7 +227,7 @@ impl<'a> Axes<'a> {
         axes
     }
 
-    /// Finding that times in the vector `name` have another rate than the user or its struct states.
+    /// Finding that times in the vector `name` have another rate than the user or their struct states.
     fn against_rate(&self, name: &str, scope: &str, axis: &Axis) -> Option<Finding> {
         let said = self.chosen(name, axis.len(), false).into_iter();
         let mut said = said.filter(|(of, s)| s.kind == Some(AxisKind::Time) && *of == scope);
@@ -252,11 +252,11 @@ impl<'a> Axes<'a> {
         self.even = even.collect();
     }
 
-    /// Scalars that state the step of a vector of `n` values, the nearest first and, of those, the surest;
-    /// vague ones last. None if all are vague and the first states a rate below [`SHAFT`].
+    /// Scalars that state the step of a vector of `n` values: the nearest first, at equal distance the
+    /// surest first, vague ones last. Empty if all are vague and the first states a rate below [`SHAFT`].
     fn chosen<'s>(&'s self, name: &'s str, n: usize, complex: bool) -> Vec<(&'s str, &'s Scalar)> {
-        // A vector nested deeper than others of the struct and at most half as long was usually computed from
-        // them, at another rate.
+        // A vector nested deeper than others of the struct, and at most half as long, was usually computed
+        // from them and has another rate.
         let depth = self.dialect.structs(name).count();
         let shorter = |(d, long): &(Reverse<usize>, Option<u64>)| d.0 < depth && Some(2 * n as u64) <= *long;
         let made = |scope: &str| self.outer.get(scope).is_some_and(shorter);
@@ -281,7 +281,7 @@ impl<'a> Axes<'a> {
         let fits = |axis: &Axis| axis.len() == n && !(complex && axis.kind == AxisKind::Time);
         let mut fitting = self.vectors.over(name).filter(|(_, (_, axis, _))| fits(axis));
         let said = self.chosen(name, n, complex);
-        // The nearer statement wins; a vector beside the values wins over an attribute.
+        // The nearer statement is used; a vector beside the values takes precedence over an attribute.
         let beside = self.dialect.container(name).len();
         let nearest = said.first().map_or(0, |(scope, _)| scope.len().min(beside));
         let first = fitting.next().filter(|(scope, _)| scope.len() >= nearest);
@@ -306,8 +306,8 @@ impl<'a> Axes<'a> {
         self.by_scalar(name, values, &said, meta)
     }
 
-    /// The axis that the user states, by a sampling rate or a base band. A `step` of the file that differs is
-    /// named, where there is no `vector` beside it.
+    /// The axis that the user states, by a sampling rate or a base band. A finding reports a different
+    /// `step` of the file, unless there is a `vector` beside the values.
     fn stated(
         &self,
         values: &Held,
@@ -331,7 +331,7 @@ impl<'a> Axes<'a> {
         }
     }
 
-    /// The axis by the most certain of the scalars that state a step, `said`.
+    /// The axis by the first of the scalars `said`, which state a step.
     fn by_scalar(
         &self,
         name: &str,
@@ -392,8 +392,8 @@ impl<'a> Axes<'a> {
     }
 }
 
-/// Units by the vector that has them as attribute, or by the struct that states them: for its only vector
-/// or, in formats with attributes, for all its vectors.
+/// Units, keyed by the vector that has the unit as attribute, or by the struct that states it: for its only
+/// vector or, in formats with attributes, for all its vectors.
 pub fn units<'n>(
     dialect: &Dialect,
     notes: &'n [(String, String)],

@@ -2,7 +2,7 @@
 //! property of their abscissa that it states.
 //!
 //! A scalar or text in a struct or group describes all vectors in it, however deep; an attribute describes
-//! its vector. In a struct without vectors, it describes those beside the struct:
+//! its vector. A struct without vectors describes the vectors beside the struct:
 //! `File_Header.SampleFrequency` describes `Channel_1_Data`, `Signal.x_values.increment` describes
 //! `Signal.y_values.values`.
 
@@ -20,11 +20,11 @@ pub struct Dialect {
     pub first: usize,
     /// Whether matrices are stored row after row.
     pub by_rows: bool,
-    /// A matrix with more columns than this and than rows is read by rows: one channel a row. A larger
-    /// number keeps matrices of many channels and few samples read by columns.
+    /// A matrix with more columns than this and than rows is read by rows, one channel per row. With a
+    /// larger number, matrices of many channels and few samples are still read by columns.
     pub wide: u64,
-    /// Whether groups and vectors have attributes. Then the unit of a group holds for all in it, and notes
-    /// have the names that they have in the group.
+    /// Whether groups and vectors have attributes. Then the unit of a group applies to all vectors in it,
+    /// and notes keep their names within the group.
     pub attributes: bool,
 }
 
@@ -41,14 +41,14 @@ pub enum Meaning {
     Start,
 }
 
-/// Certainty that a name has its meaning, the highest first.
+/// Certainty that a name has its meaning, from the highest to the lowest.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Trust {
     /// It has no other meaning.
     Sure,
     /// It usually has this meaning: a step is used with a caution, a start only beside an increment.
     Likely,
-    /// `rate` may be the speed of a shaft: used from 1 kHz on, where nothing better is stated.
+    /// `rate` may be the speed of a shaft: used from 1 kHz, if nothing more certain is stated.
     Vague,
     /// Not used unless its unit is stated, but suggested to the user.
     Offered,
@@ -57,7 +57,7 @@ pub enum Trust {
 use Meaning::{Increment, Rate, Start, Step};
 use Trust::{Likely, Offered, Sure, Vague};
 
-/// Names as [`Dialect::word`] gives them, their meaning, and how sure it is.
+/// Names as returned by [`Dialect::word`], their meaning, and its certainty.
 const NAMES: &[(&[&str], Meaning, Trust)] = &[
     (&["fs", "samplerate", "samplingrate", "samplefrequency", "samplingfrequency"], Rate, Sure),
     (&["dt", "ts", "deltat", "sampletime", "samplinginterval", "sampleinterval", "tinterval"], Step, Sure),
@@ -69,7 +69,7 @@ const NAMES: &[(&[&str], Meaning, Trust)] = &[
     (&["sr"], Rate, Likely),
     (&["rate"], Rate, Vague),
 ];
-/// Parts of names of a sampling rate, and how sure that is.
+/// Parts of names of a sampling rate, and their certainty.
 const PARTS: &[(&[&str], Trust)] = &[
     (&["samplerate", "samplingrate", "samplefreq", "samplingfreq"], Likely),
     (&["sampl", "rate", "freq"], Offered),
@@ -78,7 +78,7 @@ const PARTS: &[(&[&str], Trust)] = &[
 pub const UNIT: &[&str] = &["unit", "units", "yunit", "yunits", "unity", "unitstring"];
 /// Names of variables that hold the unit of the abscissa of values.
 pub const X_UNIT: &[&str] = &["xunit", "xunits", "unitx"];
-/// Names without meaning of their own: the name of the struct is used instead.
+/// Names without a meaning of their own: the name of their struct is used instead.
 const CONTENTS: [&str; 3] = ["data", "values", "value"];
 
 impl Dialect {
@@ -92,8 +92,8 @@ impl Dialect {
         container.strip_suffix(self.separator).unwrap_or(container)
     }
 
-    /// The last part of a name; if that is one of `CONTENTS`, the part before it without its index: of
-    /// `X(1).Data` it is `X`.
+    /// The last part of a name. If it is one of `CONTENTS`, the part before it without its index: `X` for
+    /// `X(1).Data`.
     pub fn key<'n>(&self, name: &'n str) -> &'n str {
         let (container, last) = name.split_at(self.container(name).len());
         match container.strip_suffix(self.separator) {
@@ -110,7 +110,7 @@ impl Dialect {
         self.key(name).chars().filter(|c| c.is_alphanumeric()).collect::<String>().to_lowercase()
     }
 
-    /// The property of an abscissa that a scalar of this name states, and how sure that is.
+    /// The property of an abscissa that a scalar of this name states, and its certainty.
     pub fn meaning(&self, name: &str) -> Option<(Meaning, Trust)> {
         let word = self.word(name);
         let named = NAMES.iter().find(|(names, ..)| names.contains(&word.as_str()));
@@ -154,7 +154,7 @@ impl<T> Scoped<T> {
         self.things.entry(scope.to_owned()).or_default().push(thing);
     }
 
-    /// The descriptions that hold for a vector, the nearest first, each with the struct or vector that it
+    /// The descriptions that apply to a vector, the nearest first, each with the struct or vector that it
     /// describes.
     pub fn over<'a>(&'a self, name: &'a str) -> impl Iterator<Item = (&'a str, &'a T)> {
         let scopes = std::iter::once(name).chain(self.dialect.structs(name));

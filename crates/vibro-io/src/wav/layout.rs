@@ -52,7 +52,7 @@ struct Chunks {
 
 /// Reads the chunks of a file, without its samples.
 fn chunks(source: &Source, reader: &mut dyn ReadSeek) -> Result<Chunks> {
-    // At most `most` bytes from `at` on: fewer where the file ends.
+    // At most `most` bytes from `at` on; fewer at the end of the file.
     let mut bytes = |at: u64, most: u64| {
         let mut bytes = Vec::new();
         reader
@@ -135,7 +135,7 @@ pub fn read(source: &Source, reader: &mut dyn ReadSeek) -> Result<WavHeader> {
         findings.push(Finding::note("part-of-frame").number("bytes", (present % frame) as f64));
     }
     let comment = notes.iter().find(|(id, _): &&(String, String)| id == "ICMT");
-    // A comment that does not fit the samples is from another file.
+    // A comment that does not fit the samples belongs to another file.
     let scales = comment
         .and_then(|(_, text)| Scales::parse(text))
         .filter(|s| s.rate.round() == rate && s.channels.len() == channels);
@@ -146,7 +146,7 @@ pub fn read(source: &Source, reader: &mut dyn ReadSeek) -> Result<WavHeader> {
     Ok(WavHeader { sample, channels, rate, data_at, frames, declared_frames, scales, notes, findings })
 }
 
-/// Name and size of a chunk; `None` where no chunk begins.
+/// Name and size of a chunk; `None` if no chunk begins here.
 fn chunk(tag: &[u8]) -> Option<(&[u8; 4], u32)> {
     let id = tag.first_chunk::<4>().filter(|id| id.iter().all(|b| (0x20..0x7f).contains(b)))?;
     Some((id, u32::from_le_bytes(field(tag, 4)?)))
@@ -156,8 +156,8 @@ fn field<const N: usize>(bytes: &[u8], at: usize) -> Option<[u8; N]> {
     bytes.get(at..)?.first_chunk().copied()
 }
 
-/// Kind of sample, number of channels, sampling rate in Hz and bits of a sample from a `fmt ` chunk; else
-/// the found and the expected form.
+/// Kind of sample, number of channels, sampling rate in Hz and bits per sample from a `fmt ` chunk; as an
+/// error, the found and the expected form.
 fn kind(format: &[u8]) -> std::result::Result<(NumberType, usize, f64, usize), (String, &'static str)> {
     let word = |at| field(format, at).map(u16::from_le_bytes);
     let (Some(mut tag), Some(channels), Some(rate), Some(frame), Some(mut bits)) =
@@ -166,7 +166,8 @@ fn kind(format: &[u8]) -> std::result::Result<(NumberType, usize, f64, usize), (
         return Err((format!("a fmt chunk of {} bytes", format.len()), "at least 16"));
     };
     if tag == 0xfffe {
-        // The extensible form: the true tag opens the sub-format, the true number of bits stands before it.
+        // In the extensible form, the sub-format begins with the true tag, and the true number of bits is
+        // stored before it.
         tag = word(24).filter(|_| format.get(26..40) == Some(&GUID)).unwrap_or(tag);
         bits = word(18).filter(|valid| *valid > 0).unwrap_or(bits);
     }

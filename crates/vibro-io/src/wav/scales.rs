@@ -1,5 +1,5 @@
-//! The comment in this crate's own wave files: exact sampling rate, start time and full scales, for which the
-//! format has no fields.
+//! The comment in wave files that this crate writes: exact sampling rate, start time and full scales, for
+//! which the format has no fields.
 
 use crate::number;
 use std::fmt;
@@ -13,11 +13,11 @@ const MARK: &str = "vibroimpact";
 /// vibroimpact
 /// rate 65535.98 Hz
 /// start 0.5 s
-/// full scale 16 m/s of velocity        one line a channel: factor, unit, name
+/// full scale 16 m/s of velocity        one line per channel: factor, unit, name
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Scales {
-    /// Sampling rate in Hz: the format's own is a whole number.
+    /// Sampling rate in Hz; the format itself stores a whole number.
     pub rate: f64,
     /// Time of the first sample in s.
     pub start: f64,
@@ -25,7 +25,7 @@ pub(crate) struct Scales {
     pub channels: Vec<Scale>,
 }
 
-/// Full scale of a channel: the physical value of a stored 1.
+/// Full scale of a channel: the physical value of a stored sample of 1.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Scale {
     /// Physical value in `unit`, above 0.

@@ -118,7 +118,7 @@ fn unknown_and_odd_chunks_are_passed_over() {
     assert_eq!(values(&whole), [[0.25]]);
     let notes = &read_bytes(&whole).unwrap().records[0].meta().notes.clone();
     assert_eq!(*notes, [("ICMT".into(), "drill".into()), ("ISFT".into(), "abc".into())]);
-    // The same without the zero byte after the odd chunk, as some writers have it.
+    // The same without the zero byte after the odd chunk, which some writers leave out.
     let at = whole.windows(4).position(|w| w == b"junk").unwrap();
     let unpadded = [&whole[..at + 9], &whole[at + 10..]].concat();
     assert_eq!(values(&unpadded), [[0.25]]);
@@ -151,7 +151,7 @@ fn a_truncated_file_says_both_numbers() {
     assert!(has_finding(&recording.findings, "part-of-frame", &["bytes=1"]), "{:?}", recording.findings);
 }
 
-/// A header that declares 10 GB, with 20 bytes after it.
+/// A header that declares 10 GB, followed by 20 bytes.
 fn huge(form: [u8; 4]) -> Vec<u8> {
     let mut ds64 = 10_000_000_000u64.to_le_bytes().to_vec();
     ds64.extend(10_000_000_000u64.to_le_bytes());
@@ -241,11 +241,11 @@ fn statements_of_a_person_win_with_a_doubt() {
     assert!(error.to_string().contains("base band"));
 }
 
-/// Survey and stream must agree with reading the whole file, across block borders, too.
+/// Survey and stream must agree with reading the whole file, also across the borders of blocks.
 #[test]
 fn survey_and_stream_agree_with_reading() {
     let n = 60_000usize;
-    // 7 and 11 are prime to 65536, so that the sequence has no short period.
+    // 7 and 11 have no common factor with 65536, so the sequence has no short period.
     let samples: Vec<i16> =
         (0..3 * n).map(|i| (i.wrapping_mul(7).wrapping_add(11 * (i % 3))) as i16).collect();
     let folder = tempfile::tempdir().unwrap();
@@ -289,7 +289,7 @@ fn values_that_leave_the_range_of_numbers_are_refused() {
 }
 
 proptest! {
-    /// The oracle is hound, an independent writer of wave files.
+    /// The reference is hound, an independent writer of wave files.
     #[test]
     fn agrees_with_another_writer(
         bits in prop::sample::select(vec![8u16, 16, 24, 32]), channels in 1u16..4,

@@ -1,13 +1,13 @@
 //! Columns with names and units, which spreadsheets and [`crate::Reader`] read.
 //!
 //! ```text
-//! # scaling: rms of v               remarks about a column, where there is something to say
+//! # scaling: rms of v               remarks on a column, if there are any
 //! frequency [Hz],v [m/s],H_re [m/N],H_im [m/N]
 //! 0,0.001,1.5e-7,-2e-9
 //! ```
-//! The first column is the abscissa; a complex record takes two. Numbers have the fewest digits that read
-//! back as the same double; an uneven abscissa has all its digits, so that its values cannot be taken for
-//! rounded even ones.
+//! The first column is the abscissa; a complex record takes two columns. Numbers have the fewest digits
+//! that read back as the same double. An uneven abscissa is printed with all its digits, so that its values
+//! are not read as rounded even ones.
 
 use super::listed::{failed, label, parts, together};
 use std::fmt::Write as _;
@@ -60,15 +60,15 @@ pub fn write(records: &[Record], separator: char, out: &mut impl Write) -> Resul
     out.write_all(text.as_bytes()).map_err(failed)
 }
 
-/// Characters that a spreadsheet takes for the beginning of a formula, or of a command to another program.
+/// Characters that a spreadsheet reads as the start of a formula, or of a command to another program.
 const FORMULA: [char; 9] = ['=', '+', '-', '@', '|', '＝', '＋', '－', '＠'];
 
-/// Whether a spreadsheet would take a text for a formula; a sign alone is none.
+/// Whether a spreadsheet would read a text as a formula; a sign alone is not one.
 pub fn begins_formula(text: &str) -> bool {
     text.starts_with(FORMULA) && text.chars().nth(1).is_some()
 }
 
-/// Bytes of text that are gathered before they are written.
+/// Bytes of text that are collected before they are written.
 const BLOCK: usize = 64 * 1024;
 
 /// Name and unit of the column of a record.
@@ -135,7 +135,8 @@ fn plain(text: &str) -> String {
     text.replace(char::is_control, " ").trim().to_owned()
 }
 
-/// A field, quoted as RFC 4180 requires, and where it holds `#` or `%`: these would make the line a comment.
+/// A field, quoted as RFC 4180 requires, and also if it contains `#` or `%`, which would make the line a
+/// comment.
 fn field(text: &str, separator: char) -> String {
     if text.contains([separator, '"', '#', '%', '\n', '\r']) {
         format!("\"{}\"", text.replace('"', "\"\""))

@@ -2,7 +2,7 @@
 
 use vibro_record::{Error, Record, Result};
 
-/// Value `i` of a record, or its real and imaginary part; NaN where there is none.
+/// Value `i` of a record, or its real and imaginary part; NaN if there is no such value.
 pub fn parts(record: &Record, i: usize) -> impl Iterator<Item = f64> + use<> {
     let (real, complex) = record.numbers();
     let (re, im) = if record.is_complex() {
@@ -13,8 +13,8 @@ pub fn parts(record: &Record, i: usize) -> impl Iterator<Item = f64> + use<> {
     std::iter::once(re).chain(im)
 }
 
-/// The first of records that share one axis; `what` ends the error if they do not: `abscissae: a table has
-/// one`.
+/// The first of several records that must share one axis. `what` ends the error if they do not: `abscissae:
+/// a table has one`.
 pub fn together<'a>(records: &'a [Record], what: &str) -> Result<&'a Record> {
     let first = records.first().ok_or_else(|| Error::refused("there is no record to write"))?;
     let Some(other) = records.iter().find(|r| r.axis() != first.axis()) else { return Ok(first) };

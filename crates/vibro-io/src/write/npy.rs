@@ -1,7 +1,7 @@
 //! numpy's array file, format version 1.0.
 //!
-//! One record gives a vector, several of one length an array of shape (records, values): doubles, or complex
-//! doubles where any record is complex. Names, units and the abscissa have no place in it.
+//! One record gives a vector, several records of one length an array of shape (records, values). Values are
+//! doubles, or complex doubles if any record is complex. Names, units and the abscissa are not stored.
 //!
 //! Source: numpy's own description of the format, `NEP 1`.
 
@@ -27,7 +27,7 @@ pub fn write(records: &[Record], out: &mut impl Write) -> Result<()> {
     let shape = if records.len() == 1 { format!("({n},)") } else { format!("({}, {n})", records.len()) };
     let kind = if complex { "<c16" } else { "<f8" };
     let mut header = format!("{{'descr': '{kind}', 'fortran_order': False, 'shape': {shape}, }}");
-    // Ten bytes of prefix and a line end; values begin at a multiple of 64.
+    // A prefix of ten bytes and a line end; the values begin at a multiple of 64 bytes.
     let padding = (64 - (10 + header.len() + 1) % 64) % 64;
     header.extend(std::iter::repeat_n(' ', padding));
     header.push('\n');
@@ -67,7 +67,7 @@ mod tests {
         out
     }
 
-    /// The files were written by numpy itself: see `fixtures/npy/make.py`.
+    /// The files were written by numpy: see `fixtures/npy/make.py`.
     #[test]
     fn byte_for_byte_what_numpy_writes() {
         let values = [0.0, -1.5, 1e300, f64::from_bits(1)];

@@ -12,7 +12,7 @@ fn the_ending_chooses() {
     }
 }
 
-/// Nothing is lost unless single precision was asked for.
+/// Nothing is lost, except by single precision if it is requested.
 #[test]
 fn a_wave_file_is_as_exact_as_was_asked_for() {
     let text = "t [s],v [m/s]\n0,0.1\n0.5,-2\n";
@@ -26,7 +26,7 @@ fn a_wave_file_is_as_exact_as_was_asked_for() {
     }
 }
 
-/// What every target writes, the reader knows again by itself; numpy's arrays it does not read.
+/// The reader detects the format that every target writes; it does not read numpy's arrays.
 #[test]
 fn what_is_written_is_recognised() {
     let records =

@@ -12,7 +12,8 @@ use crate::uff::set58::Layout;
 use std::io::{self, Write};
 use vibro_record::{Error, Grid, Record, Result};
 
-/// Precision of the values. An uneven abscissa has single precision, or six digits, in either.
+/// Precision of the values. An uneven abscissa always has single precision in binary, and six digits in
+/// text.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Precision {
     /// Six digits of text, or four bytes.
@@ -33,15 +34,15 @@ pub struct Storage {
 
 /// Writes records in SI units, one data set each, lines ended by LF.
 ///
-/// Name, point and identification lines come from [`vibro_record::Meta::notes`] where the record was read
-/// from such a file, else the name becomes the first identification line. The fifth line states a scaling,
-/// window and noise bandwidth that the function type cannot express. Missing values are written as NaN, which
-/// few programs read.
+/// Name, point and identification lines come from [`vibro_record::Meta::notes`] if the record was read from
+/// such a file; otherwise the name becomes the first identification line. The fifth line states scaling,
+/// window and noise bandwidth that the function type cannot express. Missing values are written as NaN,
+/// which few programs read.
 ///
 /// Double precision in binary keeps every bit of the values. Start and step of an even abscissa have up to
-/// nine digits, an uneven abscissa six digits or single precision: the format has no room for more. More than
-/// the usual digits are used from a shift of a thousandth of the (smallest) step on; beyond a tenth the
-/// record is refused.
+/// nine digits, an uneven abscissa has six digits or single precision: the format has no room for more.
+/// More than the usual digits are used if rounding shifts an abscissa value by over a thousandth of the
+/// (smallest) step; beyond a tenth of it the record is refused.
 ///
 /// ```
 /// use vibro_record::{Axis, Meta, Record, Trace};
@@ -56,7 +57,7 @@ pub struct Storage {
 /// ```
 ///
 /// # Errors
-/// If `out` cannot be written, there are no records, or the format would distort the abscissa of one.
+/// If `out` cannot be written, there are no records, or the format would distort an abscissa.
 pub fn write_uff58(records: &[Record], out: &mut impl Write, storage: Storage) -> Result<()> {
     if records.is_empty() {
         return Err(Error::refused("there are no records to write, and a file without any cannot be read"));
@@ -113,7 +114,7 @@ fn text(record: &Record, layout: Layout, out: &mut impl Write) -> io::Result<()>
     if record.is_empty() { Ok(()) } else { out.write_all(b"\n") }
 }
 
-/// A number as Fortran's `1PEw.d` prints it: the letter E is dropped for an exponent of three digits.
+/// A number as Fortran's `1PEw.d` prints it: an exponent of three digits drops the letter E.
 fn field(value: f64, width: usize, digits: usize) -> String {
     if !value.is_finite() {
         return format!("{:>width$}", "NaN");
@@ -125,10 +126,10 @@ fn field(value: f64, width: usize, digits: usize) -> String {
     format!("{:>width$}", format!("{mantissa}{letter}{sign}{exponent:0>2}"))
 }
 
-/// Largest shift of an abscissa value by rounding, over the (smallest) step, for which the usual digits are
-/// enough; above it, more digits are tried.
+/// Largest shift of an abscissa value by rounding, divided by the (smallest) step, for which the usual
+/// digits are enough; above it, more digits are tried.
 const WANTED: f64 = 1e-3;
-/// Largest shift of an abscissa value over the (smallest) step: beyond it the record is refused.
+/// Largest shift of an abscissa value divided by the (smallest) step; beyond it the record is refused.
 const TOLERANCE: f64 = 0.1;
 /// Characters of start and step in record 7, and of an abscissa value in text.
 const WIDTH: usize = 13;
@@ -146,8 +147,8 @@ fn form(record: &Record, binary: bool) -> Result<[String; 2]> {
     match &record.axis().grid {
         Grid::Even { start, step, n } => {
             let last = n.saturating_sub(1) as f64;
-            // Start and step may use half of the tolerance each; the error of the step adds up to the last
-            // value.
+            // Start and step may each use half of the tolerance; the error of the step accumulates up to
+            // the last value.
             let fitting = |value: f64, times: f64| {
                 [WANTED, TOLERANCE].into_iter().find_map(|part| {
                     let bound = 0.5 * part * step.abs();
@@ -238,7 +239,7 @@ mod tests {
             late.contains("the trace \"x\" begins at 123456.7891234") && late.contains("try: write .csv"),
             "{late}"
         );
-        // Nine digits of 1/48000 are off by 3.3e-14, so by 0.16 of a step after a hundred million steps.
+        // 1/48000 with nine digits is off by 3.3e-14, so by 0.16 of a step after a hundred million steps.
         let axis = |n| form_of_axis(Axis::time(0.0, 1.0 / 48_000.0, n));
         assert!(axis(1_000_000).is_ok());
         let long = words(axis(100_000_000));

@@ -1,9 +1,10 @@
 //! Wave audio of 32- or 64-bit floats.
 //!
-//! Only traces with one even time axis fit, and no missing values. Each channel is divided by its full scale,
-//! the power of two at or next above its largest magnitude, so that the division is exact. A comment (LIST
-//! INFO ICMT) holds full scale, unit, name, exact sampling rate and start. [`crate::Reader`] reads the
-//! comment and undoes all of it; an audio program plays the file and ignores it.
+//! Only traces with one even time axis and without missing values can be written. Each channel is divided
+//! by its full scale, the power of two at or next above its largest magnitude, so that the division is
+//! exact. A comment (LIST INFO ICMT) holds full scale, unit, name, exact sampling rate and start.
+//! [`crate::Reader`] reads the comment and restores all of it; an audio program plays the file and ignores
+//! the comment.
 
 use super::listed::{failed, label, together};
 use super::uff58::Precision;
@@ -15,8 +16,8 @@ use vibro_record::{AxisKind, Error, Record, Result, Trace};
 /// Writes traces as the channels of one file.
 ///
 /// # Errors
-/// If there are none, one is no trace over evenly sampled time, their axes differ, a sample is missing, the
-/// sampling rate is not between 1 Hz and 4.29 GHz, they take more than 4 GiB, or the output cannot be
+/// If there are none, one is not a trace over evenly sampled time, their axes differ, a sample is missing,
+/// the sampling rate is not between 1 Hz and 4.29 GHz, they take more than 4 GiB, or the output cannot be
 /// written.
 pub fn write(records: &[Record], precision: Precision, out: &mut impl Write) -> Result<()> {
     let traces = records.iter().map(checked).collect::<Result<Vec<&Trace>>>()?;

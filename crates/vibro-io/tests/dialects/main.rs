@@ -1,9 +1,9 @@
-//! Text exports of instruments and programs, written by this program from public descriptions of their
-//! layouts: each is read right, or refused with one thing to state that reads it right. `docs/formats.md`
-//! says which, and is held to it here.
+//! Text exports of instruments and programs, generated from public descriptions of their layouts. Each is
+//! read correctly, or refused with one setting or edit that makes it readable. The test compares the list
+//! with `docs/formats.md`.
 //!
-//! All of them hold the same signals: closed forms that differ from each other, have both signs, and peak at
-//! a known place.
+//! All exports hold the same signals: closed forms that differ from each other, have both signs, and peak
+//! at a known place.
 
 mod loggers;
 mod programs;
@@ -21,7 +21,7 @@ struct Dialect {
     /// Instrument or program.
     of: &'static str,
     oddity: &'static str,
-    /// Name of the file, which tells by its ending what the export calls itself.
+    /// Name of the file; its ending is part of the test.
     file: &'static str,
     text: fn() -> Vec<u8>,
     outcome: Outcome,
@@ -32,31 +32,31 @@ enum Outcome {
     Refused(Refusal),
 }
 
-/// What must be said in place of an answer, and what to state then.
+/// The expected error, and the setting or edit after which the export is read correctly.
 struct Refusal {
-    /// Words of the message.
+    /// Words of the error message.
     words: &'static [&'static str],
-    /// As it is typed.
+    /// The option as the user types it.
     option: &'static str,
     state: fn(Reader) -> Reader,
-    /// What is mended in the text, where nothing that can be stated would do.
+    /// Edit of the text, if no setting is enough.
     edit: fn(String) -> String,
     right: Right,
 }
 
-/// What a right reading gives.
+/// The expected reading.
 struct Right {
     channels: &'static [Channel],
     x: X,
-    /// Codes of findings that must be there.
+    /// Codes of the expected findings.
     findings: &'static [&'static str],
 }
 
 struct Channel {
     name: &'static str,
-    /// SI symbol; empty where the file says none.
+    /// SI symbol; empty if the file states no unit.
     unit: &'static str,
-    /// Which of the signals.
+    /// Number of the signal, see [`value`].
     signal: usize,
     /// Factor from the signal to SI.
     factor: f64,
@@ -65,17 +65,17 @@ struct Channel {
 }
 
 enum X {
-    /// Time from a start in s, in steps of the signals.
+    /// Time from a start in s, with the step of the signals.
     Even(f64),
-    /// Time from 0 in other steps.
+    /// Time from 0, with this step in s.
     Steps(f64),
-    /// Lines of a spectrum at such a distance in Hz.
+    /// Spectral lines, this far apart in Hz.
     Lines(f64),
-    /// Steps of the signals from 0, of what is not said.
+    /// From 0 with the step of the signals, of an unknown kind.
     Unsaid,
-    /// Values are numbered.
+    /// The abscissa is the index of the value.
     Numbered,
-    /// Time in two segments, each from a start in s in steps of the signals.
+    /// Time in two segments, each from this start in s with the step of the signals.
     Segments(f64),
 }
 
@@ -91,7 +91,7 @@ fn all() -> Vec<&'static Dialect> {
     [scopes::ALL, loggers::ALL, vibration::ALL, programs::ALL, seismic::ALL].into_iter().flatten().collect()
 }
 
-/// What is wrong with a reading.
+/// Differences between a reading and the expected one.
 fn faults(found: &Recording, right: &Right) -> Vec<String> {
     let mut faults = Vec::new();
     let names: Vec<&str> = found.records.iter().map(|r| r.meta().name.as_str()).collect();
@@ -127,7 +127,7 @@ fn faults(found: &Recording, right: &Right) -> Vec<String> {
         }
         let right_value = |i: usize| value(channel.signal, i) * channel.factor;
         let off = |i: &usize| {
-            // A value that is missing has no right value.
+            // A missing value (NaN) is not compared.
             (values[*i] - right_value(*i)).abs() > channel.digits * channel.factor.abs() * (1.0 + 1e-9)
         };
         if let Some(i) = (0..N).find(off) {
@@ -142,7 +142,7 @@ fn faults(found: &Recording, right: &Right) -> Vec<String> {
         };
         let segments = matches!(right.x, X::Segments(_));
         let instant = |i: usize| start + step * (if segments { i % (N / 2) } else { i }) as f64;
-        // Instants are printed to a hundredth of a step at least.
+        // Instants are printed to at least a hundredth of a step.
         let off = |i: &usize| (axis.at(*i) - instant(*i)).abs() > 0.01 * step;
         if axis.kind != kind || axis.step().is_some() == segments {
             faults.push(format!(
@@ -159,7 +159,7 @@ fn faults(found: &Recording, right: &Right) -> Vec<String> {
     faults.extend(
         right.findings.iter().filter(|c| !codes.contains(c)).map(|c| format!("no finding {c} in {codes:?}")),
     );
-    // What must be known is what is expected, and no more: a caution too many teaches to pass over cautions.
+    // No findings other than the expected ones: a needless caution teaches users to ignore cautions.
     let known = |code: &&&str| !right.findings.contains(code);
     let more: Vec<&&str> = codes.iter().filter(known).collect();
     if !more.is_empty() {
@@ -168,7 +168,7 @@ fn faults(found: &Recording, right: &Right) -> Vec<String> {
     faults
 }
 
-/// What is wrong with how a dialect is read.
+/// Faults in how a dialect is read.
 fn wrong(dialect: &Dialect) -> Vec<String> {
     let text = (dialect.text)();
     let with = |reader: Reader| reader.from_reader(dialect.file, text.as_slice());
@@ -216,7 +216,7 @@ fn there_are_as_many_as_promised_and_no_two_alike() {
     assert_eq!(distinct.len(), all.len());
 }
 
-/// An editor or another system may change them: the reading stays the same.
+/// Changes that an editor or another system may make do not change the reading.
 #[test]
 fn line_ends_marks_and_blank_lines_behind_change_nothing() {
     let mut wrong_ones = Vec::new();
@@ -266,7 +266,7 @@ fn the_table_of_the_documents_is_this_list() {
     assert_eq!(stands, rows, "the table should be:\n{}", rows.join("\n"));
 }
 
-/// Whatever is cut off or garbled in one of them, it is an answer or an error.
+/// A truncated or garbled export gives a reading or an error, never a panic.
 #[test]
 fn none_makes_the_reader_panic_when_it_is_cut_off() {
     for dialect in all() {

@@ -1,14 +1,14 @@
-//! Spreadsheets, programs of calculation and of simulation, and how they store text.
+//! Spreadsheets, calculation and simulation programs, and how they store text.
 
 use super::signal::{N, at, clock, comma, fixed, sci, table, value, with_end};
 use super::{Dialect, Outcome, Refusal, Right, X, ch, read};
 
-/// Time and two channels as `fixed` prints them.
+/// Row `i` of time and two channels, printed by `fixed`.
 fn row(i: usize, between: &str) -> String {
     [fixed(at(0.0, i), 6), fixed(value(0, i), 6), fixed(value(1, i), 6)].join(between)
 }
 
-/// A number of three decimals with its digits in groups of three.
+/// A number with three decimals and thousands separators (`group`).
 fn grouped(value: f64, group: &str, decimal: &str) -> String {
     let text = fixed(value.abs(), 3);
     let (whole, rest) = text.split_once('.').unwrap();
@@ -17,7 +17,7 @@ fn grouped(value: f64, group: &str, decimal: &str) -> String {
     format!("{}{whole}{decimal}{rest}", if value < 0.0 { "-" } else { "" })
 }
 
-/// Force in N and displacement in µm in groups.
+/// Force in mN and displacement in µm, with thousands separators.
 fn sheet(group: &'static str, decimal: &'static str) -> Vec<u8> {
     table("Zeit [ms];Kraft [mN];Weg [µm]\n", |i| {
         [1e3 * at(0.0, i), 1e3 * value(0, i), 1e3 * value(1, i)].map(|v| grouped(v, group, decimal)).join(";")

@@ -3,7 +3,7 @@
 use super::signal::{DX, N, at, fixed, sci, table, value};
 use super::{Dialect, Outcome, Refusal, Right, X, ch, read};
 
-/// What scopes print before the trigger.
+/// Time of the first sample in s: scopes record before the trigger.
 const START: f64 = -0.005;
 
 fn t(i: usize) -> String {
@@ -14,7 +14,7 @@ fn u(channel: usize, i: usize) -> String {
     sci(value(channel, i), 5, 2)
 }
 
-/// The digits of [`u`], for values below 10.
+/// Largest rounding error of [`u`] for values below 10.
 const U: f64 = 5e-6;
 
 pub const ALL: &[Dialect] = &[
@@ -85,7 +85,8 @@ pub const ALL: &[Dialect] = &[
         of: "GW Instek GDS-1000B, Fast CSV",
         oddity: "rows of the converter's counts, 25 a division, under the unit V",
         file: "DS0002.CSV",
-        // A division of 25 V makes a count a volt, so that the signal is in the digits.
+        // At 25 V per division and 25 counts per division, one count is 1 V. The factor 1000 keeps the
+        // digits of the signal.
         text: || table(&gw("Fast"), |i| format!("{:.0},", 1e3 * value(0, i))),
         outcome: read(&[ch("CH1", "", 0, 1e3, 0.5e-3)], X::Even(0.0), &["rate-from-head", "unit-unsaid"]),
     },

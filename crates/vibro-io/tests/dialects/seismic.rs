@@ -1,9 +1,9 @@
-//! Seismology and strong motion: fixed formats that laboratories with shaking tables export, too.
+//! Seismology and strong motion: fixed formats, which laboratories with shaking tables also export.
 
 use super::signal::{N, clock, sci, value};
 use super::{Dialect, Outcome, Refusal, Right, X, ch, read};
 
-/// So many values a line.
+/// `a_line` values per line.
 fn wrapped(head: &str, a_line: usize, print: impl Fn(f64) -> String) -> Vec<u8> {
     let mut text = head.to_owned();
     for i in 0..N {

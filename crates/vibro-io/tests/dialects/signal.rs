@@ -2,13 +2,13 @@
 
 use vibro_math::Noise;
 
-/// Values of a channel.
+/// Number of values of a channel.
 pub const N: usize = 128;
 /// Sampling interval in s.
 pub const DX: f64 = 5e-4;
 
-/// Value `i` of a channel: a pulse on a cosine with its peak near 20, a sine on a drift, a decay that changes
-/// sign.
+/// Value `i` of a channel. Channel 0: a pulse near value 20 on a cosine; 1: a sine on a drift; 2: a decay
+/// that changes sign.
 pub fn value(channel: usize, i: usize) -> f64 {
     let x = i as f64;
     match channel {
@@ -23,7 +23,7 @@ pub fn at(start: f64, i: usize) -> f64 {
     start + DX * i as f64
 }
 
-/// Instant `i` in s as a telephone or a logger stamps it: up to 2 µs off.
+/// Instant `i` in s as a telephone or a logger stamps it: off by up to 2 µs.
 pub fn stamped(start: f64, i: usize) -> f64 {
     at(start, i) + Noise::new(i as u64 + 1).between(-2e-6, 2e-6)
 }
@@ -33,7 +33,7 @@ pub fn fixed(value: f64, digits: usize) -> String {
     format!("{value:.digits$}")
 }
 
-/// `%.{digits}E` with a sign and so many digits in the exponent.
+/// `%.{digits}E` with a sign and this number of digits in the exponent.
 pub fn sci(value: f64, digits: usize, exponent: usize) -> String {
     let text = format!("{value:.digits$e}");
     let (mantissa, power) = text.split_once('e').expect("an exponent");
@@ -42,12 +42,12 @@ pub fn sci(value: f64, digits: usize, exponent: usize) -> String {
     format!("{mantissa}E{sign}{:0exponent$}", power.abs())
 }
 
-/// With a decimal comma.
+/// A number with a decimal comma instead of the point.
 pub fn comma(text: &str) -> String {
     text.replace('.', ",")
 }
 
-/// A head, then one row for each value.
+/// A header, then one row for each value.
 pub fn table(head: &str, row: impl Fn(usize) -> String) -> Vec<u8> {
     with_end(head, "\n", row)
 }
@@ -62,7 +62,7 @@ pub fn with_end(head: &str, end: &str, row: impl Fn(usize) -> String) -> Vec<u8>
     text.into_bytes()
 }
 
-/// A time of day `i` steps behind `hour` o'clock (and so many seconds), with so many digits of a second.
+/// A time of day, `i` steps and `second` seconds after `hour` o'clock, with `digits` decimals of a second.
 pub fn clock(hour: usize, second: f64, i: usize, digits: usize) -> String {
     let seconds = second + DX * i as f64;
     let (minutes, rest) = ((seconds / 60.0).floor(), seconds % 60.0);

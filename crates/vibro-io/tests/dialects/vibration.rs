@@ -3,7 +3,7 @@
 use super::signal::{at, clock, comma, fixed, sci, stamped, table, value, with_end};
 use super::{Dialect, X, ch, read};
 
-/// Three axes as `fixed` or `sci` print them.
+/// Three axes, each value printed by `print`.
 fn xyz(print: impl Fn(f64) -> String, i: usize, between: &str) -> String {
     (0..3).map(|c| print(value(c, i))).collect::<Vec<_>>().join(between)
 }
@@ -267,7 +267,7 @@ pub const ALL: &[Dialect] = &[
                 "Project\tDrill\nSection\tSection1\n\nTime\tForce\tHandle:+Z\ns\tN\tm/s\u{b2}\n",
                 |i| format!("{}\t{}\t{}", fixed(at(0.0, i), 6), fixed(value(0, i), 6), fixed(value(1, i), 6)),
             );
-            // Latin-1.
+            // Encoded in Latin-1.
             String::from_utf8(text).unwrap().chars().map(|c| u8::try_from(u32::from(c)).unwrap()).collect()
         },
         outcome: read(

@@ -3,7 +3,7 @@
 use vibro_record::units::{Dimension, Quantity, Unit};
 use vibro_record::{AxisKind, Scaling};
 
-/// The record that a function type means over frequency.
+/// Kind of record that a function type means over frequency.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum FunctionType {
     /// A ratio such as response over force: a frequency response function if complex, else a spectrum of
@@ -22,7 +22,7 @@ pub enum FunctionType {
 use AxisKind::{Frequency, Time};
 use FunctionType::{Amplitude, Other, Ratio, Scaled, Squared};
 
-/// Function types of record 6 in their order, from 0: name, abscissa where only one makes sense, kind over
+/// Function types of record 6 in their order, from 0: name, abscissa if only one is possible, and kind over
 /// frequency.
 const FUNCTIONS: &[(&str, Option<AxisKind>, FunctionType)] = &[
     ("general function", None, Other),
@@ -78,7 +78,7 @@ const DATA_TYPES: &[(i64, &str, &str, &str)] = &[
     (16, "mass", "kg", "kg*m^2"),
     (17, "time", "s", "s"),
     (18, "frequency", "Hz", "Hz"),
-    // Not in the published list, but written by instruments.
+    // Not in the published list, but used by instruments.
     (21, "sound pressure", "Pa", "Pa"),
 ];
 
@@ -89,7 +89,7 @@ pub fn data_type(code: i64, rotational: bool) -> Option<(&'static str, Dimension
     Some((name, unit.dimension()?))
 }
 
-/// The quantity an axis label names, where one of its words is the name of one.
+/// The quantity that an axis label names, if one of its words is the name of a quantity.
 pub fn quantity_of_label(label: &str) -> Option<Quantity> {
     label.split(|c: char| !c.is_alphabetic()).find_map(|word| match word.to_lowercase().as_str() {
         "compliance" => Some(Quantity::Receptance),
@@ -114,7 +114,7 @@ const SETS: &[(u32, &str)] = &[
     (2467, "groups"),
 ];
 
-/// Count, number and, where known, name of data sets: `3 × 15 nodes`.
+/// Count, number and, if known, name of data sets: `3 × 15 nodes`.
 pub fn set_names((number, count): (u32, usize)) -> String {
     let times = if count > 1 { format!("{count} × ") } else { String::new() };
     let name = SETS.iter().find(|s| s.0 == number).map_or(String::new(), |s| format!(" {}", s.1));

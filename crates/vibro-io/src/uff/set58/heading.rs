@@ -19,9 +19,9 @@ pub struct Heading {
     pub record6: String,
     /// Function type, record 6.
     pub function: i64,
-    /// Where the response was measured.
+    /// Point of the response.
     pub response: DegreeOfFreedom,
-    /// Where the excitation or reference was.
+    /// Point of the excitation or reference.
     pub reference: DegreeOfFreedom,
     /// Storage of the values, record 7.
     pub layout: Layout,
@@ -44,17 +44,17 @@ pub struct Heading {
 /// A degree of freedom: entity, node, direction.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct DegreeOfFreedom {
-    /// Name of the component; empty where unused.
+    /// Name of the component; empty if unused.
     pub entity: String,
-    /// Node number; 0 where unused.
+    /// Node number; 0 if unused.
     pub node: i64,
     /// 0 scalar, ±1 to ±3 translation along ±X to ±Z, ±4 to ±6 rotation about them.
     pub direction: i64,
 }
 
 impl DegreeOfFreedom {
-    /// Name such as `PWL Mic 1+X`: entity, node and direction, as far as given; the entity alone where it
-    /// already contains the others.
+    /// Name such as `PWL Mic 1+X`: entity, node and direction, if given; the entity alone if it already
+    /// contains the others.
     pub fn name(&self) -> String {
         const AXES: [&str; 7] = ["", "X", "Y", "Z", "RX", "RY", "RZ"];
         let axis = AXES.get(self.direction.unsigned_abs() as usize).copied().unwrap_or_default();
@@ -74,14 +74,14 @@ impl DegreeOfFreedom {
 pub struct AxisCharacteristics {
     /// Specific data type.
     pub data_type: i64,
-    /// Label; empty where it is `NONE`.
+    /// Label; empty if it is `NONE`.
     pub label: String,
-    /// Unit; empty where it is `NONE`.
+    /// Unit; empty if it is `NONE`.
     pub unit: String,
 }
 
 impl AxisCharacteristics {
-    /// `speed [rpm]`: label, or else the name of the data type, and unit.
+    /// Label, or else the name of the data type, and unit: `speed [rpm]`.
     pub fn described(&self) -> String {
         let data_type = codes::data_type(self.data_type, false).map_or("", |t| t.0);
         let name = if self.label.is_empty() { data_type } else { &self.label };
@@ -119,8 +119,8 @@ impl Heading {
         }))
     }
 
-    /// A short name: the response point, for a ratio also the reference point; without a response point, the
-    /// first line.
+    /// A short name: the response point, for a ratio also the reference point. Without a response point,
+    /// the first identification line.
     pub fn name(&self) -> String {
         let response = self.response.name();
         let ratio = matches!(self.function, 3..=6 | 8);
@@ -145,7 +145,7 @@ fn cut<const N: usize>(line: &str, widths: [usize; N]) -> [String; N] {
     widths.map(|width| rest.by_ref().take(width).collect::<String>().trim().to_owned())
 }
 
-/// A whole number; a blank field is 0, as Fortran has it.
+/// A whole number; a blank field is 0, as in Fortran.
 fn whole(field: &str) -> Option<i64> {
     if field.is_empty() { Some(0) } else { field.parse().ok() }
 }
@@ -207,7 +207,7 @@ fn form(text: &str) -> Result<(Layout, usize, f64, f64)> {
 fn axis(text: &str) -> AxisCharacteristics {
     let text = text.trim_end();
     let [data_type, _, _, _, before, label, between, unit] = cut(text, [10, 5, 5, 5, 1, 20, 1, usize::MAX]);
-    // Some writers count the bytes of UTF-8, some its characters: the column between the two fields tells
+    // Some writers count the bytes of UTF-8, some its characters; the column between the two fields shows
     // which.
     let (label, unit) = if before.is_empty() && between.is_empty() {
         (label, unit)

@@ -1,22 +1,22 @@
-//! How the values of a data set 58 are stored, as its record 7 states: the values follow as record 12.
+//! Storage of the values of a data set 58, as record 7 states it; the values follow as record 12.
 
 /// Ordinate data types of record 7: code, complex, double precision.
 pub(crate) const KINDS: [(i64, bool, bool); 4] =
     [(2, false, false), (4, false, true), (5, true, false), (6, true, true)];
 
-/// How values are stored: the eight cases of the standard.
+/// Storage of values: the eight cases of the standard.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Layout {
     /// Whether each value has a real and an imaginary part.
     pub complex: bool,
-    /// Whether values have double precision. The abscissa never has.
+    /// Whether values have double precision. The abscissa never has it.
     pub double: bool,
     /// Whether the abscissa is even and therefore not stored.
     pub even: bool,
 }
 
 impl Layout {
-    /// Numbers a point: abscissa, real part, imaginary part.
+    /// Numbers per point: abscissa (if uneven), real part, imaginary part (if complex).
     pub fn columns(self) -> usize {
         1 + usize::from(self.complex) + usize::from(!self.even)
     }
@@ -36,8 +36,8 @@ impl Layout {
         }
     }
 
-    /// Bytes of one point in binary; `wide` where the abscissa has the precision of the values, which the
-    /// standard does not provide.
+    /// Bytes of one point in binary. `wide`: the abscissa has the precision of the values, which the
+    /// standard does not provide for.
     pub fn point_size(self, wide: bool) -> usize {
         let value = if self.double { 8 } else { 4 };
         let abscissa = if wide { value } else { 4 };

@@ -8,14 +8,14 @@ use vibro_record::code;
 use vibro_record::units::{Dimension, Quantity, Unit};
 use vibro_record::{Finding, Scaling};
 
-/// Data set 164: how many units of the file for length, force and temperature make one SI unit; `None` where
-/// the file does not say.
+/// Data set 164: number of the file's units of length, force and temperature in one SI unit; `None` if the
+/// file does not state it.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct UnitSystem(Option<[f64; 3]>);
 
 impl UnitSystem {
-    /// Reads two lines of data set 164. `None` where the second does not hold three positive factors, format
-    /// `3D25.17`.
+    /// Reads two lines of data set 164. `None` if the second line does not hold three positive factors,
+    /// format `3D25.17`.
     pub fn read(stream: &mut Stream) -> Option<UnitSystem> {
         stream.line_within()?;
         let line = stream.line_within()?;
@@ -24,7 +24,7 @@ impl UnitSystem {
     }
 
     /// SI units in one unit of the file, for a quantity of this dimension. Mass is force times time squared
-    /// over length, and time is in seconds in every system.
+    /// over length; time is in seconds in every system.
     fn factor(&self, dimension: Dimension) -> f64 {
         let [length, force, temperature] = self.0.unwrap_or([1.0; 3]);
         let [m, kg, _, _, kelvin, _] = dimension.0.map(|doubled| f64::from(doubled) / 2.0);
@@ -32,8 +32,8 @@ impl UnitSystem {
     }
 }
 
-/// Superscripts and µ, each with its forms after reading in a wrong code page: UTF-8 read as code page 437
-/// and as Latin-1, then Latin-1 read as Mac Roman and as code page 437.
+/// Superscripts and µ, each with its garbled forms after reading in a wrong code page: UTF-8 read as code
+/// page 437 and as Latin-1, then Latin-1 read as Mac Roman and as code page 437.
 const MANGLED: [(&str, &str); 3] = [("²", "┬▓ Â² ≤ ▓"), ("³", "┬│ Â³ ≥ │"), ("µ", "┬╡ Âµ")];
 
 /// Numerator or denominator of an ordinate.
@@ -43,7 +43,7 @@ struct FractionTerm {
     text: bool,
     /// Name and dimension of its data type.
     data_type: Option<(&'static str, Dimension)>,
-    /// `None` where the unit is not understood.
+    /// `None` if the unit is unknown.
     dimension: Option<Dimension>,
     factor: f64,
 }
@@ -68,13 +68,13 @@ impl FractionTerm {
         FractionTerm { text: true, data_type, dimension: unit.dimension(), factor: unit.factor() }
     }
 
-    /// Whether its unit is unknown: neither text nor data type states it.
+    /// Whether its unit is not stated, neither by text nor by data type.
     fn unsaid(&self) -> bool {
         !self.text && self.data_type.is_none()
     }
 }
 
-/// The unit of a text whose superscripts or µ were mangled by a wrong code page.
+/// The unit of a text whose superscripts or µ were garbled by a wrong code page.
 fn mend(text: &str, findings: &mut Vec<Finding>) -> Option<Unit> {
     let all = MANGLED.iter().flat_map(|(right, wrong)| wrong.split(' ').map(move |wrong| (wrong, right)));
     let mended = all.fold(text.to_owned(), |t, (wrong, right)| t.replace(wrong, right));
@@ -83,8 +83,8 @@ fn mend(text: &str, findings: &mut Vec<Finding>) -> Option<Unit> {
     Some(unit)
 }
 
-/// SI unit of the values of a data set, or the file's own where that is not understood; the factor to it; the
-/// unit as the file writes it, empty where it has none; and findings on it.
+/// SI unit of the values of a data set, or the file's own unit if that is unknown; the factor to SI; the
+/// unit as the file writes it, empty if it has none; and findings on it.
 pub fn unit(heading: &Heading, system: &UnitSystem) -> (Unit, f64, String, Vec<Finding>) {
     let mut findings = Vec::new();
     let above = FractionTerm::of(&heading.ordinate, heading.response.direction, system, &mut findings);
@@ -122,7 +122,7 @@ pub fn unit(heading: &Heading, system: &UnitSystem) -> (Unit, f64, String, Vec<F
     (unit, factor, written, findings)
 }
 
-/// The SI unit of a dimension; one without a name keeps the spelling of the file where that is SI already.
+/// The SI unit of a dimension; a unit without a name keeps the spelling of the file if that is SI already.
 fn spelled(dimension: Dimension, factor: f64, written: &str) -> Unit {
     let named = Quantity::of(dimension) != Quantity::Other;
     Unit::parse(written)
@@ -141,8 +141,8 @@ fn is_whole(above: &FractionTerm, below: &FractionTerm) -> bool {
     }
 }
 
-/// Dimension of the ordinate; its power in the spectral lines of this function type, 2 for a squared one; and
-/// the power of seconds, 1 for a PSD, 2 for an energy density. An error leaves values in the file's unit.
+/// Dimension of the ordinate; its power in the values of this function type, 2 for a squared function; and
+/// the power of seconds, 1 for a PSD, 2 for an energy density. On an error, values stay in the file's unit.
 fn plain(
     heading: &Heading,
     above: &FractionTerm,
@@ -182,17 +182,17 @@ fn is_frf(quantity: Quantity) -> bool {
     matches!(quantity, Quantity::Receptance | Quantity::Mobility | Quantity::Accelerance)
 }
 
-/// A caution where the label of the ordinate names another quantity than its unit.
+/// A caution if the label of the ordinate names another quantity than its unit.
 fn label_against_unit(heading: &Heading, unit: &Unit, written: &str) -> Option<Finding> {
     let label = codes::quantity_of_label(&heading.ordinate.label)?;
     let quantity = Quantity::of(unit.dimension()?);
-    // The label of a ratio may be that of its numerator, and a density may be labelled by its signal.
+    // The label of a ratio may name its numerator, and the label of a density its signal.
     let comparable = match heading.function {
         4 => is_frf(label),
         0 | 1 | 12 => !matches!(label, Quantity::Time | Quantity::Frequency | Quantity::Ratio),
         _ => false,
     };
-    // A rotation is labelled as the motion it is, without the word angular.
+    // The label of a rotation names the motion without the word angular.
     let motion = match quantity {
         Quantity::Angle => Quantity::Displacement,
         Quantity::AngularVelocity => Quantity::Velocity,
@@ -219,7 +219,7 @@ mod tests {
             "         7Inch (pound f)               2\n  3.93700787401574814D+01  2.24808943099710489D-01  1.80000000000000000D+00\n  4.59670000000000000D+02\n",
         )
         .unwrap();
-        // One inch is 0.0254 m by definition; the pound force of the file is the exact one to ten digits.
+        // One inch is 0.0254 m by definition; the pound force of the file is exact to ten digits.
         for (file, si) in [
             ("m/s²", 0.0254),
             ("N", 4.448_221_615),

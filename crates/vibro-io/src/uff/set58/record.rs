@@ -1,4 +1,4 @@
-//! Makes a record of a data set 58: axis, kind, scaling, unit, and the findings about each.
+//! Makes a record from a data set 58: axis, kind, scaling, unit, and the findings on each.
 
 use super::codes::{self, FunctionType};
 use super::heading::Heading;
@@ -11,7 +11,7 @@ use num_complex::Complex64;
 use vibro_record::units::{Quantity, Unit};
 use vibro_record::{AxisKind, Finding, Meta, Record, Result, Scaling, Values, Window};
 
-/// The record of a heading and the `numbers` after it; `more` are findings from reading these.
+/// The record of a heading and the `numbers` after it; `more` are findings from reading the numbers.
 ///
 /// # Errors
 /// If values over time are complex, or a value overflows a double in SI units.
@@ -54,7 +54,7 @@ pub fn build(
     meta.findings.extend(missing::kept(missing).into_iter().chain(more));
     let even =
         heading.layout.even.then_some((heading.start * abscissa_factor, heading.step * abscissa_factor));
-    // Half a unit in the last of six digits, which is more than the rounding of single precision.
+    // Half a unit in the last of six digits, which exceeds the rounding of single precision.
     let largest = stored.iter().fold(0.0f64, |max, x| max.max(x.abs()));
     let resolution = 0.5e-5 * 10f64.powf(largest.max(f64::MIN_POSITIVE).log10().floor());
     let axis = Abscissa { kind, even, stored, resolution }.axis(n, options, &mut meta);
@@ -62,7 +62,7 @@ pub fn build(
     assemble::record(meta, axis, values, said)
 }
 
-/// Abscissa values, where they are stored, and the values of whole points.
+/// Abscissa values, if stored, and the values of complete points.
 fn split(numbers: Vec<f64>, layout: Layout) -> (Vec<f64>, Values) {
     let width = layout.columns();
     let points = numbers.chunks_exact(width);
@@ -77,8 +77,8 @@ fn split(numbers: Vec<f64>, layout: Layout) -> (Vec<f64>, Values) {
     (stored, values)
 }
 
-/// Scaling, window and noise bandwidth from the fifth identification line, as this crate writes it: `scaling
-/// rms; window hann; enbw 1.5`.
+/// Scaling, window and noise bandwidth from the fifth identification line, in the form that this crate
+/// writes: `scaling rms; window hann; enbw 1.5`.
 fn stated(line: &str) -> Spectral {
     let mut stated = Spectral::default();
     let parts = line.split("; ").filter_map(|part| part.split_once(' '));
@@ -93,7 +93,8 @@ fn stated(line: &str) -> Spectral {
     stated
 }
 
-/// Sets scaling and findings by the function type; where it contradicts the abscissa, the abscissa decides.
+/// Sets scaling and findings by the function type; if the type contradicts the abscissa, the abscissa
+/// decides.
 fn function(heading: &Heading, axis: &AxisKind, said: &mut Spectral, meta: &mut Meta) {
     let (name, usual, kind) = codes::function(heading.function);
     if *axis == AxisKind::Time || (*axis != AxisKind::Frequency && !heading.layout.complex) {
@@ -156,8 +157,8 @@ fn abscissa(heading: &Heading, options: &Options, meta: &mut Meta) -> (AxisKind,
     }
 }
 
-/// Kind of an abscissa without data type or known unit: by its label, else by what the function type makes
-/// likely.
+/// Kind of an abscissa without data type or known unit: by its label, else the usual one of the function
+/// type.
 fn untyped(heading: &Heading, options: &Options, meta: &mut Meta) -> AxisKind {
     let axis = &heading.abscissa;
     let label = axis.label.to_lowercase();
@@ -185,7 +186,7 @@ fn untyped(heading: &Heading, options: &Options, meta: &mut Meta) -> AxisKind {
 /// Sets unit and quantity; returns the factor to SI.
 fn unit(heading: &Heading, system: &UnitSystem, options: &Options, coherence: bool, meta: &mut Meta) -> f64 {
     let (unit, factor, written, findings) = ordinate::unit(heading, system);
-    // A coherence has no unit: a stated one is meant for the function beside it.
+    // A coherence has no unit; a unit that the user states is meant for the function beside it.
     if let Some(said) = options.unit.as_ref().filter(|_| !coherence) {
         if unit.is_known() && (unit.dimension() != said.dimension() || factor != said.factor()) {
             let differs = Finding::caution("unit-overrides-file").name("file", written);

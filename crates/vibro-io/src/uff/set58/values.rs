@@ -7,11 +7,11 @@ use crate::uff::stream::{Stream, closes, is_delimiter};
 use crate::{missing, number};
 use vibro_record::{Error, Finding, Result};
 
-/// Reads at most as many numbers of text as the header declares; stops before the closing delimiter.
+/// Reads text values, at most as many as the header declares; stops before the closing delimiter.
 pub fn text(stream: &mut Stream, heading: &Heading, allow_missing: bool) -> Result<Vec<f64>> {
     let widths = heading.layout.widths();
     let due = heading.n.saturating_mul(heading.layout.columns());
-    // Room for values of the usual 13 bytes; the vector grows where they are shorter.
+    // Memory for values of the usual 13 bytes; the vector grows if they are shorter.
     let mut numbers = Vec::with_capacity(due.min(stream.rest().len() / 13 + 1));
     while numbers.len() < due {
         let before = numbers.len();
@@ -29,18 +29,18 @@ pub fn text(stream: &mut Stream, heading: &Heading, allow_missing: bool) -> Resu
             last_line(line, widths, &mut numbers);
         }
     }
-    numbers.truncate(due); // what fills the last line is not data
+    numbers.truncate(due); // numbers that pad the last line
     Ok(numbers)
 }
 
-/// Reads the line at the start of `bytes` in fixed columns and returns its length with its end; `None` if it
-/// does not fit them. The last field may lack its trailing blanks.
+/// Reads the line at the start of `bytes` in fixed columns and returns its length including its end; `None`
+/// if it does not fit the columns. The last field may lack its trailing blanks.
 #[inline]
 fn by_columns(bytes: &[u8], widths: &[usize], numbers: &mut Vec<f64>) -> Option<usize> {
     let line_end = |at: usize| Some(at + bytes[at..].iter().position(|b| *b == b'\n')?);
     let mut at = 0;
     for &width in widths {
-        // A full row of what Fortran prints is the usual case.
+        // A full row as Fortran prints it is the usual case.
         let printed = bytes.get(at..at + width).and_then(|field| match width {
             13 => number::scientific::<13>(field.try_into().ok()?),
             _ => number::scientific::<20>(field.try_into().ok()?),
@@ -64,8 +64,8 @@ fn by_columns(bytes: &[u8], widths: &[usize], numbers: &mut Vec<f64>) -> Option<
 
 /// The one number of a fixed-width field, which the end of the line may have cut short.
 ///
-/// A number that touches the field before it must begin with its sign or fill its field: else the line has
-/// other widths than the standard's, and this is the rest of a longer number.
+/// A number that touches the field before it must begin with its sign or fill its field. Otherwise the line
+/// has other widths than the standard's, and this is the rest of a longer number.
 #[inline]
 fn fixed_field(field: &[u8], width: usize, touches: bool) -> Option<f64> {
     let blanks = field.iter().take_while(|b| **b == b' ').count();
@@ -78,7 +78,7 @@ fn fixed_field(field: &[u8], width: usize, touches: bool) -> Option<f64> {
     separate.then_some(value)
 }
 
-/// Numbers of a line between blanks.
+/// Reads the numbers of a line that are separated by blanks.
 fn by_blanks(stream: &Stream, line: &[u8], allow_missing: bool, numbers: &mut Vec<f64>) -> Result<()> {
     for (column, token) in tokens(line) {
         match number::parse(token) {
@@ -99,8 +99,8 @@ fn by_blanks(stream: &Stream, line: &[u8], allow_missing: bool, numbers: &mut Ve
     Ok(())
 }
 
-/// Numbers of a last line without a line end. Its last number may be cut short and still look whole: it
-/// counts only where it fills its field.
+/// Reads the numbers of a last line without a line end. Its last number may be cut short and still look
+/// complete, so it counts only if it fills its field.
 fn last_line(line: &[u8], widths: &[usize], numbers: &mut Vec<f64>) {
     let whole =
         widths.iter().fold(0, |whole, width| if whole + width <= line.len() { whole + width } else { whole });
@@ -114,14 +114,15 @@ fn last_line(line: &[u8], widths: &[usize], numbers: &mut Vec<f64>) {
     }
 }
 
-/// Tokens between blanks, with their columns from 1.
+/// Tokens separated by blanks, with their columns from 1.
 fn tokens(line: &[u8]) -> impl Iterator<Item = (usize, &[u8])> {
     let tokens = line.split(u8::is_ascii_whitespace).filter(|token| !token.is_empty());
     tokens.map(|token| (token.as_ptr() as usize - line.as_ptr() as usize + 1, token))
 }
 
-/// Byte order and size of the values of a 58b, by its number line (byte order, number format, header lines,
-/// bytes): whether they are big-endian, and their bytes. The size is often wrong, so never more than a hint.
+/// Byte order and size of the values of a 58b, from its number line (byte order, number format, header
+/// lines, bytes): whether they are big-endian, and their bytes. The stated size is often wrong, so it is
+/// only a hint.
 pub fn storage(line: &[u8], stream: &Stream) -> Result<(bool, Option<usize>)> {
     let text = String::from_utf8_lossy(line);
     let mut fields = text.split_whitespace().skip(1);
@@ -140,10 +141,10 @@ pub fn storage(line: &[u8], stream: &Stream) -> Result<(bool, Option<usize>)> {
         .hint("export the record as ASCII (data set 58), which has one spelling of numbers"))
 }
 
-/// Reads at most as many binary numbers as the header declares, with findings on an odd size.
+/// Reads binary numbers, at most as many as the header declares, with findings on a size that differs.
 ///
-/// Record 7 says how many bytes there should be. Only where they cannot be all there, where the number line
-/// contradicts, or where writers differ (abscissa of double-precision values) does the closing `-1` decide.
+/// Record 7 determines the number of bytes. The closing `-1` decides only if they cannot all be present, if
+/// the number line contradicts, or where writers differ (abscissa of double-precision values).
 pub fn binary(
     stream: &mut Stream,
     heading: &Heading,
@@ -169,7 +170,7 @@ pub fn binary(
         wide = mixed && noted == Some(size(true));
         bytes = size(wide);
         if bytes > rest.len() {
-            // Cut short: the end of the file is the end of the values, unless a delimiter still follows them.
+            // Cut short: the values end with the file, unless a delimiter follows them.
             let tail = rest.len().saturating_sub(100);
             let ends = |at: &usize| closes(&rest[*at..]) && rest[*at..].trim_ascii() == b"-1";
             bytes = (tail..rest.len()).find(ends).unwrap_or(rest.len());
@@ -180,7 +181,7 @@ pub fn binary(
     let point = layout.point_size(wide);
     let used = n.min(bytes / point) * point;
     let mut numbers = decode(stream.take_block(used), layout, big_endian, wide);
-    // No early end: this loop is vectorised, and nearly always finds nothing.
+    // Without an early exit, this loop is vectorised; it nearly always finds nothing.
     if numbers.iter().fold(false, |any, v| any | !v.is_finite()) {
         let odd = numbers.iter().position(|v| !v.is_finite()).unwrap_or(0);
         if !allow_missing {

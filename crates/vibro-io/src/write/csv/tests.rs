@@ -19,7 +19,7 @@ fn text(records: &[Record]) -> String {
     String::from_utf8(out).unwrap()
 }
 
-/// Meta data without what a table cannot hold.
+/// A record without notes, findings and history, which a table cannot hold.
 fn essence(record: &Record) -> Record {
     let mut record = record.clone();
     let meta = record.meta_mut();
@@ -79,7 +79,7 @@ fn values(n: usize) -> impl Strategy<Value = Vec<f64>> {
 fn named() -> impl Strategy<Value = Meta> {
     let units =
         prop::sample::select(vec!["m/s", "m/s²", "N", "1", "m", "Pa", "m/N", "g²/Hz", "m/s/√Hz", "EU", ""]);
-    // Names that end like a part of a complex number would be joined; two of one name share their remarks.
+    // The prefix prevents empty names and names of an abscissa or a counter.
     ("[A-Za-z0-9µ ,;:\"'\\[\\]()#%=._/-]{0,12}", units)
         .prop_map(|(name, unit)| meta(format!("ch{name}").trim(), unit))
 }
@@ -109,7 +109,8 @@ proptest! {
             prop_assert_eq!(&was.meta.name, &is.meta.name);
             prop_assert_eq!(&was.meta.unit, &is.meta.unit);
             prop_assert_eq!(&was.axis.kind, &is.axis.kind);
-            // Each printed time is the nearest double to start + i·step: half an ulp of at most 10 + 20·10.
+            // Each printed time is the nearest double to start + i·step: half an ulp of at most 10 + 20·10
+            // = 210 s.
             for i in 0..n {
                 prop_assert!((was.axis.at(i) - is.axis.at(i)).abs() <= 4.0 * f64::EPSILON * 210.0);
             }

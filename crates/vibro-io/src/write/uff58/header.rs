@@ -5,7 +5,7 @@ use crate::uff::set58::KINDS;
 use vibro_record::units::{Quantity, Unit};
 use vibro_record::{ADDED_DECAY, AVERAGED_WITH, Axis, AxisKind, FROM_BLOWS, Meta, Record, Scaling, Spectrum};
 
-/// Record 6 after its function type, of a record without a degree of freedom.
+/// Record 6 after its function type, for a record without a degree of freedom.
 const NOWHERE: &str = "         0    0         0 NONE               0   0 NONE               0   0";
 
 /// Delimiter, number line and header; `bytes` is the size of binary values, `start` and `step` are the texts
@@ -13,7 +13,7 @@ const NOWHERE: &str = "         0    0         0 NONE               0   0 NONE  
 pub fn text(record: &Record, layout: Layout, bytes: Option<usize>, [start, step]: &[String; 2]) -> String {
     let meta = record.meta();
     let note = |key: &str| meta.notes.iter().find(|(k, _)| k == key).map(|(_, text)| text.as_str());
-    // Record 6 as read is kept, unless the record was renamed since.
+    // Record 6 as read is kept, unless the record was renamed.
     let point = note("record 6").filter(|line| line.is_ascii() && line.len() > 5).filter(|_| {
         // Reading adds a number to repeated names: `name #2`.
         let first = meta.name.rsplit_once(" #").map(|(name, _)| name);
@@ -25,7 +25,7 @@ pub fn text(record: &Record, layout: Layout, bytes: Option<usize>, [start, step]
         id[0].clone_from(&meta.name);
     }
     if id[4].starts_with("scaling ") {
-        id[4].clear(); // that of the file it was read from
+        id[4].clear(); // scaling of the file that the record was read from
     }
     match record {
         Record::Spectrum(spectrum) => {
@@ -68,7 +68,7 @@ pub fn text(record: &Record, layout: Layout, bytes: Option<usize>, [start, step]
     lines.map(|line| format!("{line:80}")).collect::<Vec<_>>().join("\n") + "\n"
 }
 
-/// Function type of record 6; `before`, the type in the file that the record was read from, is kept where it
+/// Function type of record 6. `before`, the type in the file that the record was read from, is kept if it
 /// still fits the record.
 fn function(record: &Record, before: Option<u8>) -> u8 {
     let keep = |same: fn(u8) -> bool, otherwise: u8| before.filter(|code| same(*code)).unwrap_or(otherwise);
@@ -133,8 +133,8 @@ fn ordinate(meta: &Meta) -> [String; 2] {
     }
 }
 
-/// A unit in ASCII where that means the same, for other programs count bytes instead of characters; empty
-/// where it needs more than 20 characters.
+/// A unit in ASCII if that is equivalent, since other programs count bytes instead of characters; empty if
+/// it needs more than 20 characters.
 fn unit_text(unit: &Unit) -> String {
     const PLAIN: [(&str, &str); 8] = [
         ("²", "^2"),
@@ -154,7 +154,7 @@ fn unit_text(unit: &Unit) -> String {
     if unit.is_known() && chosen.chars().count() > 20 { String::new() } else { chosen }
 }
 
-/// Text of at most `width` characters on one line; `NONE` for an empty text, `(-1)` in place of a line that
+/// Text of at most `width` characters on one line; `NONE` for an empty text, `(-1)` instead of a line that
 /// would end the data set.
 fn plain(text: &str, width: usize) -> String {
     let line: String = text.trim().replace(char::is_control, " ").chars().take(width).collect();

@@ -36,7 +36,7 @@ fn another_reader_finds_values_within_full_scale() {
     let spec = reader.spec();
     assert_eq!((spec.channels, spec.sample_rate, spec.bits_per_sample), (2, 8000, 32));
     let samples: Vec<f32> = reader.samples::<f32>().map(|s| s.unwrap()).collect();
-    // 12 is divided by 16, 1e-6 by 2⁻¹⁹.
+    // 12 is divided by 16, and 1e-6 by 2⁻¹⁹ = 1/524 288.
     let small = 1e-6 * 524_288.0;
     assert_eq!(samples, [0.0, small as f32, -0.75, 0.0, 0.1875, (-0.5 * small) as f32]);
 }
@@ -56,7 +56,7 @@ fn the_comment_undoes_the_scaling_with_a_doubt() {
         "{:?}",
         traces[0].meta.findings
     );
-    // Values without a calibration have none after reading back, either.
+    // Values without a calibration are still uncalibrated after reading back.
     let file = bytes(&[trace("v", "FS", Axis::time(0.0, 0.001, 1), vec![3.0])], Precision::Single);
     assert_eq!(
         (back(&file)[0].values[0], back(&file)[0].meta.findings.clone()),
