@@ -17,7 +17,7 @@ use super::sweep;
 use super::tone::Strongest;
 use crate::campaign::{Campaign, Entry, channel};
 use crate::error::{Error, Result};
-use crate::measure::modal::{Measured, ModalOptions, ModalResult, modal};
+use crate::measure::modal::{Measured, ModalOptions, ModalResult, modal, stabilisation};
 use crate::record::code;
 use crate::record::{Axis, Meta, Record, Trace, Traces, Window, shown};
 use crate::report::Cell;
@@ -239,6 +239,8 @@ impl Keys {
         answer.details.push(methods);
         answer.figure("frf", figures::frf(name, meta, measured, &found.modes));
         answer.figure("argand", figures::argand(name, meta, measured, &found.modes));
+        let poles = stabilisation(measured, self.band);
+        answer.figure("stability", figures::stabilisation(name, meta, measured, &poles, &found.modes));
         if !records.is_empty() {
             let (files, unwritten) = files::records("frf", records)?;
             answer.files.extend(files);
@@ -281,7 +283,7 @@ const OF_SWEEP: &str =
 impl Analysis for Keys {
     const SECTION: &'static str = "frf";
     const TITLE: &'static str = "Frequency response functions";
-    const FILES: Names = Names::Numbered(&["modes", "methods", "frf", "argand"]);
+    const FILES: Names = Names::Numbered(&["modes", "methods", "frf", "argand", "stability"]);
     const RESTS_ON: &'static [&'static str] = &["sweep"];
 
     fn check(entry: &Entry<Keys>, _: &[Entry<Keys>]) -> Result<()> {

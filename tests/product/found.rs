@@ -73,7 +73,7 @@ fn check_decay(name: &str, truth: &[(f64, Option<f64>)]) {
 
 #[test]
 fn no_third_mode_stands_beside_one_of_two() {
-    check_decay("decay_third_mode.csv", &[(3.21721, Some(0.063010)), (5.02141, Some(0.017693))]);
+    check_decay("decay_third_mode.csv", &[(3.21721, Some(0.063_01)), (5.02141, Some(0.017_693))]);
 }
 
 /// Hum at 50.020 Hz was listed as a third mode.

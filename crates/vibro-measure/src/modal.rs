@@ -16,9 +16,11 @@ mod report;
 mod response;
 mod result;
 mod selection;
+mod stabilisation;
 
 pub use response::Measured;
 pub use result::{ByMethod, ModalOptions, ModalResult, Mode, Pole};
+pub use stabilisation::{OrderedPole, stabilisation};
 
 use peak::Peak;
 use rational::{Rational, rational};

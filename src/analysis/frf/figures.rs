@@ -1,6 +1,6 @@
 //! Frequency response functions: magnitude and phase with the fitted modes.
 
-use crate::measure::modal::{Measured, Mode};
+use crate::measure::modal::{Measured, Mode, OrderedPole};
 use crate::record::Meta;
 use crate::report::layout::{capital, lettered};
 use crate::report::{AxisSpec, Figure, Ink, Marker, Plot, Series, Stroke};
@@ -67,6 +67,48 @@ pub fn frf(title: &str, meta: &Meta, measured: &Measured, modes: &[Mode]) -> Fig
         Some(coherence) => figure.height(145.0).panel(coherence_plot(f, coherence, Ink::Grey)),
         None => figure,
     })
+}
+
+/// Stabilisation diagram: the poles of models of rising order below the magnitude, with the fitted modes.
+/// `None` without poles.
+pub fn stabilisation(
+    title: &str,
+    meta: &Meta,
+    measured: &Measured,
+    poles: &[OrderedPole],
+    modes: &[Mode],
+) -> Option<Figure> {
+    let (first, last) = (*measured.frequency.first()?, *measured.frequency.last()?);
+    let x = || AxisSpec::frequency().limits(first, last);
+    let highest = poles.iter().map(|pole| pole.order).max()?;
+    let magnitude: Vec<f64> = measured.values.iter().map(|v| v.norm()).collect();
+    let y = AxisSpec::new(capital(meta.quantity.name()), meta.unit.symbol()).log();
+    let lines = Series::line("", measured.frequency.clone(), magnitude).stroke(Stroke::Solid).ink(Ink::Grey);
+    let mut above = Plot::new(x(), y).with(lines);
+    for mode in modes {
+        above = above.with(Series::vertical(format!("{:.2} Hz", mode.frequency.value), mode.frequency.value));
+    }
+    let those = |name: &str, is: &dyn Fn(&OrderedPole) -> bool| {
+        let chosen = || poles.iter().filter(|pole| is(pole));
+        let x: Vec<f64> = chosen().map(|pole| pole.frequency).collect();
+        let y: Vec<f64> = chosen().map(|pole| pole.order as f64).collect();
+        Series::points(name, x, y)
+    };
+    let both = those("same frequency and damping", &|p| p.damping_stays);
+    let frequency = those("same frequency", &|p| p.frequency_stays && !p.damping_stays);
+    let new = those("new", &|p| !p.frequency_stays);
+    let order = AxisSpec::new("Order", "").limits(0.0, highest as f64 + 1.0);
+    let mut below = Plot::new(x(), order)
+        .with(both.marker(Marker::Circle).ink(Ink::Nth(0)))
+        .with(frequency.marker(Marker::OpenCircle).ink(Ink::Nth(1)))
+        .with(new.marker(Marker::Saltire).ink(Ink::Grey));
+    for mode in modes {
+        below = below.with(Series::vertical("", mode.frequency.value));
+    }
+    let caption = "Poles of models of rising order. A pole of the structure keeps its frequency (to 1 %) and damping \
+                   ratio (to 5 %) from one order to the next; vertical lines are the fitted modes.";
+    let figure = Figure::double(format!("Stabilisation diagram, {title}")).caption(caption);
+    Some(lettered(figure.height(150.0).shared_x().panel(above).panel(below)))
 }
 
 /// Most groups of modes whose circles are drawn, those with the largest response.

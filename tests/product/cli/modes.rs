@@ -39,7 +39,7 @@ fn modes_of_a_file() {
     let methods: Vec<&str> =
         mode["by"].as_array().unwrap().iter().filter_map(|b| b["method"].as_str()).collect();
     assert_eq!(methods, ["rational fit", "circle fit", "half power", "peak"]);
-    assert!(out.join("argand.png").is_file());
+    assert!(out.join("argand.png").is_file() && out.join("stability.png").is_file());
     assert!(out.join("frf.png").is_file() && out.join("modes.csv").is_file());
     let none = complaint(&["modal", text(&path), "--complex", "--band", "120:150"], 1);
     assert!(none.contains("no peak between"), "{none}");

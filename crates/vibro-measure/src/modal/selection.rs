@@ -223,8 +223,8 @@ pub(super) fn complete(
         let left_out = group.leaves_out(lines, &more.modes);
         if fit.whiteness.rejected() && more.whiteness.rejected() {
             // Residuals that stay coloured support any further mode a little. One that explains much more may
-            // be one of several that are missing, after which they are white.
-            if left_out || last.aicc - more.aicc <= SPLIT {
+            // be the first of two that are missing. A third is not tried: each takes longer than all before.
+            if left_out || coloured.is_some() || better <= SPLIT {
                 break;
             }
             group.ahead = added(&last.modes, &more.modes).map(|at| (better, at));
