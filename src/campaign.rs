@@ -158,8 +158,9 @@ impl Campaign {
         let head: Campaign = written.read(&head, 0..0).map_err(complaint)?;
         let parent = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
         let (path, folder) = (path.to_owned(), within.at(parent));
-        let campaign = Campaign { sections, path, folder, text, ..head };
+        let mut campaign = Campaign { sections, path, folder, text, ..head };
         campaign.check()?;
+        campaign.contact = campaign.contact.and_then(|keys| keys.resolved().ok());
         Ok(campaign)
     }
 
@@ -282,6 +283,8 @@ impl Campaign {
         if let Some((key, error)) = self.rig.as_ref().and_then(Rig::fault) {
             return Err(at("rig", key, error));
         }
+        let contact = self.contact.map(ContactKeys::resolved).transpose();
+        contact.map_err(|(key, error)| at("contact", key, error))?;
         let out = self.out.as_deref().unwrap_or(Path::new(RESULTS));
         self.folder.path(out).map_err(|e| at("", "out", e))?;
         let checked =

@@ -286,8 +286,15 @@ fn answer(name: &str, found: &Drill) -> Result<Answer> {
 impl Analysis for Keys {
     const SECTION: &'static str = "drill";
     const TITLE: &'static str = "Hammer drills";
-    const FILES: Names =
-        Names::Named(&["average", "impacts", "drill_average", "drill_trace", "drill_speed", "drill_noise"]);
+    const FILES: Names = Names::Named(&[
+        "average",
+        "impacts",
+        "drill_average",
+        "drill_trace",
+        "drill_speed",
+        "drill_noise",
+        "drill_bandwidth",
+    ]);
 
     fn check(entry: &Entry<Keys>, _: &[Entry<Keys>]) -> Result<()> {
         entry.file.as_ref().ok_or_else(no_file)?;

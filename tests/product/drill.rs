@@ -118,6 +118,7 @@ fn the_example_comes_out_as_it_was_made() {
     {
         assert!(out.join(name).exists(), "{name}");
     }
+    assert!(out.join("drill_bandwidth.svg").exists());
 }
 
 #[test]

@@ -119,7 +119,8 @@ pub fn law(scene: &Scene, model: Model) -> Result<Option<Law>> {
     match model {
         Model::Linear | Model::ClosedForm | Model::Restitution => Ok(None),
         Model::SoftCorrected | Model::KelvinVoigt if is_curved(scene) => {
-            Err(Error::usage(format!("{} with contact.exponent", model.name()), "a spring, exponent 1"))
+            let key = if keys.radius.is_some() { "radius" } else { "exponent" };
+            Err(Error::usage(format!("{} with contact.{key}", model.name()), "a spring, exponent 1"))
         }
         Model::SoftCorrected | Model::KelvinVoigt => scene.spring(stiffness()?).map(Some),
         Model::HuntCrossley => {

@@ -59,12 +59,12 @@ pub use excitation::{Excitation, Impulses, Part, Pulses, Sine, Sines};
 pub use flow::{Flight, State};
 pub use green::Green;
 pub use impact::{Counts, Impact};
-pub use law::Law;
+pub use law::{HertzRebound, Law};
 pub use motion::{Event, Motion, Path, Piece};
 pub use observable::Observable;
 pub use orbit::{
-    Compliance, Loss, Orbit, Orbits, ShownOrbit, Softened, Validity, backbone, no_impact, orbits, orbits_of,
-    shown, softened,
+    Compliance, EnergyBalance, EnergyPoint, Loss, Orbit, Orbits, ShownOrbit, Softened, Validity, backbone,
+    no_impact, orbits, orbits_of, shown, softened,
 };
 pub use parameter::Parameter;
 pub use periodic::{Beat, PeriodicOrbit, search};

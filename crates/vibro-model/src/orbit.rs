@@ -7,12 +7,14 @@
 mod conditions;
 mod course;
 mod driven;
+mod energy;
 mod sine;
 mod soft;
 mod train;
 mod turns;
 mod validity;
 
+pub use energy::{EnergyBalance, EnergyPoint};
 pub use sine::{ShownOrbit, backbone, shown};
 pub use soft::{Compliance, Softened, softened};
 

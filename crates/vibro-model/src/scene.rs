@@ -1,5 +1,6 @@
 //! A scene: the rig, its excitation, and its contact.
 
+mod curved;
 mod draft;
 
 pub use draft::Draft;
@@ -13,8 +14,9 @@ use vibro_record::Result;
 /// The input of a computation of the rig's motion.
 ///
 /// As a TOML file: the keys of [`Rig`] at the top, `[excitation]` with `kind` and the keys of that kind,
-/// `[contact]` with `stiffness`, `damping`, `exponent`, and `[buffer]` with `gap`
-/// and `damper_always`. Keys of the rig that are left out take the values of [`Rig::thesis`].
+/// `[contact]` with `stiffness`, `damping`, `exponent`, or `radius`, `modulus` and `poisson` in place of
+/// stiffness and exponent, and `[buffer]` with `gap` and `damper_always`. Keys of the rig that are left out
+/// take the values of [`Rig::thesis`].
 ///
 /// ```
 /// use vibro_model::{Excitation, Scene, Sine};
@@ -49,6 +51,13 @@ pub struct ContactKeys {
     pub damping: Option<f64>,
     /// Exponent n of the force kδⁿ: 1 for a linear spring.
     pub exponent: Option<f64>,
+    /// Radii in m of both bodies where they touch, `inf` for a flat one. With `modulus` and `poisson` they
+    /// determine stiffness and exponent of a Hertz contact.
+    pub radius: Option<[f64; 2]>,
+    /// Young's moduli of both bodies, in Pa.
+    pub modulus: Option<[f64; 2]>,
+    /// Poisson's ratios of both bodies.
+    pub poisson: Option<[f64; 2]>,
 }
 
 /// Buffer of a loose mass 1, on its side away from mass 2: spring and damper act in compression only.

@@ -31,6 +31,7 @@ pub fn drill(name: &str, drill: &Drill) -> Vec<(String, Figure)> {
         ("drill_trace".to_owned(), trace(name, drill)),
         ("drill_speed".to_owned(), speed(name, drill)),
     ];
+    figures.extend(bandwidth(name, drill).map(|f| ("drill_bandwidth".to_owned(), f)));
     figures.extend(noise_floor(name, drill).map(|f| ("drill_noise".to_owned(), f)));
     figures
 }
@@ -150,6 +151,27 @@ fn speed(name: &str, drill: &Drill) -> Figure {
         format!(" Pulses rise within one sample, so the speed of one turn is resolved to {step} Hz only.");
     let caption = format!("Turns of the crank in a second.{}", if sharp { &steps } else { "" });
     Figure::double(format!("Speed, {name}")).height(70.0).panel(plot).caption(caption)
+}
+
+/// Envelope of the acceleration's spectrum: the largest sine of each frequency within the largest speed,
+/// acceleration and jerk; `None` where f₁ is not below f₂.
+fn bandwidth(name: &str, drill: &Drill) -> Option<Figure> {
+    let b = &drill.bandwidth;
+    let corners = b.f1 > 0.0 && b.f2.is_finite() && b.f1 < b.f2;
+    let (low, high) = corners.then_some((0.1 * b.f1, 2.0 * b.nyquist.max(b.f2)))?;
+    let plot = Plot::new(
+        AxisSpec::frequency().log().limits(low, high),
+        AxisSpec::new("Acceleration, envelope", "m/s²").log(),
+    );
+    let f = [low, b.f1, b.f2, high];
+    let bounds = [b.acceleration * low / b.f1, b.acceleration, b.acceleration, b.acceleration * b.f2 / high];
+    let marks = [("f₁", b.f1), ("f₂", b.f2), ("half the sampling rate", b.nyquist)];
+    let plot = plot.with(Series::line("", f.to_vec(), bounds.to_vec()).ink(Ink::Nth(0)));
+    let plot = marks.into_iter().fold(plot, |plot, (name, at)| plot.with(Series::vertical(name, at)));
+    let [v, a, j, f1, f2] = [b.speed, b.acceleration, b.jerk, b.f1, b.f2].map(|x| significant(x, 3));
+    Some(Figure::double(format!("Bandwidth, {name}")).height(80.0).panel(plot).caption(format!(
+        "Largest sine of each frequency within the largest speed {v} m/s (up to f₁ = {f1} Hz), acceleration {a} m/s² and jerk {j} m/s³ (from f₂ = {f2} Hz): the approximate spectrum of the acceleration."
+    )))
 }
 
 /// Spectra of motion and noise; `None` without a record of the noise.

@@ -33,20 +33,27 @@ fn contact_law(scene: &Scene, wanted: Contact) -> Result<Option<Law>> {
     let keys = scene.contact.unwrap_or_default();
     // Keys of `[contact]` that the law uses, and the exponent that it implies.
     let (used_keys, implied_exponent): (&[&str], _) = match wanted {
-        Contact::Restitution | Contact::HuntCrossley => (&["stiffness", "exponent", "damping"], None),
+        Contact::Restitution | Contact::HuntCrossley => {
+            (&["stiffness", "exponent", "damping", "radius"], None)
+        }
         Contact::KelvinVoigt | Contact::LooseMass => (&["stiffness", "damping"], Some(1.0)),
-        Contact::Hertz => (&["stiffness"], Some(1.5)),
+        Contact::Hertz => (&["stiffness", "radius"], Some(1.5)),
     };
     // A key that the law does not use is an error: the law decides whether a stiffness is in N/m or
     // N/m^1.5.
     let exponent = keys.exponent.filter(|n| Some(*n) != implied_exponent);
-    let given = [("stiffness", keys.stiffness), ("exponent", exponent), ("damping", keys.damping)];
+    let given = [
+        ("radius", keys.radius.map(|[first, _]| first)),
+        ("stiffness", keys.stiffness),
+        ("exponent", exponent),
+        ("damping", keys.damping),
+    ];
     if let Some((key, value)) =
         given.iter().find_map(|(k, v)| v.filter(|_| !used_keys.contains(k)).map(|v| (k, v)))
     {
         let expected = format!("what this law takes: {}", used_keys.join(" and "));
         return Err(Error::usage(format!("contact.{key} = {value} for this law"), expected)
-            .hint("remove the key, or choose the law that has it: hunt-crossley takes all three"));
+            .hint("remove the key, or choose the law that has it: hunt-crossley takes all of them"));
     }
     let stated = |value: Option<f64>, key: &str, unit: &str| {
         value.ok_or_else(|| {

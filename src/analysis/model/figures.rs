@@ -1,12 +1,14 @@
 //! Figures of the model.
 
 mod branches;
+mod energy;
 mod ladder;
 mod motion;
 mod regimes;
 mod sweep;
 
 pub use branches::{branches, continued};
+pub use energy::energy;
 pub use ladder::ladder;
 pub use motion::{orbit, pattern, phase_plane, poincare, reaction, traces};
 pub(super) use regimes::counted;

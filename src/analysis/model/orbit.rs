@@ -5,7 +5,10 @@ use super::{Driven, JudgedOrbit, SceneKeys, check_gap_std, figures, pattern};
 use crate::analysis::answer::Answer;
 use crate::campaign::above_zero;
 use crate::error::Result;
-use crate::model::{Compliance, NoImpact, Orbit, Orbits, Rig, Softened, orbits_of, search, softened};
+use crate::model::{
+    Compliance, EnergyBalance, EnergyPoint, Excitation, NoImpact, Orbit, Orbits, Rig, Softened, orbits_of,
+    search, softened,
+};
 use crate::record::Finding;
 use crate::report::files::Names;
 use crate::report::layout::table;
@@ -34,7 +37,7 @@ pub struct Keys {
 
 impl Keys {
     /// Names of the files in its answer.
-    pub const FILES: Names = Names::Numbered(&["orbits", "verdicts", "impacts", "orbit"]);
+    pub const FILES: Names = Names::Numbered(&["orbits", "verdicts", "impacts", "orbit", "energy"]);
 
     /// The motions, each with its verdicts and figure.
     ///
@@ -75,10 +78,35 @@ impl Keys {
             let title = format!("Motion {i}");
             answer.figure(format!("orbit_{i}"), figures::orbit(&title, &scene.rig, orbit));
         }
+        self.energy(&driven, &found.orbits, &mut answer)?;
         answer.table("orbits", orbits(&found.orbits));
         answer.table("verdicts", verdicts(&found.orbits, self.gap_std));
         answer.tables.extend([no_impact(&found.no_impact), self::soft(&soft)]);
         Ok(answer)
+    }
+
+    /// Energy over the impulse under a sine force, as figure and table.
+    fn energy(&self, driven: &Driven, found: &[Orbit], answer: &mut Answer) -> Result<()> {
+        let Excitation::Sine(sine) = &driven.excitation else { return Ok(()) };
+        // The larger impulse comes first.
+        let Some(larger) = found.first().map(|o| o.impulse).filter(|j| *j > 0.0) else { return Ok(()) };
+        let balance = EnergyBalance::new(&driven.scene.rig, sine, self.cycles)?;
+        let curve = balance.curve(400, 1.3 * larger);
+        let real = found.iter().filter(|orbit| orbit.validity.exists);
+        let motions: Vec<(&Orbit, EnergyPoint)> =
+            real.filter_map(|orbit| Some((orbit, balance.at(orbit.impulse)?))).collect();
+        answer.figure("energy", figures::energy("Energy of a period", &curve, &motions));
+        let table = table(
+            "Energy of a period",
+            &curve,
+            &[
+                ("impulse", "N s", &|e| e.impulse.into()),
+                ("supplied", "J", &|e| e.supplied.into()),
+                ("lost", "J", &|e| e.lost.into()),
+            ],
+        );
+        answer.csv("energy", &table);
+        Ok(())
     }
 
     /// The motions with several impacts a period that are found.

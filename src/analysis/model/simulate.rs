@@ -5,7 +5,7 @@ use super::{Driven, SceneKeys, figures};
 use crate::analysis::answer::Answer;
 use crate::error::{Error, Result};
 use crate::model::portrait::{Portrait, PortraitOptions};
-use crate::model::{Motion, Regime, Rig, Simulation, State};
+use crate::model::{HertzRebound, Motion, Regime, Rig, Scene, Simulation, State};
 use crate::record::Finding;
 use crate::report::Table;
 use crate::report::files::Names;
@@ -76,12 +76,14 @@ impl Keys {
         let make = contact::motions(&scene, self.model, self.grazing)?;
         let observed = self.observed(&mut *make(&excitation, start, self.phase)?)?;
         let ObservedMotion { portrait, end: (time, phase, state), grazing, flights } = &observed;
+        let rebound = self.rebound(&scene, portrait);
         let State { x1, v1, x2, v2 } = state;
         let mut answer = Answer::of(&json!({
             "scene": scene,
             "impacts": portrait.impacts,
             "regime": portrait.pattern.regime,
             "reaction": portrait.reaction,
+            "rebound": rebound,
             "grazing": grazing,
             "chatter": portrait.sticks,
             "final_state": { "time": time, "phase": phase, "x1": x1, "v1": v1, "x2": x2, "v2": v2 },
@@ -91,6 +93,7 @@ impl Keys {
         answer.add("", contact::buffer(&scene, self.model));
         answer.add("", self.doubts(&observed, &scene.rig));
         answer.tables.push(summary(&observed));
+        answer.tables.extend(rebound.as_ref().map(rebounding));
         answer.figure("traces", figures::traces("Traces of both masses", portrait, scene.rig.gap));
         answer.figure("phase_plane", figures::phase_plane("Phase plane", portrait));
         answer.figure("poincare", figures::poincare("Poincaré sections", portrait));
@@ -99,6 +102,14 @@ impl Keys {
         answer.csv("poincare", &states(&portrait.beginnings, &portrait.section));
         answer.csv("impacts", &impacts(portrait));
         Ok(answer)
+    }
+
+    /// Free rebound of a Hertz contact at the largest approach speed; `None` for other laws and without
+    /// impacts.
+    fn rebound(&self, scene: &Scene, portrait: &Portrait) -> Option<HertzRebound> {
+        let stiffness = scene.contact?.stiffness.filter(|_| self.model == Contact::Hertz)?;
+        let fastest = portrait.impacts.iter().map(|i| i.approach_velocity).max_by(f64::total_cmp)?;
+        Some(HertzRebound::new(stiffness, scene.rig.reduced_mass(), fastest))
     }
 
     /// The state at the start.
@@ -182,6 +193,23 @@ fn summary(observed: &ObservedMotion) -> Table {
         ],
     )
     .note("Phase: of the excitation at the last impact, after the crest of a sine force, the impulse or the onset of the pulse.")
+}
+
+/// Stiffness, duration and largest force of a Hertz contact.
+fn rebounding(rebound: &HertzRebound) -> Table {
+    table(
+        "Hertz contact",
+        [rebound],
+        &[
+            ("stiffness", "N/m^1.5", &|r| r.stiffness.into()),
+            ("reduced mass", "kg", &|r| r.mass.into()),
+            ("approach speed", "m/s", &|r| r.speed.into()),
+            ("largest indentation", "m", &|r| r.indentation.into()),
+            ("largest force", "N", &|r| r.force.into()),
+            ("duration", "s", &|r| r.duration.into()),
+        ],
+    )
+    .note("Closed form of the fastest impact, without the forces of springs and excitation.")
 }
 
 /// Times and states, one row for each time.

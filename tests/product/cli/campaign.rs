@@ -288,6 +288,7 @@ fn keys_of_contacts_are_checked_before_anything_is_measured() {
         ("[[pulse]]\nfile = \"a.csv\"\nlow_pass = -1.0\norder = 2", "line 3", "above 0"),
         ("[[pulse]]\nfile = \"a.csv\"\nlow_pass = 1e3\norder = 20", "line 3", "order 20"),
         ("[[pulse]]\nmass = 1.0", "line 1", "neither a file nor two times"),
+        ("[contact]\nradius = [0.01, inf]", "line 2", "radius without contact.modulus"),
         ("[[drop]]\nintervals = [0.3, 0.2]\nrate = 100.0", "line 3", "rate without a file"),
         (
             "[[drop]]\nname = \"a\"\nfile = \"a\"\nheight = 1.0\n[[drop]]\nname = \"a\"\nfile = \"b\"\nheight = 2.0",

@@ -77,3 +77,22 @@ fn what_cannot_be_is_said() {
         complaint(&["model", "response", "--from", "5", "--to", "4", "--force", "1"], 2).contains("from")
     );
 }
+
+/// The energies are equal at both orbits and nowhere else.
+#[test]
+fn energies_cross_at_the_orbits() {
+    let dir = tempfile::tempdir().unwrap();
+    let scene =
+        ["--frequency", "10.5", "--force", "0.1", "--set=restitution=0.98", "--out", text(dir.path())];
+    let found = json(&[&["model", "orbit"], &scene[..]].concat());
+    let impulse = |i: usize| found["orbits"][i]["impulse"].as_f64().unwrap();
+    let table = std::fs::read_to_string(dir.path().join("energy.csv")).unwrap();
+    let rows = table.lines().skip(1).map(|row| row.split(',').map(|v| v.parse().unwrap()).collect());
+    let rows: Vec<Vec<f64>> = rows.collect();
+    let crossings = rows.windows(2).filter(|w| (w[0][1] > w[0][2]) != (w[1][1] > w[1][2]));
+    let crossings: Vec<[f64; 2]> = crossings.map(|w| [w[0][0], w[1][0]]).collect();
+    assert_eq!(crossings.len(), 2, "{crossings:?}");
+    for (crossing, orbit) in crossings.iter().zip([1, 0]) {
+        assert!(crossing[0] <= impulse(orbit) && impulse(orbit) <= crossing[1], "{crossing:?}");
+    }
+}

@@ -87,6 +87,28 @@ fn keys_of_another_law_are_refused() {
     }
 }
 
+/// Bodies give the motion of their stiffness; the closed form gives its largest force.
+#[test]
+fn curved_bodies_give_the_stiffness() {
+    let radius = ["--model", "hertz", "--set=contact.radius=[0.02, inf]"];
+    let elastic = ["--set=contact.modulus=[210e9, 210e9]", "--set=contact.poisson=[0.3, 0.3]"];
+    let answer = json(&with(&[&radius[..], &elastic].concat()));
+    // Two thirds of E/(1 − ν²), times √R.
+    let stiffness = 2.0 / 3.0 * 210e9 / 0.91 * 0.02_f64.sqrt();
+    let rebound = |answer: &Value, key: &str| answer["rebound"][key].as_f64().unwrap();
+    assert!((rebound(&answer, "stiffness") / stiffness - 1.0).abs() < 1e-12, "{answer}");
+    // The springs and the excitation add about 1 N to some kN in the contact.
+    let peak = answer["reaction"]["peak"].as_f64().unwrap();
+    assert!((rebound(&answer, "force") / peak - 1.0).abs() < 1e-3, "{peak}");
+    let stated = format!("contact.stiffness={stiffness:e}");
+    let same = json(&with(&["--model", "hertz", "--set", &stated]));
+    assert!((rebound(&same, "force") / rebound(&answer, "force") - 1.0).abs() < 1e-6);
+    let said = complaint(&with(&[&["--model", "kelvin-voigt", radius[2]], &elastic[..]].concat()), 2);
+    assert!(said.contains("contact.radius = 0.02 for this law"), "{said}");
+    let said = complaint(&with(&radius), 2);
+    assert!(said.contains("without contact.modulus") && said.contains("modulus = [210e9"), "{said}");
+}
+
 #[test]
 fn contacts_that_give_way_are_followed() {
     let stiff = ["--set", "contact.stiffness=1e9", "--settle", "300", "--cycles", "70"];

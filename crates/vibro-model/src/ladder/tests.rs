@@ -246,7 +246,7 @@ fn an_orbit_near_grazing_is_not_relied_on() {
 fn other_scenes_find_their_rung() {
     let question = Question::new(Observable::ImpactSpeed);
     // A stated exponent rules out the rungs with a spring.
-    let curved = ContactKeys { stiffness: Some(1e9), exponent: Some(1.5), damping: None };
+    let curved = ContactKeys { stiffness: Some(1e9), exponent: Some(1.5), ..ContactKeys::default() };
     let choice = choose(&Scene { contact: Some(curved), ..scene(0.5, None) }, hz(2.1), &question).unwrap();
     assert!(!choice.rung(Model::KelvinVoigt).valid && choice.rung(Model::HuntCrossley).valid);
     assert!(choice.chosen.is_some(), "{:?}", choice.findings);

@@ -173,6 +173,7 @@ impl Draft {
             let checked = value.map_or(Ok(()), |value| number(key, value, unit, least));
             checked.map_err(|error| self.at(key, error))?;
         }
+        let contact = contact.resolved().map_err(|(key, e)| self.at(&format!("contact.{key}"), e))?;
         let excitation_keys = self.table.get("excitation").and_then(Value::as_table);
         let excitation = excitation_keys.map(|section| self.excitation(section.clone())).transpose()?;
         let contact = Some(contact).filter(|c| *c != ContactKeys::default());
@@ -287,7 +288,7 @@ mod tests {
             scene.excitation,
             Some(Excitation::Pulse(Pulses { force: 0.5, width: 0.01, frequency: 5.0 }))
         );
-        let contact = ContactKeys { stiffness: Some(1e5), damping: Some(0.0), exponent: None };
+        let contact = ContactKeys { stiffness: Some(1e5), damping: Some(0.0), ..ContactKeys::default() };
         assert_eq!(
             (scene.contact, scene.buffer),
             (Some(contact), Some(Buffer { gap: 2e-3, damper_always: true }))
