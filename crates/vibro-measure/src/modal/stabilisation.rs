@@ -36,11 +36,12 @@ pub struct OrderedPole {
 }
 
 /// The poles of models of order 1 to 40 within a band in Hz, or within all lines: stable ones with a damping
-/// ratio up to 0.3. Empty without phases or for fewer than twelve lines.
+/// ratio up to 0.3, in the order of frequency within each. Empty without phases or for fewer than twelve
+/// lines.
 ///
 /// Each model is a rational function of z = e^(iφ), with φ proportional to the frequency over the band, in
 /// least squares of its linear form (least-squares complex frequency: Guillaume, Verboven & Vanlanduit 1998;
-/// Peeters et al. 2004, eqs 3 to 12). The coefficients are complex: the band has no negative frequencies,
+/// Peeters et al. 2004). The coefficients are complex: the band has no negative frequencies,
 /// so that a mode takes one pole. The coefficient of z⁰ is 1: poles of the noise then grow and are not
 /// listed (Cauberghe et al. 2005).
 pub fn stabilisation(measured: &Measured, band: Option<(f64, f64)>) -> Vec<OrderedPole> {
@@ -53,7 +54,9 @@ pub fn stabilisation(measured: &Measured, band: Option<(f64, f64)>) -> Vec<Order
     let rate = ANGLE / (last - first);
     let most = MOST.min(lines.len() / LINES);
     let z: Vec<Complex64> = frequency.iter().map(|f| Complex64::cis(rate * (f - first))).collect();
-    let Some(normal) = normal_equations(&z, &measured.values[lines], most) else { return Vec::new() };
+    let highest = measured.values[lines.clone()].iter().fold(0.0, |most: f64, v| most.max(v.norm()));
+    let values: Vec<Complex64> = measured.values[lines].iter().map(|v| v / highest).collect();
+    let Some(normal) = normal_equations(&z, &values, most) else { return Vec::new() };
     let mut poles: Vec<OrderedPole> = Vec::new();
     let mut below = 0;
     for order in 1..=most {
@@ -72,6 +75,7 @@ pub fn stabilisation(measured: &Measured, band: Option<(f64, f64)>) -> Vec<Order
             let (frequency_stays, damping_stays) = (before().next().is_some(), before().any(same));
             poles.push(OrderedPole { order, frequency: own, zeta, frequency_stays, damping_stays });
         }
+        poles[same_order..].sort_by(|a, b| a.frequency.total_cmp(&b.frequency));
         below = same_order;
     }
     poles
@@ -97,7 +101,8 @@ fn normal_equations(z: &[Complex64], values: &[Complex64], most: usize) -> Optio
 fn roots(normal: &DMatrix<Complex64>, order: usize) -> Vec<Complex64> {
     let part = normal.view((1, 1), (order, order)).into_owned();
     let right = -normal.view((1, 0), (order, 1)).into_owned();
-    let Some(solved) = part.lu().solve(&right) else { return Vec::new() };
+    let solved = part.lu().solve(&right).filter(|solved| solved.iter().all(|v| v.is_finite()));
+    let Some(solved) = solved else { return Vec::new() };
     let coefficients =
         DVector::from_fn(order + 1, |i, _| if i == 0 { Complex64::ONE } else { solved[(i - 1, 0)] });
     let highest = coefficients[order];
@@ -166,5 +171,20 @@ mod tests {
             assert!((zeta / mode.1 - 1.0).abs() < 0.05, "{zeta} {mode:?}");
         }
         assert!(poles.iter().all(|p| (20.0..=220.0).contains(&p.frequency)));
+    }
+
+    #[test]
+    fn no_poles_of_lines_that_determine_none() {
+        let function = measured(&[(60.0, 0.01, 1.0)], 1e-3);
+        let with = |change: &dyn Fn(&Complex64) -> Complex64| {
+            let values = function.values.iter().map(change).collect();
+            stabilisation(&Measured { values, ..function.clone() }, None)
+        };
+        assert!(with(&|_| Complex64::ZERO).is_empty());
+        assert!(with(&|v| v * f64::INFINITY).is_empty());
+        // The size of the values does not matter.
+        assert_eq!(with(&|v| v * 2f64.powi(600)), stabilisation(&function, None));
+        assert!(stabilisation(&function, Some((50.0, 52.0))).is_empty());
+        assert!(stabilisation(&function, Some((500.0, 600.0))).is_empty());
     }
 }
