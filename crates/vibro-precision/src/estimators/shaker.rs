@@ -78,7 +78,9 @@ fn draw(noise: &mut Noise) -> [Vec<f64>; 2] {
 fn shaken(part: f64) -> impl Fn(&mut Noise) -> Case<Shaken> {
     move |noise| {
         let [force, mut response] = draw(noise);
-        response.iter_mut().for_each(|x| *x += part * noise.normal());
+        for x in &mut response {
+            *x += part * noise.normal();
+        }
         let data =
             Shaken([trace("force", "N", 1.0 / RATE, force), trace("laser", "m", 1.0 / RATE, response)]);
         Case { data, truth: ZETA, unit: ZETA, tolerance: 0.1 * ZETA }
@@ -111,7 +113,7 @@ pub fn scenes() -> Vec<EstimatorScene> {
 mod tests {
     use super::*;
 
-    /// A constant force: x = (1 − e^(−ζωt)(cos ω_d t + ζω/ω_d sin ω_d t))/ω².
+    /// A constant force: x = (1 − e^(−ζωt)(cos Ωt + ζω/Ω sin Ωt))/ω² with Ω = ω√(1 − ζ²).
     #[test]
     fn a_step_of_the_force_moves_the_mode_as_the_closed_form() {
         let (omega, zeta) = (TAU * 80.0, 0.05);

@@ -168,18 +168,16 @@ pub struct Settings<D: 'static> {
     pub settings: Vec<Ensemble<D>>,
 }
 
+/// Takes a record: name of its setting, numbers, truth and unit of the error.
+pub type TakeRecord<'a> = dyn FnMut(&str, Numbers, [f64; 2]) -> Result<()> + 'a;
+
 /// What is done with the records of a scene, of whatever type they are.
 pub trait Trials {
     /// The results of the methods.
     fn measured(&self, quick: bool) -> Vec<MeasuredMethod>;
 
-    /// Gives each record of [`measured`] to `take`, with the name of its setting, its numbers, the truth and
-    /// the unit of the error.
-    fn each_record(
-        &self,
-        quick: bool,
-        take: &mut dyn FnMut(&str, Numbers, [f64; 2]) -> Result<()>,
-    ) -> Result<()>;
+    /// Gives each record of [`measured`] to `take`.
+    fn each_record(&self, quick: bool, take: &mut TakeRecord<'_>) -> Result<()>;
 }
 
 impl<D: Record> Trials for Settings<D> {
@@ -187,11 +185,7 @@ impl<D: Record> Trials for Settings<D> {
         measured(self.methods, &self.settings, quick)
     }
 
-    fn each_record(
-        &self,
-        quick: bool,
-        take: &mut dyn FnMut(&str, Numbers, [f64; 2]) -> Result<()>,
-    ) -> Result<()> {
+    fn each_record(&self, quick: bool, take: &mut TakeRecord<'_>) -> Result<()> {
         for (place, setting) in self.settings.iter().enumerate() {
             for number in 0..RECORDS[usize::from(quick)] {
                 let Case { data, truth, unit, .. } = setting.case_at(place, number);
