@@ -7,8 +7,8 @@ installs the other programs, measures them and vibro in one run, and draws both.
     cargo run --release -p vibro-precision --example records -- FOLDER
     python benches/peers/estimators.py FOLDER peers.json [vibro.json]
 
-All methods get the very records that vibro gets. With vibro.json, the output of `vibro precision --family estimators --json`, a table of both is printed (Markdown): error, times and
-answers by method and setting. Errors are root mean squares over the answers, in the unit of the scene.
+All methods get the very records that vibro gets. With vibro.json, the output of `vibro precision --family estimators --json`, a table of both is printed (Markdown): errors by setting, in the
+unit of the scene, the time in units of that of vibro's last method on the same records, and the number of records without an answer.
 """
 
 import contextlib
@@ -139,8 +139,8 @@ def frf(r):
 
 
 def subspace(values, rate):
-    """SSI of order 2, for one mode, from the response alone. Criteria that need two channels are off. (`order_in="find_min"` finds no stable pole in seven of
-    eight records.)"""
+    """SSI of order 2, for one mode, from the response alone. Criteria that need two channels are off. (With order_in="find_min" it finds no stable pole in
+    most records.)"""
     from pyoma2.algorithms import SSI
     from pyoma2.setup import SingleSetup
 
@@ -250,7 +250,7 @@ class Record:
 
 
 def measured(scene, setting, name, method, records):
-    """One line: the error over all records, and the median time of some."""
+    """One line: the error over all records, and the median time of some. Beside it the median of the errors, which a few poles of noise do not move."""
     errors, times, why = [], [], None
     for number, r in enumerate(records):
         begun = time.perf_counter()
@@ -268,17 +268,22 @@ def measured(scene, setting, name, method, records):
     line = {"scene": scene, "method": name, "setting": setting, "error": rms, "time_ns": 1e9 * float(np.median(times))}
     if answers < count:
         line["why"] = f"{count - answers} of {count} records refused: {why}"
-    off = np.abs(errors) if errors else [math.nan]
-    print(f"{scene}, {setting}, {name}: rms {rms}, median {np.median(off):.3g}, worst {np.max(off):.3g}; {answers} of {count}", file=sys.stderr)
-    return line
+    middle = float(np.median(np.abs(errors))) if rms else None
+    print(f"{scene}, {setting}, {name}: rms {rms}, median {middle}; {answers} of {count}", file=sys.stderr)
+    return line, middle
+
+
+def shown(errors):
+    """Errors by setting, a dash where fewer than half of the records have an answer."""
+    return ", ".join("–" if e is None else f"{e:.2g}".replace("e-0", "e-").replace("e+0", "e") for e in errors)
 
 
 def table(lines, vibro):
     """Errors and times of both, a row for each method, in Markdown."""
-    print("| scene | method | errors | × | refused |\n|---|---|---|---|---|")
+    print("| scene | method | rms errors | median errors | × | refused |\n|---|---|---|---|---|---|")
     for scene in vibro["scenes"]:
         name = scene["name"]
-        theirs = [line for line in lines if line["scene"] == name]
+        theirs = [{**line, "median": middle} for line, middle in lines if line["scene"] == name]
         if not theirs:
             continue
         ours = [m for m in scene["methods"] if m["ours"]]
@@ -288,10 +293,10 @@ def table(lines, vibro):
         rows = [("vibro: ", m) for m in ours] + [("", line) for line in theirs]
         for whose, method in dict.fromkeys((w, m["method"]) for w, m in rows):
             mine = [m for w, m in rows if (w, m["method"]) == (whose, method)]
-            errors = ", ".join("–" if m["error"] is None else f"{m['error']:.1e}".replace("e-0", "e-").replace("e+0", "e") for m in mine)
             ratio = float(np.median([m["time_ns"] / base[m["setting"]] for m in mine]))
             refused = sum(int(m["why"].split()[0]) for m in mine if m.get("why"))
-            print(f"| {name} | {whose}{method} | {errors} | {ratio:.2g} | {refused or ''} |")
+            medians = shown(m["median"] for m in mine) if "median" in mine[0] else ""
+            print(f"| {name} | {whose}{method} | {shown(m['error'] for m in mine)} | {medians} | {ratio:.2g} | {refused or ''} |")
 
 
 def main():
@@ -311,7 +316,7 @@ def main():
             name = " + ".join(f"{program} {version(package)}" for program, package in programs)
             lines.append(measured(scene, setting, f"{name}, {what}", method, records))
     with open(out, "w") as file:
-        json.dump(lines, file, indent=1)
+        json.dump([line for line, _ in lines], file, indent=1)
     if vibro:
         with open(vibro[0]) as file:
             table(lines, json.load(file))

@@ -4,7 +4,7 @@
 #     benches/peers/precision.sh [DIR]
 #
 # Builds vibro, installs the other programs (requirements.txt) under the target folder, measures both, and writes charts and tables
-# to DIR (default: precision), and prints a table of the estimators. Takes five minutes behind the build; let nothing else run beside it. PYTHON names an
+# to DIR (default: precision), and prints a table of the estimators. Takes four minutes behind the build; let nothing else run beside it. PYTHON names an
 # interpreter that has the other programs, VIBRO a program that is built.
 set -euo pipefail
 out=$(realpath -m "${1:-precision}")
@@ -27,5 +27,5 @@ cargo run --quiet --release --locked -p vibro-precision --example records -- "$m
 # One thread each, as vibro has for one record.
 export OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1
 "$PYTHON" benches/peers/estimators.py "$measured" "$measured/estimators.json" "$measured/vibro.json" > "$measured/estimators.md"
-"$VIBRO" precision --from "$measured/vibro.json" --add "$measured/peers.json" --add "$measured/estimators.json" --out "$out"
+"$VIBRO" precision --results "$measured/vibro.json" --add "$measured/peers.json" --add "$measured/estimators.json" --out "$out"
 cat "$measured/estimators.md"
