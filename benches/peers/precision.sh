@@ -4,8 +4,8 @@
 #     benches/peers/precision.sh [DIR]
 #
 # Builds vibro, installs the other programs (requirements.txt) under the target folder, measures both, and writes charts and tables
-# to DIR (default: precision). Takes two minutes behind the build; let nothing else run beside it. PYTHON names an interpreter that has the other programs,
-# VIBRO a program that is built.
+# to DIR (default: precision), and prints a table of the estimators. Takes four minutes behind the build; let nothing else run beside it. PYTHON names an
+# interpreter that has the other programs, VIBRO a program that is built.
 set -euo pipefail
 out=$(realpath -m "${1:-precision}")
 cd "$(dirname "$0")/../.."
@@ -21,6 +21,11 @@ if [ -z "${VIBRO:-}" ]; then
 fi
 measured=$(mktemp -d)
 trap 'rm -r "$measured"' EXIT
-"$VIBRO" precision --family models --json > "$measured/vibro.json"
+cargo run --quiet --release --locked -p vibro-precision --example records -- "$measured"
+"$VIBRO" precision --json > "$measured/vibro.json"
 "$PYTHON" benches/peers/peers.py "$measured/peers.json"
-"$VIBRO" precision --from "$measured/vibro.json" --add "$measured/peers.json" --out "$out"
+# One thread each, as vibro has for one record.
+export OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1
+"$PYTHON" benches/peers/estimators.py "$measured" "$measured/estimators.json" "$measured/vibro.json" > "$measured/estimators.md"
+"$VIBRO" precision --results "$measured/vibro.json" --add "$measured/peers.json" --add "$measured/estimators.json" --out "$out"
+cat "$measured/estimators.md"

@@ -5,28 +5,45 @@
 //! deviation.
 
 mod damping;
+mod decay;
 mod impacts;
 mod integration;
 mod pulse;
+mod records;
 mod rivals;
+mod shaker;
 mod sine;
 mod trial;
 
 use super::failure::BorderQuestion;
-use super::{BenchmarkScene, FailureMap, Family, MeasuredMethod};
+use super::{BenchmarkScene, FailureMap, Family};
 use nalgebra::DMatrix;
+pub use records::write_records;
+use trial::{Ensemble, EstimationMethod, Record, Settings, Trials};
 use vibro_record::{Spectrum, Sweep, SweepPoint, Values};
 
 /// Every scene of the estimators, each method measured; `quick` takes fewer records.
 pub(crate) fn scenes(quick: bool, progress: &mut dyn FnMut(&str)) -> Vec<BenchmarkScene> {
-    let parts: [fn(bool) -> Vec<BenchmarkScene>; 5] =
-        [sine::scenes, integration::scenes, damping::scenes, impacts::scenes, pulse::scenes];
-    let mut all: Vec<BenchmarkScene> = Vec::new();
-    for scenes in parts {
-        all.extend(scenes(quick));
-        progress(all.last().map_or("", |scene| &scene.name));
-    }
-    all
+    let measure = |scene: EstimatorScene| {
+        let measured = scene.measured(quick);
+        progress(&measured.name);
+        measured
+    };
+    all_scenes().into_iter().map(measure).collect()
+}
+
+/// Every scene of the estimators, not measured yet.
+fn all_scenes() -> Vec<EstimatorScene> {
+    let parts = [
+        sine::scenes,
+        integration::scenes,
+        damping::scenes,
+        decay::scenes,
+        shaker::scenes,
+        impacts::scenes,
+        pulse::scenes,
+    ];
+    parts.iter().flat_map(|scenes| scenes()).collect()
 }
 
 /// The outcome of each estimator at each border; `quick` takes fewer records.
@@ -50,9 +67,34 @@ fn questions(quick: bool) -> Vec<BorderQuestion> {
     parts.iter().flat_map(|part| part(quick)).collect()
 }
 
-/// A scene of estimators: its texts, its bound, and the results of the methods.
-fn scene(texts: [&str; 4], bound: f64, methods: Vec<MeasuredMethod>) -> BenchmarkScene {
-    BenchmarkScene { bound: Some(bound), methods, ..BenchmarkScene::new(Family::Estimators, texts) }
+/// A scene of estimators: its texts, its Cramér–Rao bound, and its methods with their records.
+struct EstimatorScene {
+    texts: [&'static str; 4],
+    bound: f64,
+    trials: Box<dyn Trials>,
+}
+
+impl EstimatorScene {
+    /// The scene with the results of its methods.
+    fn measured(&self, quick: bool) -> BenchmarkScene {
+        let methods = self.trials.measured(quick);
+        BenchmarkScene {
+            bound: Some(self.bound),
+            methods,
+            ..BenchmarkScene::new(Family::Estimators, self.texts)
+        }
+    }
+}
+
+/// A scene from its texts, its bound, its methods and the kinds of records that they get.
+fn scene<D: Record>(
+    texts: [&'static str; 4],
+    bound: f64,
+    methods: &'static [EstimationMethod<D>],
+    settings: impl IntoIterator<Item = Ensemble<D>>,
+) -> EstimatorScene {
+    let settings = settings.into_iter().collect();
+    EstimatorScene { texts, bound, trials: Box::new(Settings { methods, settings }) }
 }
 
 /// Cramér–Rao bounds: the least standard deviations of unbiased estimates of the parameters `p`, from
@@ -129,7 +171,7 @@ mod tests {
 
     #[test]
     fn a_scene_is_measured_with_its_bound() {
-        for scene in integration::scenes(true) {
+        for scene in integration::scenes().iter().map(|scene| scene.measured(true)) {
             assert!(scene.bound.is_some_and(|b| b > 0.0), "{}", scene.name);
             assert!(scene.methods.iter().all(|m| m.time_ns > 0.0 && m.error.is_some() != m.failed));
             assert!(scene.methods.iter().any(|m| m.ours && !m.failed));

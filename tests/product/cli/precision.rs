@@ -161,7 +161,7 @@ fn estimators_are_measured_and_drawn() {
         out.to_str().unwrap(),
     ]);
     let scenes = answer["scenes"].as_array().unwrap();
-    assert_eq!(scenes.len(), 9);
+    assert_eq!(scenes.len(), 11);
     for scene in scenes {
         assert!(scene["bound"].as_f64().unwrap() > 0.0 && scene["family"] == "estimators");
         for method in scene["methods"].as_array().unwrap() {
@@ -186,7 +186,7 @@ fn estimators_are_measured_and_drawn() {
     // One chart per scene and one map per quantity, each in two formats, and two tables. File names are
     // valid on every system.
     let files = answer["files"].as_array().unwrap();
-    assert_eq!(files.len(), 2 * (9 + 5) + 2);
+    assert_eq!(files.len(), 2 * (11 + 5) + 2);
     let names: Vec<String> = std::fs::read_dir(&out)
         .unwrap()
         .map(|file| file.unwrap().file_name().into_string().unwrap())

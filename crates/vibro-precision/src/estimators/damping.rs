@@ -1,8 +1,8 @@
 //! Damping ratio from a frequency response function.
 
-use super::trial::{Case, Ensemble, EstimationMethod, EstimatorAnswer, measured, questions};
-use super::{bounds, rivals, scene};
-use crate::{BenchmarkScene, BorderQuestion};
+use super::trial::{Case, Ensemble, EstimationMethod, EstimatorAnswer, Numbers, Record, questions};
+use super::{EstimatorScene, bounds, rivals, scene};
+use crate::BorderQuestion;
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 use vibro_math::Noise;
@@ -22,8 +22,16 @@ const METHODS: [EstimationMethod<Measured>; 4] = [
     EstimationMethod::Own("rational fit", rational),
 ];
 
+impl Record for Measured {
+    fn numbers(&self) -> Numbers {
+        let (start, step) = (self.frequency[0], self.frequency[1] - self.frequency[0]);
+        let values = self.values.iter().flat_map(|v| [v.re, v.im]).collect();
+        Numbers { start, step, values, known: None }
+    }
+}
+
 /// ζ of the strongest mode, as from `vibro modal`.
-fn rational(measured: &Measured) -> Result<EstimatorAnswer> {
+pub(super) fn rational(measured: &Measured) -> Result<EstimatorAnswer> {
     let found = modal(measured, &ModalOptions::default())?;
     let height = |m: &&Mode| m.modal_constant.value.abs() / m.zeta.value;
     let strongest = found.modes.iter().max_by(|a, b| height(a).total_cmp(&height(b)));
@@ -87,7 +95,7 @@ fn bound(in_bandwidth: f64, part: f64) -> f64 {
 }
 
 /// The scene of damping.
-pub fn scenes(quick: bool) -> Vec<BenchmarkScene> {
+pub fn scenes() -> Vec<EstimatorScene> {
     let settings = [1.16, 2.0, 4.0, 8.0, 16.0]
         .map(|n| Ensemble::new(format!("{n} lines in the bandwidth"), 20_000, mode_on_lines(n, 0.01)));
     let texts = [
@@ -96,7 +104,7 @@ pub fn scenes(quick: bool) -> Vec<BenchmarkScene> {
         "damping ratio: relative error (rms)",
         "the pole that the receptance was made of",
     ];
-    vec![scene(texts, bound(16.0, 0.01), measured(&METHODS, &settings, quick))]
+    vec![scene(texts, bound(16.0, 0.01), &METHODS, settings)]
 }
 
 /// Questions to methods for damping at their borders.

@@ -1,10 +1,8 @@
 //! Impacts of a contact trace: their frequency, and their times.
 
-use super::trial::{
-    Case, Change, Ensemble, EstimationMethod, EstimatorAnswer, each, measured, questions, trace,
-};
-use super::{bounds, rivals, scene};
-use crate::{BenchmarkScene, BorderQuestion};
+use super::trial::{Case, Change, Ensemble, EstimationMethod, EstimatorAnswer, each, questions, trace};
+use super::{EstimatorScene, bounds, rivals, scene};
+use crate::BorderQuestion;
 use std::f64::consts::TAU;
 use vibro_math::Noise;
 use vibro_measure::impacts::{ImpactsOptions, impacts};
@@ -118,7 +116,7 @@ const TIMES: [EstimationMethod<Trace>; 3] = [
 ];
 
 /// The scenes of impacts.
-pub fn scenes(quick: bool) -> Vec<BenchmarkScene> {
+pub fn scenes() -> Vec<EstimatorScene> {
     let settings = [
         ("even", plain()),
         ("2 of 60 missing", SyntheticTrain { missing: vec![20, 41], ..plain() }),
@@ -150,10 +148,7 @@ pub fn scenes(quick: bool) -> Vec<BenchmarkScene> {
         truth,
     ];
     let bound = onset_bound(0.01) * (12.0 / (n * (n * n - 1.0))).sqrt() / 265.0;
-    vec![
-        scene(rates, bound, measured(&RATES, &settings, quick)),
-        scene(times, 1.0, measured(&TIMES, &noises, quick)),
-    ]
+    vec![scene(rates, bound, &RATES, settings), scene(times, 1.0, &TIMES, noises)]
 }
 
 /// `count` of 60 impacts at random; the first and the last are kept.

@@ -1,8 +1,8 @@
 //! Displacement from a velocity.
 
-use super::trial::{Case, Ensemble, EstimationMethod, EstimatorAnswer, measured, questions, trace};
-use super::{one_point, rivals, scene};
-use crate::{BenchmarkScene, BorderQuestion};
+use super::trial::{Case, Ensemble, EstimationMethod, EstimatorAnswer, Numbers, Record, questions, trace};
+use super::{EstimatorScene, one_point, rivals, scene};
+use crate::BorderQuestion;
 use std::f64::consts::TAU;
 use vibro_math::Noise;
 use vibro_measure::response::{ResponseOptions, response};
@@ -22,6 +22,12 @@ const AMPLITUDE: f64 = 1e-3;
 struct Vibration {
     velocity: Trace,
     frequency: f64,
+}
+
+impl Record for Vibration {
+    fn numbers(&self) -> Numbers {
+        Numbers { known: Some(self.frequency), ..self.velocity.numbers() }
+    }
 }
 
 /// Methods for the amplitude of a displacement from its velocity.
@@ -121,7 +127,7 @@ impl SyntheticVibration {
 }
 
 /// The scene of integration.
-pub fn scenes(quick: bool) -> Vec<BenchmarkScene> {
+pub fn scenes() -> Vec<EstimatorScene> {
     let settings = [
         ("noise alone", CLEAN),
         ("level of a tenth", SyntheticVibration { level: 0.1, ..CLEAN }),
@@ -138,7 +144,7 @@ pub fn scenes(quick: bool) -> Vec<BenchmarkScene> {
     ];
     // Cramér–Rao bound: Kay 1993, eq. 3.41, √(1/(ηN)).
     let bound = 1.0 / (N as f64 * 10f64.powf(CLEAN.decibel / 10.0)).sqrt();
-    vec![scene(texts, bound, measured(&METHODS, &settings, quick))]
+    vec![scene(texts, bound, &METHODS, settings)]
 }
 
 /// Questions to methods of integration at their borders.

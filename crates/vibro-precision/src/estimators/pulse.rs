@@ -1,10 +1,10 @@
 //! Damping ratio of a contact from the pulse of its force.
 
 use super::trial::{
-    Case, Change, Ensemble, EstimationMethod, EstimatorAnswer, each, measured, questions, trace,
+    Case, Change, Ensemble, EstimationMethod, EstimatorAnswer, Numbers, Record, each, questions, trace,
 };
-use super::{bounds, rivals, scene};
-use crate::{BenchmarkScene, BorderQuestion};
+use super::{EstimatorScene, bounds, rivals, scene};
+use crate::BorderQuestion;
 use std::f64::consts::{PI, TAU};
 use vibro_math::Noise;
 use vibro_measure::pulse::{Instrument, KelvinVoigt, PulseOptions, pulse, two_times};
@@ -19,6 +19,12 @@ struct Pulse {
     trace: Trace,
     instrument: Instrument,
     times: [f64; 3],
+}
+
+impl Record for Pulse {
+    fn numbers(&self) -> Numbers {
+        self.trace.numbers()
+    }
 }
 
 /// ξ from two instants read off the record.
@@ -122,7 +128,7 @@ fn bound(xi: f64, samples: f64, part: f64) -> f64 {
 }
 
 /// The scene of pulses.
-pub fn scenes(quick: bool) -> Vec<BenchmarkScene> {
+pub fn scenes() -> Vec<EstimatorScene> {
     let settings = [8.0, 16.0, 32.0, 64.0, 128.0]
         .map(|n| Ensemble::new(format!("{n} samples in the pulse"), 50_000, pulses(0.2, n, 0.01)));
     let texts = [
@@ -131,7 +137,7 @@ pub fn scenes(quick: bool) -> Vec<BenchmarkScene> {
         "damping ratio ξ of the contact: error (rms)",
         "the contact of spring and damper, ξ = 0.2, in closed form",
     ];
-    vec![scene(texts, bound(0.2, 128.0, 0.01), measured(&METHODS, &settings, quick))]
+    vec![scene(texts, bound(0.2, 128.0, 0.01), &METHODS, settings)]
 }
 
 /// Height of a pulse above zero.

@@ -1,10 +1,8 @@
 //! Frequency and amplitude of sines in noise.
 
-use super::trial::{
-    Case, Change, Ensemble, EstimationMethod, EstimatorAnswer, each, measured, questions, trace,
-};
-use super::{bounds, one_point, rivals, scene};
-use crate::{BenchmarkScene, BorderQuestion, MeasuredMethod};
+use super::trial::{Case, Change, Ensemble, EstimationMethod, EstimatorAnswer, each, questions, trace};
+use super::{EstimatorScene, bounds, one_point, rivals, scene};
+use crate::BorderQuestion;
 use std::f64::consts::TAU;
 use vibro_math::Noise;
 use vibro_measure::excitation::{Excitation, excitations};
@@ -133,7 +131,7 @@ fn pair(apart: f64) -> impl Fn(&mut Noise) -> Case<Trace> {
 }
 
 /// Every scene of sines, measured.
-pub fn scenes(quick: bool) -> Vec<BenchmarkScene> {
+pub fn scenes() -> Vec<EstimatorScene> {
     let noise = [0.0, 20.0, 40.0, 60.0, 80.0]
         .map(|db| Ensemble::new(format!("{db} dB"), 1_000, anywhere(N, db, bound(N, db))));
     let length = [64, 256, 1024, 4096, 16_384]
@@ -169,14 +167,13 @@ pub fn scenes(quick: bool) -> Vec<BenchmarkScene> {
     ];
     let (longest, amplitude) = (bound(16_384, 40.0) * RATE / 16_384.0, sigma(60.0) * (2.0 / N as f64).sqrt());
     // The truth of all scenes is the sine written into the record.
-    let scene = |[name, says, error_of]: [&str; 3], bound: f64, methods: Vec<MeasuredMethod>| {
-        scene([name, says, error_of, "the sine that was written into the record"], bound, methods)
-    };
+    let truth = "the sine that was written into the record";
+    let of = |[name, says, error_of]: [&'static str; 3]| [name, says, error_of, truth];
     vec![
-        scene(in_noise, 1.0, measured(&FREQUENCY, &noise, quick)),
-        scene(of_length, longest, measured(&FREQUENCY, &length, quick)),
-        scene(of_amplitude, amplitude, measured(&AMPLITUDE, &offsets, quick)),
-        scene(of_two, 1.0, measured(&WEAKER, &pairs, quick)),
+        scene(of(in_noise), 1.0, &FREQUENCY, noise),
+        scene(of(of_length), longest, &FREQUENCY, length),
+        scene(of(of_amplitude), amplitude, &AMPLITUDE, offsets),
+        scene(of(of_two), 1.0, &WEAKER, pairs),
     ]
 }
 

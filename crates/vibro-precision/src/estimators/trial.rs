@@ -108,6 +108,11 @@ impl<D: 'static> Ensemble<D> {
     fn case(&self, number: usize) -> Case<D> {
         (self.make)(&mut Noise::new(self.seed + number as u64))
     }
+
+    /// The record of this number where the setting has this place in its scene.
+    fn case_at(&self, place: usize, number: usize) -> Case<D> {
+        self.case(place * SEED_DISTANCE + number)
+    }
 }
 
 /// A trace that begins at time 0.
@@ -130,16 +135,77 @@ const TIMED: [usize; 2] = [24, 3];
 /// methods.
 const SEED_DISTANCE: usize = 1_000_000;
 
+/// A record that methods of other programs can be given as well.
+pub trait Record: 'static {
+    /// Its numbers.
+    fn numbers(&self) -> Numbers;
+}
+
+/// Values at an even step, and what is known beside them.
+pub struct Numbers {
+    /// First time in s or frequency in Hz.
+    pub start: f64,
+    /// Distance of two values in s or Hz.
+    pub step: f64,
+    /// The values; of complex ones real and imaginary part in turn, of two channels one of each.
+    pub values: Vec<f64>,
+    /// Excitation frequency in Hz, where the methods know it.
+    pub known: Option<f64>,
+}
+
+impl Record for Trace {
+    fn numbers(&self) -> Numbers {
+        let step = self.rate().map_or(f64::NAN, f64::recip);
+        Numbers { start: 0.0, step, values: self.values.clone(), known: None }
+    }
+}
+
+/// Methods of a scene with the kinds of records that they get.
+pub struct Settings<D: 'static> {
+    /// The methods.
+    pub methods: &'static [EstimationMethod<D>],
+    /// The kinds of records.
+    pub settings: Vec<Ensemble<D>>,
+}
+
+/// Takes a record: name of its setting, numbers, truth and unit of the error.
+pub type TakeRecord<'a> = dyn FnMut(&str, Numbers, [f64; 2]) -> Result<()> + 'a;
+
+/// What is done with the records of a scene, of whatever type they are.
+pub trait Trials {
+    /// The results of the methods.
+    fn measured(&self, quick: bool) -> Vec<MeasuredMethod>;
+
+    /// Gives each record of [`measured`] to `take`.
+    fn each_record(&self, quick: bool, take: &mut TakeRecord<'_>) -> Result<()>;
+}
+
+impl<D: Record> Trials for Settings<D> {
+    fn measured(&self, quick: bool) -> Vec<MeasuredMethod> {
+        measured(self.methods, &self.settings, quick)
+    }
+
+    fn each_record(&self, quick: bool, take: &mut TakeRecord<'_>) -> Result<()> {
+        for (place, setting) in self.settings.iter().enumerate() {
+            for number in 0..RECORDS[usize::from(quick)] {
+                let Case { data, truth, unit, .. } = setting.case_at(place, number);
+                take(&setting.name, data.numbers(), [truth, unit])?;
+            }
+        }
+        Ok(())
+    }
+}
+
 /// Measures every method on every setting. The error is the root mean square over the answers, to compare
 /// with a standard deviation. A method that answers for fewer than half of the records has failed.
-pub fn measured<D: 'static>(
+fn measured<D: 'static>(
     methods: &[EstimationMethod<D>],
     settings: &[Ensemble<D>],
     quick: bool,
 ) -> Vec<MeasuredMethod> {
     let (records, clocked) = (RECORDS[usize::from(quick)], TIMED[usize::from(quick)]);
     let measure = |method: &EstimationMethod<D>, place: usize, setting: &Ensemble<D>| {
-        let case = |number: usize| setting.case(place * SEED_DISTANCE + number);
+        let case = |number: usize| setting.case_at(place, number);
         let error = |number: usize| {
             let Case { data, truth, unit, .. } = case(number);
             Ok((method.answer(&data)?.value - truth) / unit)
