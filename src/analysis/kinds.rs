@@ -1,4 +1,5 @@
-//! The kinds of analysis, one for each section of a campaign, and what runs over all of them.
+//! The kinds of analysis, one for each section of a campaign file, and what applies each of them to all of
+//! its tables. A table is one `[[section]]` entry.
 
 use super::answer::left_out;
 use super::entries::{check, entries};
@@ -29,7 +30,7 @@ pub(crate) fn sections() -> impl Iterator<Item = &'static str> {
     KINDS.iter().map(|kind| kind.section)
 }
 
-/// Reads a campaign and checks all its records. A table with an impossible value is left out: see
+/// Reads a campaign and checks all its tables. A table with an impossible value is left out: see
 /// [`Campaign::faults`].
 ///
 /// # Errors
@@ -140,8 +141,8 @@ fn files_of<A: Analysis>(campaign: &Campaign) -> Result<Vec<PathBuf>> {
     Ok(files.flatten().collect())
 }
 
-/// The files that the tables of a kind name, each with a text that is equal for tables that read the same
-/// channels in the same way.
+/// The files that the tables of a kind name, each with a key of its channels and reading options: equal
+/// keys mean the same data.
 fn records_of<A: Analysis>(campaign: &Campaign) -> Result<Vec<NamedFile>> {
     let mut all = Vec::new();
     for entry in &entries::<A>(campaign)? {
@@ -164,14 +165,14 @@ fn records_of<A: Analysis>(campaign: &Campaign) -> Result<Vec<NamedFile>> {
     Ok(all)
 }
 
-/// Measures the records of a kind; tables with a fault give findings.
+/// Runs the analysis of all tables of a kind; tables with a fault give findings.
 fn run_all<A: Analysis>(job: &mut Job<'_>) -> Result<()> {
     for fault in job.campaign.faults().iter().filter(|fault| fault.section == A::SECTION) {
         job.found.add(&fault.name, [left_out("left-out", &fault.error)]);
     }
     let entries = entries::<A>(job.campaign)?;
     if A::TOGETHER && !entries.is_empty() {
-        // All tables give one answer.
+        // One answer for all tables together.
         return job.together(A::SECTION, |job| A::run(&entries, job));
     }
     A::run(&entries, job)

@@ -1,6 +1,5 @@
 //! The model of a rig: `vibro model`, one file for each question; figures of its orbits, motions, sweeps,
-//! maps,
-//! and of the choice of a model.
+//! maps, and of the choice of a model.
 
 pub mod branch;
 pub mod choose;

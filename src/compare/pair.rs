@@ -38,8 +38,7 @@ pub struct Pair {
     pub motion: Option<MotionKind>,
     /// Pattern of the predicted motion: impacts/cycles, or a word such as `irregular`.
     pub regime: Option<String>,
-    /// Model that predicted the amplitude: the closed form if the simulated sweep reached one of its
-    /// motions,
+    /// Model that predicted the amplitude: the closed form if the simulated sweep reached one of its motions,
     /// else the simulated model.
     pub model: Model,
     /// Number of stable motions of the closed form at this point; with more than one, the history of the

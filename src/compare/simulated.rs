@@ -48,8 +48,7 @@ pub(super) fn simulated_briefly(rig: &Rig, points: &[(f64, f64)], pace: Pace) ->
 }
 
 /// Excitation cycles in each of two consecutive checks for too many impacts: the second also finds a motion
-/// that
-/// becomes busy only after the first transient.
+/// that becomes busy only after the first transient.
 const CHECKED: u32 = 8;
 /// Mean number of flights per cycle above which a motion is refused: it is chatter, or the rig has wrong
 /// parameters.

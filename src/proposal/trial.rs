@@ -270,8 +270,7 @@ impl Trial<'_> {
         })
     }
 
-    /// A drop table marked as refused, if the record allows several series of bounces. Its missing height
-    /// can
+    /// A drop table marked as refused, if the record allows several series of bounces. Its missing height can
     /// decide between them.
     fn undecided_drop(&self, series: &FileSeries, k: usize, name: &str) -> Option<Table> {
         let refusal = self.answers(&[series.bounces(k, name)]).err().filter(|r| r.code == Train::UNTOLD)?;
@@ -318,11 +317,9 @@ impl Trial<'_> {
         }
     }
 
-    /// The tables of a hammer drill, one for each velocity channel, if another channel has two levels, as
-    /// the
+    /// The tables of a hammer drill, one for each velocity channel, if another channel has two levels, as the
     /// pulses of a crank. If that channel is more likely a contact circuit beside a sine, the only table is
-    /// that
-    /// of its impacts.
+    /// that of its impacts.
     fn drill(&self, series: &FileSeries, name: &str) -> Vec<Table> {
         let file = &series.files[0];
         let is_velocity = |h: &Header| h.quantity == "velocity" || h.unit == "V";

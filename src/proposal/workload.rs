@@ -10,8 +10,7 @@ pub(super) const CHANNELS: usize = 8;
 const PARALLEL_VALUES: usize = 1 << 25;
 
 /// Number of files of `values` values each that one core takes as a share of the work: 1 if all cores can
-/// work
-/// at once, unlimited (one core takes all files) if memory does not suffice for that.
+/// work at once, unlimited (one core takes all files) if memory does not suffice for that.
 pub(super) fn share(values: usize) -> usize {
     if values.saturating_mul(rayon::current_num_threads()) > PARALLEL_VALUES { usize::MAX } else { 1 }
 }

@@ -129,8 +129,7 @@ pub(super) enum Room {
     /// None. The axis starts at zero, or at 60 dB below the largest value on a level axis.
     /// For a waterfall: below 60 dB, the noise of a hundred stacked spectra would hide the lines.
     Floor,
-    /// This fraction above the data and 6 % below. A linear axis instead ends at zero if the value nearest
-    /// to
+    /// This fraction above the data and 6 % below. A linear axis instead ends at zero if the value nearest to
     /// zero is at most 0.4 of the one furthest from it.
     Above(f64),
 }

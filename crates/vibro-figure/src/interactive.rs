@@ -10,8 +10,8 @@ use serde_json::{Value, json};
 impl Figure {
     /// The figure as data for a page: panels with axes, series and matrices, with all values in the unit of
     /// their axes. Lists are base64 of 32-bit floats, least significant byte first. Matrices are added to
-    /// those of the page; the figure refers to them by number. A panel that repeats an earlier one is left
-    /// out. `None` where a page cannot draw a panel, such as a grid of classes.
+    /// those of the page; the figure refers to them by number. A panel that repeats an earlier one
+    /// (`Plot::again`) is left out. `None` where a page cannot draw a panel, such as a grid of classes.
     pub fn data(&self, matrices: &mut Matrices) -> Option<Value> {
         let repeats = |panel: &&Panel| matches!(panel, Panel::Plot(plot) if plot.again);
         let (before, shown) = (matrices.len(), self.panels.iter().filter(|panel| !repeats(panel)));
@@ -25,17 +25,15 @@ impl Figure {
         )
     }
 
-    /// Whether a panel has a heat map: printed, its image would be half of a page.
+    /// Whether a panel has a heat map. Its image for browsers without scripts would be half of a page's size.
     pub fn has_map(&self) -> bool {
         self.panels.iter().any(|panel| matches!(panel, Panel::Plot(plot) if plot.heatmap.is_some()))
     }
 }
 
-/// The matrices of a page, each stored once: a waterfall and a map may show the same one.
-/// ///
-/// A matrix is base64 of 16-bit levels: 0 for a missing value, else 1 at `low` to 65535 at `high` of the
-/// panel
-/// that shows it. Levels are linear in the value, or in log₁₀ of the value for non-negative quantities.
+/// The matrices of a page, each stored once: a waterfall and a map may show the same one. A matrix is base64
+/// of 16-bit levels: 0 for a missing value, else 1 at `low` to 65535 at `high` of the panel that shows
+/// it. Levels are linear in the value, or in log₁₀ of the value for non-negative quantities.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct Matrices(Vec<String>);
 
@@ -77,7 +75,7 @@ impl Axis {
         }
     }
 
-    /// The axis as data: title, limits, and how a matrix value becomes a value on it.
+    /// The axis as data: title, limits, and the factor or dB reference that converts matrix values.
     fn data(&self) -> Value {
         let log = self.scale == Scale::Log;
         let end = |u: f64| match self.scale {
@@ -197,10 +195,9 @@ fn floats(values: impl Iterator<Item = f64>) -> Value {
 /// Decades below the largest magnitude that levels cover.
 const DECADES: f64 = 8.0;
 
-/// A matrix as 16-bit levels: 0 for a missing value, else 1 at `low` to 65535 at `high`.
-/// Levels are linear in the value. If all values of a quantity are non-negative, they are linear in log₁₀
-/// of
-/// the value, over at most 8 decades in steps of 0.03 %; smaller values get level 1.
+/// A matrix as 16-bit levels: 0 for a missing value, else 1 at `low` to 65535 at `high`. Levels are linear in
+/// the value. If all values of a quantity are non-negative, they are linear in log₁₀ of the value, over at
+/// most 8 decades in steps of 0.03 %; smaller values get level 1.
 fn levels(values: impl Iterator<Item = f64> + Clone, quantity: bool, matrices: &mut Matrices) -> Value {
     let finite = values.clone().filter(|v| v.is_finite());
     let magnitudes = quantity && finite.clone().all(|v| v >= 0.0) && finite.clone().any(|v| v > 0.0);

@@ -104,9 +104,8 @@ pub(super) fn clipped(line: &[Point], frame: Rect) -> Vec<Vec<Point>> {
 }
 
 /// Thins a line: no removed point is further than `tolerance` from the new line, in points of 1/72 inch
-/// (Douglas
-/// and Peucker 1973). A dense line is first reduced to the first, lowest, highest and last point of every
-/// 0.25 points of width; the tolerance holds for the rest.
+/// (Douglas and Peucker 1973). A dense line is first reduced to the first, lowest, highest and last point of
+/// every 0.25 points of width; the tolerance holds for the rest.
 pub(super) fn thinned(line: &[Point], tolerance: f64) -> Vec<Point> {
     let line = by_columns(line, 0.25);
     let Some(last) = line.len().checked_sub(1).filter(|last| *last >= 2) else { return line };
@@ -127,8 +126,7 @@ pub(super) fn thinned(line: &[Point], tolerance: f64) -> Vec<Point> {
     line.iter().zip(kept).filter(|(_, kept)| *kept).map(|(p, _)| *p).collect()
 }
 
-/// At most four points in each column of this width: the first, lowest, highest and last. Lines whose
-/// points
+/// At most four points in each column of this width: the first, lowest, highest and last. Lines whose points
 /// do not ascend in x, or with fewer than five points a column on average, stay unchanged.
 fn by_columns(line: &[Point], width: f64) -> Vec<Point> {
     let ascending = line.windows(2).all(|w| w[0].0 <= w[1].0);

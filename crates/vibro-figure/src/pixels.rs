@@ -48,7 +48,6 @@ impl Drawing {
     }
 }
 
-/// Most pixels of a picture: those of four squares as wide as a double column (178 mm) at 1200 dots per
-/// inch,
-/// 1.1 GB in memory.
+/// Most pixels of a picture: 1.1 GB in memory. A square as wide as a double column (178 mm) has a quarter of
+/// them at 1200 dots per inch.
 const MOST_PIXELS: u64 = 280_000_000;

@@ -23,8 +23,7 @@ pub struct Series {
     pub high: Vec<f64>,
     /// Colour.
     pub ink: Ink,
-    /// Dashes and width of a line; `None` takes those that belong to the colour. Points are joined by a
-    /// line
+    /// Dashes and width of a line; `None` takes those that belong to the colour. Points are joined by a line
     /// only if this is set.
     pub stroke: Option<Stroke>,
     /// Form of markers; `None` takes the one that belongs to the colour.

@@ -80,8 +80,7 @@ pub(super) fn linear(lo: f64, hi: f64, most: usize, power: i32, degrees: bool) -
     let count = |i: usize| candidates[i].within(lo, hi).len();
     let finest = (0..candidates.len()).find(|&i| count(i) <= most).unwrap_or(candidates.len() - 1);
     // The finest step with at most `most` ticks may leave a single tick. Then the next finer step is used,
-    // which
-    // may exceed `most`.
+    // which may exceed `most`.
     let step = candidates[if count(finest) < 2 { finest.saturating_sub(1) } else { finest }];
     let decimals = usize::try_from(power - step.exponent).unwrap_or(0);
     let shown = TickStep { exponent: step.exponent - power, ..step };

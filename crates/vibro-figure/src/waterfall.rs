@@ -26,7 +26,7 @@ struct Cube {
     spectra: Vec<(f64, Vec<Point>)>,
 }
 
-/// Spectra in oblique projection with hidden lines, one for each excitation frequency.
+/// Spectra in oblique projection with hidden-line removal, one for each excitation frequency.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Waterfall {
     /// Axis to the right.

@@ -55,8 +55,8 @@ impl Tone {
 /// State of the excitation from now on.
 ///
 /// At phase exactly 0 the impulse or pulse of the cycle has not yet been applied. When it is applied, the
-/// phase becomes the smallest number above 0. So a motion that is started again from its phase gets it
-/// exactly once.
+/// phase becomes the smallest number above 0. So a simulation that starts again from a stored phase
+/// applies it exactly once.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Forcing {
     tones: [Option<Tone>; MOST_SINES],

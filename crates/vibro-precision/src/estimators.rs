@@ -50,10 +50,9 @@ fn all_scenes() -> Vec<EstimatorScene> {
 ///
 /// An answer with an uncertainty is right within three of its standard uncertainties. One without is right
 /// within a limit that is the same for all methods of a border: half a line for a frequency, 5 % for an
-/// amplitude, 10 % for a damping ratio, 1 % for an impact frequency, 0.02 for ξ. An answer counts as
-/// refused
-/// if it is withheld, if it has no uncertainty because of a doubt, or if its uncertainty exceeds the limit.
-/// A doubt does not excuse an answer whose uncertainty is stated. A method is wrong if more than 3 of 40
+/// amplitude, 10 % for a damping ratio, 1 % for an impact frequency, 0.02 for ξ. An answer counts as refused
+/// if it is withheld, if it has no uncertainty because of a doubt, or if its uncertainty exceeds the limit. A
+/// doubt does not excuse an answer whose uncertainty is stated. A method is wrong if more than 3 of 40
 /// answers lie outside, or one by more than 5.2 standard uncertainties: methods with correct uncertainties
 /// exceed these limits in fewer than one of a hundred full maps.
 pub fn failures(quick: bool) -> FailureMap {

@@ -5,8 +5,7 @@ use crate::measure::drill::{Corner, Drill, Group};
 use crate::report::layout::{headed, pair};
 use crate::report::{Cell, Table};
 
-/// Note on the velocities: those in the middle of the contact differ from those at first contact if the
-/// drive
+/// Note on the velocities: those in the middle of the contact differ from those at first contact if the drive
 /// accelerates the striker, and the energy then differs by some per cent.
 const MIDDLE: &str = "Velocities before and after impact, energy and restitution: continued to the middle of the contact, as if the impact took no time. First contact is earlier.";
 

@@ -14,8 +14,7 @@ pub struct Unknown {
     pub prior: Option<[f64; 2]>,
 }
 
-/// A parameter without an upper bound stays within this factor of its starting value: ten times the error
-/// of
+/// A parameter without an upper bound stays within this factor of its starting value: ten times the error of
 /// a mistaken milli. Further away the points no longer constrain it, and a rig without dampers or gap takes
 /// very long to simulate.
 const FARTHEST: f64 = 1e4;

@@ -218,8 +218,9 @@ fn stands(lines: &[f64], clean: &[Complex64], f: f64) -> bool {
 }
 
 /// Structures of three to six modes with ζ of 0.3 to 3 % and modal constants of either sign. The noise has
-/// the variance that follows from the coherence (Bendat & Piersol 2010, 9.90, sixteen averages). Every mode
-/// with a peak of its own is found and no other, and the stated uncertainty covers the error.
+/// the variance that follows from the coherence (Bendat & Piersol 2010, 9.90, sixteen averages). At least
+/// 98 % of the modes with a peak of their own are found, at most 2 % are false, and the stated uncertainty
+/// covers the error.
 fn structures_in_a_band(with_coherence: bool, banded: bool, from: u64, draws: Draws) {
     let (mut frequency, mut zeta, mut constant) = <(Score, Score, Score)>::default();
     // One structure has three modes or more and takes seconds in a debug build.

@@ -123,7 +123,8 @@ fn restitution_refuses_what_cannot_be() {
 #[test]
 fn impacts_are_matched_to_a_shape_that_is_known() {
     let folder = tempfile::tempdir().unwrap();
-    // Gaussian pulses of 0.3 ms standard deviation between samples of 10 kHz; their known shape has 50 kHz.
+    // Gaussian pulses of 0.3 ms standard deviation, sampled at 10 kHz with peaks between samples. The known
+    // shape is sampled at 50 kHz.
     let pulse = |t: f64| (-0.5 * (t / 3e-4).powi(2)).exp();
     let times: Vec<f64> = (0..12).map(|k| 0.05 + 0.100_037 * f64::from(k)).collect();
     let mut noise = Noise::new(5);
@@ -148,8 +149,8 @@ fn impacts_are_matched_to_a_shape_that_is_known() {
     let ours: Vec<f64> = found["times"].as_array().unwrap().iter().map(|t| t.as_f64().unwrap()).collect();
     assert_eq!(ours.len(), times.len());
     for (a, b) in ours.iter().zip(&times) {
-        // Noise of 2e-3/√12 of the height, and Σ(slope)² = √π/(2·3) a sample: 1.1e-3 samples; five times
-        // that is allowed.
+        // Noise: σ = 2e-3/√12 = 5.8e-4 of the height. Pulse of 3 samples standard deviation: Σ(slope)² =
+        // √π/6. The time is then known to σ/√0.30 = 1.1e-3 samples = 1.1e-7 s; five times that is allowed.
         assert!((a - (b - early)).abs() < 6e-7, "{a} {}", b - early);
     }
     let constant = folder.path().join("constant.csv");

@@ -30,7 +30,8 @@ fn omega(nu: f64) -> f64 {
 /// Relative residual of the closed form for an impulse J once in `cycles` cycles of F₀ cos ωt: (C² +
 /// (P/ω)²)J² + 2ΔCJ + Δ² − A², divided by the sum of the magnitudes of its terms. Δ is the gap, A the
 /// amplitude of mass 1 without impacts. The periodic Green's function is χ(t) = e^{−bt}[sin λt + B sin
-/// λ(T−t)]/(mλ(1 + B² − 2B cos λT)) with B = e^{−bT}: C is the sum of both χ(0), P that of 1/(M(1+R)) and
+/// λ(T−t)]/(mλ(1 + B² − 2B cos λT)) with B = e^{−bT}, b = c/2m in 1/s, λ = √(k/m − b²) in rad/s and T =
+/// cycles/frequency in s. C is the sum of both χ(0), P that of 1/(M(1+R)) and
 /// both χ̇(T⁻) (Babitsky 1998).
 fn left(force: f64, frequency: f64, gap: f64, restitution: f64, impulse: f64, cycles: f64) -> f64 {
     let (omega, period) = (TAU * frequency, cycles / frequency);
@@ -95,8 +96,8 @@ fn motions_of_several_impacts_have_their_keys_and_keep_the_laws_of_their_impacts
         }
         let beats = list(orbit, "impacts");
         assert_eq!((beats.len(), &orbit["cycles"]), (2, &Value::from(2)));
-        // Newton's last step is below 1e-10 and converges quadratically. What remains are roundings,
-        // amplified by the motion's sensitivity (some tens).
+        // Newton's last step is below 1e-10 and converges quadratically. What remains are rounding
+        // errors, which the result amplifies some tens of times.
         let close = |a: f64, b: f64| assert!((a - b).abs() < 1e-11 * b.abs(), "{a} {b} in {orbit}");
         for beat in beats {
             close(number(beat, "impulse"), exchange(restitution) * number(beat, "approach_velocity"));
@@ -140,7 +141,7 @@ fn one_impact_in_several_cycles_is_the_closed_form() {
         }
     }
     // The thesis' rig at ν = 2.1, 0.5 N and R = 0.7: the published value of the second root, with all digits
-    // of a double. Its sensitivity is below 100.
+    // of a double. The root amplifies rounding errors less than 100 times.
     let found = model(&format!("orbit --force 0.5 --frequency {}", omega(2.1) / TAU));
     let impulse = number(&list(&found, "orbits")[1], "impulse");
     assert!((impulse / -0.008_944_428_353_726_736 - 1.0).abs() < 1e-13, "{impulse}");
@@ -205,8 +206,8 @@ fn a_branch_passes_the_peak_of_the_thesis_and_grazes_where_the_linear_motion_doe
         .filter(|m| m["kind"] == "grazing")
         .map(|m| TAU * number(&m["orbit"], "value") / omega(2.168_715_614_919) - 1.0)
         .collect();
-    // The frequency of grazing is found by bisection to 1e-11 of a step. An impulse near 0 is known to the
-    // square root of that.
+    // The frequency of grazing is found by bisection to 1e-11 of a step. At grazing the
+    // frequency depends on the square of the impulse, so the impulse is known to the square root of that.
     assert!(grazing.iter().any(|off| off.abs() < 1e-6), "{grazing:?}");
 }
 

@@ -6,8 +6,8 @@ use crate::options::Options;
 use vibro_record::code;
 use vibro_record::{Axis, AxisKind, Clock, Error, Finding, Grid, Result, evened};
 
-/// Largest relative difference at which a stated number and the column agree. Nobody states a number to
-/// correct a smaller difference.
+/// Largest relative difference at which a stated number and the column agree. A smaller
+/// difference is rounding in print, not a correction by the user.
 const SURE: f64 = 1e-6;
 /// Largest relative difference at which a stated number is the column's value rounded to fewer digits.
 const ROUNDED: f64 = 1e-4;
@@ -21,7 +21,7 @@ pub struct PrintedAbscissa {
     pub resolution: f64,
     /// Whether time or frequency is only assumed: neither the column's name nor the header states it.
     pub assumed: bool,
-    /// Time of its 0 in s since 1970, if the column counts from then; else 0.
+    /// Unix time in s of the column's zero; 0 if the column holds no Unix time.
     pub origin: f64,
     /// Relative standard uncertainty of the step, if the axis is even.
     pub clock: f64,
@@ -140,8 +140,8 @@ impl PrintedAbscissa {
             return false;
         }
         let close = |a: f64, b: f64, resolution: f64| (a - b).abs() <= resolution + relative * b.abs();
-        // Both ends are rounded. In uneven times a lost sample adds a whole step, an unsteady clock less
-        // than half a step.
+        // Both ends are rounded. Uneven times may differ by half a step: an unsteady clock stays below that,
+        // a lost sample adds a whole step.
         let uneven = || self.batch().unwrap_or(0.5 * given.step().unwrap_or(0.0));
         let tolerance = axis.step().map_or_else(uneven, |_| 2.0 * self.resolution);
         let span = close(self.last() - axis.start(), given.at(axis.len() - 1), tolerance);
@@ -160,7 +160,7 @@ impl PrintedAbscissa {
         if self.findings.iter().any(|found| found.code == Clock::JITTERS) { NOMINAL } else { ROUNDED }
     }
 
-    /// Refuses a column that runs backwards: its values are then in no order at any rate.
+    /// Refuses a column that runs backwards: no sampling rate can put its values in order.
     fn runs_forward(&self) -> Result<()> {
         let at = |i: usize| short(self.axis.at(i));
         let back = |i: &usize| self.axis.at(*i) < self.axis.at(i - 1) - 2.0 * self.resolution;

@@ -31,7 +31,7 @@ const SEPARATORS: [u8; 3] = *b"\t;,";
 
 const REMARKS: &[&str] = &["#", "%"];
 
-/// Most lines above the rows that are searched for names.
+/// Number of lines above the first row that are searched for column names.
 const DEEPEST: usize = 4;
 
 /// Finds the first row of numbers with names directly above it; `None` if there is none.
@@ -49,8 +49,8 @@ pub fn detect(text: &Text, options: &Options) -> Option<Dialect> {
     for line in Lines::new(&text.head, 0, 1, REMARKS).filter(|l| !l.is_blank()) {
         if line.remark.is_none() && line.number > begin {
             let counts = SEPARATORS.map(|mark| row(line.text, mark, options));
-            // A separator that cuts this line into as many cells as the line before was tried there
-            // already.
+            // A separator with as many cells as in the line before was tried there already. Without this,
+            // long files take minutes.
             let new = (0..SEPARATORS.len()).filter(|i| counts[*i] != before[*i]);
             let rows: Vec<(Separator, Option<usize>)> =
                 new.map(|i| (Separator::Char(SEPARATORS[i]), counts[i])).collect();
@@ -101,8 +101,8 @@ fn row(text: &str, mark: u8, options: &Options) -> Option<usize> {
     let point = options.decimal_comma != Some(true);
     // With commas as separators, a number with a decimal comma must be in quotes.
     let comma = options.decimal_comma != Some(false) && (mark != b',' || text.contains('"'));
-    // A preamble may contain `Overload, 0`. A single number with both marks is ambiguous, so the user is
-    // asked.
+    // `Overload, 0` is preamble and no row. A single cell such as `1,234.5` is ambiguous, so the user is
+    // asked for the decimal mark.
     let word = |text: &str| {
         text.starts_with(|c: char| c.is_ascii_alphabetic()) && !text.to_lowercase().starts_with("nan")
     };
@@ -178,7 +178,7 @@ pub fn grouped(text: &Text, dialect: &Dialect) -> Result<Option<Finding>> {
 }
 
 /// The dialect of rows that begin at `first`, and whether there are as many names as columns. The names are
-/// in rows of their own above or in the preamble after its keys.
+/// in lines of their own above, or in a line of the preamble after a key.
 fn fit(
     above: &[Line],
     first: Line,
@@ -281,8 +281,7 @@ fn name_by_unit(names: &mut [Name]) {
 
 /// The statements of header lines, as `key: value` if a line has a key.
 fn statements(head: &[&Line], separator: Separator) -> Vec<String> {
-    // A rate after its key takes precedence over a row with one rate for each column, which may be those of
-    // a filter.
+    // A rate after its key takes precedence: a row with one rate for each column may hold those of filters.
     let mut keyed: Vec<String> = head.iter().map(|l| key_and_value(l, separator)).collect();
     if !Stated::of(keyed.iter().map(String::as_str), None).states_rate() {
         for (line, keyed) in head.iter().zip(&mut keyed).filter(|(line, _)| line.remark.is_none()) {

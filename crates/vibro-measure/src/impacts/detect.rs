@@ -16,7 +16,7 @@ use vibro_record::units::notation::{counted, quantity, shortest};
 use vibro_record::{Error, Finding, Result, Trace, median};
 use vibro_signal::envelope::envelope;
 
-/// Least height of an impact over the median height of all bursts.
+/// Least height of an impact divided by the median height of all bursts.
 const THRESHOLD: f64 = 0.125;
 /// The assumed decay of the ringing must be able to change by this factor without changing the number of
 /// impacts.
@@ -39,8 +39,8 @@ pub struct Detected {
     pub onset_std: Option<f64>,
     /// Mains hum that was removed.
     pub hum: Option<Hum>,
-    /// Duration of an impact in s; only where the trace returns from each without swinging to the other side,
-    /// as a force does.
+    /// Duration of a contact in s; only of a trace that returns from each impact without swinging to the
+    /// other side, as a force does.
     pub contact: Option<Estimate>,
     /// Changes made to the trace, and doubts.
     pub findings: Vec<Finding>,
@@ -102,8 +102,8 @@ pub(crate) fn detect_among(
     let low = all.len() - bursts.len();
     let ignored = Finding::note("low-bursts-ignored").count("n", low).number("level", least);
     findings.extend((low > 0).then(|| ignored.name("unit", unit)));
-    // Refuses a vibration. An envelope does not oscillate and is not checked. With `choose`, a band is not
-    // checked either: it is searched only after the full record passed this check.
+    // Refuses a vibration. An envelope does not oscillate and is not checked. With `choose`, filtered
+    // values are not checked either: the unfiltered record was checked before.
     let swings =
         !options.envelope && if choose.is_none() { are_close(&bursts) } else { options.band.is_none() };
     if swings && let Some(swings) = Swings::of(&values, rate, &bursts, quiet.reach) {
@@ -178,8 +178,8 @@ fn in_doubt(
     ringing.into_iter().chain((above < LOST).then_some(lost))
 }
 
-/// The values in their band, less mains hum and level, or the envelope of these; their background; the
-/// removed hum.
+/// The values, filtered to their band and without mains hum and background level, or the envelope of these;
+/// the background of the noise; the removed hum.
 fn cleared(
     trace: &Trace,
     options: &ImpactsOptions,

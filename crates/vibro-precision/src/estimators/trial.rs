@@ -234,11 +234,9 @@ fn measured<D: 'static>(
 const TRIALS: [usize; 2] = [40, 6];
 /// An answer within this many of its standard uncertainties is right.
 const RIGHT_WITHIN: f64 = 3.0;
-/// Most answers of a cell that may lie further off, in a full and a quick run. [`WRONG_BEYOND`] is the
-/// number
+/// Most answers of a cell that may lie further off, in a full and a quick run. [`WRONG_BEYOND`] is the number
 /// of standard uncertainties beyond which a single answer makes the method wrong. In fewer than one of 200
-/// full
-/// maps of 500 cells, either limit calls a method with correct uncertainties wrong.
+/// full maps of 500 cells, either limit calls a method with correct uncertainties wrong.
 const OUTLIERS: [usize; 2] = [3, 2];
 const WRONG_BEYOND: f64 = 5.2;
 

@@ -55,8 +55,7 @@ pub fn sweep(
 }
 
 /// The force between the masses over frequency or force: its peak and RMS, if contacts have a duration, and
-/// the
-/// impulse a cycle.
+/// the impulse a cycle.
 pub fn forces(swept: &Swept, over_force: bool) -> Figure {
     let (over, unit) = if over_force { ("Force", "N") } else { ("Excitation frequency", "Hz") };
     // Contacts with a duration have a force; instantaneous impacts have an impulse only.

@@ -4,8 +4,7 @@ use super::response::{look, rank};
 use crate::measure::response::Response;
 use crate::report::{AxisSpec, Figure, Plot, Series, Stroke};
 
-/// Amplitude of the force over excitation frequency; `None` where no sweep has its force. At a resonance
-/// the
+/// Amplitude of the force over excitation frequency; `None` where no sweep has its force. At a resonance the
 /// force of a shaker drops, since the structure moves along with it.
 pub fn force(title: &str, responses: &[Response]) -> Option<Figure> {
     let forces = responses.iter().flat_map(|r| &r.points).filter_map(|p| p.force);

@@ -136,8 +136,7 @@ fn a_scale_is_as_uncertain_as_the_calibration() {
             let Estimate { value, std, .. } = found.estimate;
             let off = (value - setting.get(found.parameter)).abs();
             println!("{found:?}");
-            // The factor is off by one standard uncertainty of each mass' calibration, √2 of both together;
-            // a
+            // The factor is off by one standard uncertainty of each mass' calibration, √2 of both together; a
             // further 2.5 are exceeded by chance in one of 80 cases.
             assert!(off < 3.9 * std.unwrap_or(0.0), "{names}: {found:?}");
         }

@@ -72,9 +72,8 @@ fn other_patterns(draws: std::ops::Range<u64>, rigs: usize) {
 }
 
 /// A stated gap off by a factor of 1000: metres taken for millimetres, or the reverse. Starts vary by a
-/// factor
-/// of 1.5 only, and rigs simulated with such a gap may impact a million times a cycle. The fit still ends,
-/// here at the true values.
+/// factor of 1.5 only, and rigs simulated with such a gap may impact a million times a cycle. The fit still
+/// ends, here at the true values.
 #[test]
 fn a_gap_a_thousand_times_off_is_found() {
     gaps_far_off(&[1e-6]);

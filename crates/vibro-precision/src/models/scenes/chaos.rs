@@ -122,8 +122,7 @@ mod tests {
         for i in 0..2 {
             let [mean, std] = moments(all.iter().map(|run| run[i]));
             // None of n = 10 numbers can deviate from their mean by more than (n − 1)/√n = 2.85 of their
-            // sample
-            // standard deviations; 2.6 is rare.
+            // sample standard deviations; 2.6 is rare.
             assert!(all.iter().all(|run| (run[i] - mean).abs() < 2.6 * std), "{all:?}");
         }
     }
