@@ -5,10 +5,10 @@ use super::disturbance::{Mix, peak};
 use super::record::{Answer, Kind, Record, pairs};
 use super::trace;
 use num_complex::Complex64;
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 use vibroimpact::measure::modal::{Measured, ModalOptions, Pole, modal};
 use vibroimpact::measure::spectral::{Lines, SpectralOptions, spectral};
-use vibroimpact::record::{Traces, Window};
+use vibroimpact::record::{Trace, Traces, Window};
 use vibroimpact::signal::fft::Transform;
 use vibroimpact::signal::transfer::Estimator;
 use vibroimpact::units::Quantity;
@@ -42,6 +42,14 @@ pub const KINDS: &[Kind] = &[
         beside; noise of 0.2 % of each point",
         every: 1,
         draw: coarse_sweep,
+    },
+    Kind {
+        name: "hammer test",
+        ranges: "one mode at 0.01 to 0.15 of the sampling rate, ζ 0.005 to 0.05; 3 to 8 blows of 0.7 to 20 samples behind an \
+        anti-alias filter of order 8, 4 to 12 time constants apart; noise of the force 0.01 to 0.1 % of its peak, of the response \
+        0.01 to 1 %",
+        every: 4,
+        draw: |mix| hammer_test(mix, 1),
     },
     Kind {
         name: "one mode of averaged spectra",
@@ -130,7 +138,7 @@ fn direct_frf(mix: &mut Mix, count: usize) -> Record {
     for v in &mut values {
         *v += Complex64::new(mix.random.normal(), mix.random.normal()) * (noise * largest / 2f64.sqrt());
     }
-    compare_modes(&Measured::new(frequency, values, quantity), &poles)
+    compare_modes(&Measured::new(frequency, values, quantity), &poles, false)
 }
 
 /// One to three modes within a bandwidth of each other, some without a peak of their own. Lines are 1 Hz
@@ -165,7 +173,7 @@ fn neighbours(mix: &mut Mix) -> Record {
     for v in &mut values {
         *v += Complex64::new(mix.random.normal(), mix.random.normal()) * (noise * largest / 2f64.sqrt());
     }
-    compare_modes(&Measured::new(frequency, values, quantity), &poles)
+    compare_modes(&Measured::new(frequency, values, quantity), &poles, false)
 }
 
 /// Two modes of a stepped sweep of twelve steps.
@@ -186,7 +194,7 @@ fn coarse_sweep(mix: &mut Mix) -> Record {
     for v in &mut values {
         *v += Complex64::new(mix.random.normal(), mix.random.normal()) * (0.002 * v.norm() / 2f64.sqrt());
     }
-    compare_modes(&Measured::new(frequency, values, Quantity::Receptance), &poles)
+    compare_modes(&Measured::new(frequency, values, Quantity::Receptance), &poles, false)
 }
 
 /// Draws a random force and the response of the modes to it, disturbed as by a measuring chain, and
@@ -204,26 +212,100 @@ fn averaged_frf(mix: &mut Mix, count: usize) -> Record {
     // Lines are 1 Hz apart.
     let (rate, n) = (segment as f64, (segments + 1) * segment / 2);
     let (force, motion) = random_response(mix, &poles, power, rate, n);
-    let traces = Traces::from_memory(vec![trace("N", rate, force), trace(unit, rate, motion)]);
     let options = SpectralOptions {
         segment: Some(segment),
         window: Some(Window::Hann),
         estimator: Some(Estimator::H1),
         ..SpectralOptions::default()
     };
-    let averaged = traces.and_then(|mut traces| spectral(&mut traces, &options, |_| ()));
-    let Some(Lines::Transfer(transfer)) = averaged.ok().map(|a| a.found) else {
-        return mode_answers(&poles, |_| None);
-    };
+    let measured = function_of([trace("N", rate, force), trace(unit, rate, motion)], &options);
+    let measured = measured.map(|measured| Measured { window: Some(Window::Hann), ..measured });
+    measured.map_or_else(|| mode_answers(&poles, |_| None), |m| compare_modes(&m, &poles, false))
+}
+
+/// The function between force and motion at its finite lines, with its coherence.
+fn function_of(channels: [Trace; 2], options: &SpectralOptions) -> Option<Measured> {
+    let mut traces = Traces::from_memory(channels.into()).ok()?;
+    let Lines::Transfer(transfer) = spectral(&mut traces, options, |_| ()).ok()?.found else { return None };
     let mut measured = Measured::complex(&transfer.frf);
-    measured.coherence = Some(transfer.coherence);
-    measured.window = Some(Window::Hann);
     let finite: Vec<usize> =
         (0..measured.values.len()).filter(|k| measured.values[*k].norm().is_finite()).collect();
+    measured.coherence = Some(finite.iter().map(|k| transfer.coherence[*k]).collect());
     measured.frequency = finite.iter().map(|k| measured.frequency[*k]).collect();
     measured.values = finite.iter().map(|k| measured.values[*k]).collect();
-    measured.coherence = measured.coherence.map(|c| finite.iter().map(|k| c[*k]).collect());
-    compare_modes(&measured, &poles)
+    Some(measured)
+}
+
+/// Three to eight blows of a hammer behind an anti-alias filter (Butterworth, order 8, corner at 0.39 of the
+/// sampling rate), which rings around each blow in the sampled force.
+fn hammer_test(mix: &mut Mix, count: usize) -> Record {
+    let rate = 4096.0;
+    let centre = rate * mix.log(0.01, 0.15);
+    let zeta = mix.log(0.005, 0.05);
+    mix.note("ζ", zeta);
+    mix.note("frequency", centre);
+    let poles = draw_modes(mix, count, zeta, centre);
+    let (_, power, unit) = draw_quantity(mix);
+    let blows = mix.random.between(3.0, 9.0) as usize;
+    let slowest = poles.iter().map(|p| p.zeta * p.frequency).fold(f64::INFINITY, f64::min);
+    let time_constants = mix.log(4.0, 12.0);
+    mix.note("time constants a blow", time_constants);
+    let interval = time_constants / (TAU * slowest);
+    let duration = (mix.random.between(0.1, 0.6) / centre).clamp(0.7 / rate, 20.0 / rate);
+    mix.note("samples a blow", duration * rate);
+    let times: Vec<(f64, f64)> = (0..blows)
+        .map(|k| {
+            let late = 0.1 * mix.random.uniform();
+            ((k as f64 + 0.15 + late) * interval, mix.random.between(0.5, 1.0))
+        })
+        .collect();
+    let n = ((blows as f64 + 0.1) * interval * rate) as usize;
+    let half_period = n.next_power_of_two();
+    let transform = Transform::new(2 * half_period);
+    let spacing = rate / (2 * half_period) as f64;
+    // A half sine has the spectrum (2d/π) cos(ωd/2)/(1 − (ωd/π)²) about its middle.
+    let of_blow = |w: f64| {
+        let (half, over) = (0.5 * w * duration, w * duration / PI);
+        if (over - 1.0).abs() < 1e-6 {
+            0.5 * duration
+        } else {
+            2.0 * duration / PI * half.cos() / (1.0 - over * over)
+        }
+    };
+    let low_pass = |f: f64| {
+        let s = Complex64::new(0.0, f / (0.39 * rate));
+        (0..4).fold(Complex64::ONE, |h, k| {
+            let damping = 2.0 * (PI * f64::from(2 * k + 1) / 16.0).sin();
+            h / (s * s + s * damping + 1.0)
+        })
+    };
+    let force: Vec<Complex64> = (0..=half_period)
+        .map(|k| {
+            let f = k as f64 * spacing;
+            let sum: Complex64 = times.iter().map(|(t, size)| *size * Complex64::cis(-TAU * f * t)).sum();
+            sum * low_pass(f) * of_blow(TAU * f) * rate
+        })
+        .collect();
+    let motion: Vec<Complex64> = force
+        .iter()
+        .enumerate()
+        .map(|(k, v)| v * response(&poles, (k as f64 * spacing).max(1e-9), power))
+        .collect();
+    let (mut force, mut motion) = (transform.inverse(&force), transform.inverse(&motion));
+    force.truncate(n);
+    motion.truncate(n);
+    let largest = peak(&motion);
+    mix.spoil(&mut motion, rate, largest, (1e-4, 0.01));
+    let relative_noise = mix.log(1e-4, 1e-3);
+    mix.note("noise of the force", relative_noise);
+    let noise = relative_noise * peak(&force);
+    for v in &mut force {
+        *v += noise * mix.random.normal();
+    }
+    let options =
+        SpectralOptions { hammer: true, estimator: Some(Estimator::H1), ..SpectralOptions::default() };
+    let measured = function_of([trace("N", rate, force), trace(unit, rate, motion)], &options);
+    measured.map_or_else(|| mode_answers(&poles, |_| None), |m| compare_modes(&m, &poles, true))
 }
 
 /// A random force of `n` samples up to 0.45 of the sampling rate with a peak of 1, and the response of the
@@ -263,8 +345,9 @@ fn random_response(mix: &mut Mix, poles: &[Pole], power: i32, rate: f64, n: usiz
 
 /// Fits modes to an FRF and pairs each true mode with the fitted one nearest in frequency, at most one
 /// half-power bandwidth (or one line) away. A fitted mode without a partner is an invented answer.
-fn compare_modes(measured: &Measured, poles: &[Pole]) -> Record {
-    let Ok(fit) = modal(measured, &ModalOptions::default()) else { return mode_answers(poles, |_| None) };
+fn compare_modes(measured: &Measured, poles: &[Pole], from_blows: bool) -> Record {
+    let options = ModalOptions { from_blows, ..ModalOptions::default() };
+    let Ok(fit) = modal(measured, &options) else { return mode_answers(poles, |_| None) };
     let limits: Vec<f64> = poles.iter().map(|p| (2.0 * p.zeta * p.frequency).max(1.0)).collect();
     let truths: Vec<f64> = poles.iter().map(|p| p.frequency).collect();
     let paired = pairs(&truths, &limits, &fit.modes.iter().map(|m| m.frequency.value).collect::<Vec<_>>());

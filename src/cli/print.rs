@@ -3,7 +3,7 @@
 use super::{complain, stdout};
 use crate::analysis::{Answer, Progress};
 use crate::error::{Error, Result};
-use crate::read::{Folder, Owner};
+use crate::read::{Folder, Format, Owner};
 use crate::record::{shown, typed};
 use crate::report::Picture;
 use crate::report::files::Names;
@@ -50,9 +50,9 @@ pub fn answer(mut answer: Answer, output: Option<Output>, json: bool) -> Result<
     Ok(code)
 }
 
-/// File name endings that a folder for results must not have: `--out book.xlsx` is a mistake for a file.
-const FILE_ENDINGS: &str = "csv tsv txt dat asc uff unv ufb wav npy mat h5 hdf5 tdms lvm zip xlsx xlsm xls ods \
-                     svg png jpg pdf html json toml md";
+/// File name endings, beside those of recordings, that a folder for results must not have: `--out book.xlsx`
+/// is a mistake for a file.
+const FILE_ENDINGS: &str = "npy zip xlsx xlsm xls ods svg png jpg pdf html json toml md";
 
 /// A folder for results, with the chosen style of figures. `elsewhere` is the hint of the error if an
 /// existing file would be replaced.
@@ -63,7 +63,10 @@ pub fn output(folder: Folder, owner: Owner, elsewhere: String) -> Result<Output>
     let OutputSettings { medium, replace } = WRITTEN.get().copied().unwrap_or_default();
     let root = folder.root();
     let ending = root.extension().map_or_else(String::new, |ending| ending.to_string_lossy().to_lowercase());
-    if FILE_ENDINGS.split(' ').any(|known| known == ending) && !folder.exists(root) {
+    let mut endings = Format::endings().chain(FILE_ENDINGS.split(' '));
+    // `2.58` is a number and no file of UFF.
+    let is_number = ending.bytes().all(|b| b.is_ascii_digit());
+    if !is_number && endings.any(|known| known == ending) && !folder.exists(root) {
         let plain = root.with_extension("");
         let plain = if folder.exists(&plain) && !folder.is_folder(&plain) { unused(&plain) } else { plain };
         let found = format!("a folder named like a file: {}", shown(root));

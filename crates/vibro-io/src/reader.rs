@@ -257,9 +257,7 @@ impl Reader {
 
     fn contents_of(&self, source: &Source, survey: bool) -> Result<(Format, Contents)> {
         let entry = self.entry(source)?;
-        // These readers keep all bytes of the file in memory, and values that take at least as much.
-        let whole = matches!(entry.format, Format::Mat | Format::Lvm | Format::Uff);
-        let room = self.options.limit.hold(if whole { 2.0 * source.len() as f64 } else { 0.0 });
+        let room = self.options.limit.hold(if entry.whole { 2.0 * source.len() as f64 } else { 0.0 });
         // The wave reader already reads only the span.
         let span = self.options.span.filter(|_| entry.format != Format::Wav);
         let read = |survey| (entry.read)(source, &self.options, survey);

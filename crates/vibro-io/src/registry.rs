@@ -12,6 +12,10 @@ use vibro_record::Result;
 /// How one format is detected and read.
 pub struct Entry {
     pub format: Format,
+    /// Usual endings of its files, in lower case.
+    pub endings: &'static [&'static str],
+    /// Whether its reader keeps all bytes of the file in memory, beside values that take at least as much.
+    pub whole: bool,
     /// Whether a source that begins with the bytes `head` is in this format.
     pub sniff: fn(head: &[u8], source: &Source) -> bool,
     /// Reads the records of a source. For a `survey`, a format may read only the smallest and largest
@@ -21,16 +25,20 @@ pub struct Entry {
 
 /// In the order of detection: binary formats with a signature, then text formats from the strictest to the
 /// loosest.
+#[rustfmt::skip] // a table
 pub const TABLE: &[Entry] = &[
-    Entry { format: Format::Wav, sniff: wav::layout::sniff, read: wav::read },
+    Entry { format: Format::Wav, endings: &["wav"], whole: false, sniff: wav::layout::sniff, read: wav::read },
     #[cfg(feature = "hdf5")]
-    Entry { format: Format::Hdf5, sniff: hdf5::sniff, read: hdf5::read },
-    Entry { format: Format::Mat, sniff: mat::sniff, read: mat::read },
-    Entry { format: Format::Tdms, sniff: tdms::sniff, read: tdms::read },
-    Entry { format: Format::Lvm, sniff: lvm::sniff, read: lvm::read },
-    Entry { format: Format::Uff, sniff: uff::sniff, read: uff::read },
-    Entry { format: Format::Csv, sniff: text::is_table, read: text::read_table },
-    Entry { format: Format::Ascii, sniff: |head, _| text::encoding::is_text(head), read: text::read_numbers },
+    Entry { format: Format::Hdf5, endings: &["h5", "hdf5"], whole: false, sniff: hdf5::sniff, read: hdf5::read },
+    Entry { format: Format::Mat, endings: &["mat"], whole: true, sniff: mat::sniff, read: mat::read },
+    Entry { format: Format::Tdms, endings: &["tdms"], whole: false, sniff: tdms::sniff, read: tdms::read },
+    Entry { format: Format::Lvm, endings: &["lvm"], whole: true, sniff: lvm::sniff, read: lvm::read },
+    Entry { format: Format::Uff, endings: uff::ENDINGS, whole: true, sniff: uff::sniff, read: uff::read },
+    Entry { format: Format::Csv, endings: &["csv", "tsv"], whole: false, sniff: text::is_table, read: text::read_table },
+    Entry {
+        format: Format::Ascii, endings: &["txt", "dat", "asc"], whole: false,
+        sniff: |head, _| text::encoding::is_text(head), read: text::read_numbers,
+    },
 ];
 
 impl Entry {
@@ -49,5 +57,10 @@ impl Format {
     /// Names of all formats, in the order in which they are tried.
     pub fn names() -> Vec<&'static str> {
         TABLE.iter().map(|e| e.format.name()).collect()
+    }
+
+    /// Usual endings of the files of all formats, in lower case.
+    pub fn endings() -> impl Iterator<Item = &'static str> {
+        TABLE.iter().flat_map(|e| e.endings).copied()
     }
 }

@@ -24,7 +24,7 @@ use stream::{Stream, is_delimiter, set_number};
 use vibro_record::{Finding, Place, Record, Result};
 
 /// File endings for which text may precede the first data set.
-const ENDINGS: [&str; 6] = ["uff", "unv", "ufb", "bunv", "uf", "58"];
+pub(super) const ENDINGS: &[&str] = &["uff", "unv", "ufb", "bunv", "uf", "58"];
 
 /// Whether the lines of a delimiter and of a data set's number follow each other. They must be the first
 /// lines that are not blank, in their exact columns, since `-1` and `58` may also be two values. With a

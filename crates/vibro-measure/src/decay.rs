@@ -14,7 +14,7 @@ use super::Estimate;
 use super::chance::chi_squared_above;
 use damped::{Damped, LINES, OWN, SineGroup, lines};
 pub use result::{DecayMode, DecayOptions, DecayResult, Level};
-use sines::{ENOUGH, MOST, Sines, decays};
+use sines::{ENOUGH, MOST, STEADY, SURE, Sines, decays};
 use std::f64::consts::TAU;
 use std::ops::Range;
 use usable::{Usable, usable};
@@ -161,11 +161,12 @@ impl Sines {
         let Damped { periods, decay, .. } = group.sines[m];
         let lost = -(-decay).exp_m1();
         let why = format!(
-            "the motion does not decay: its strongest line, {:.5} Hz, loses {:.2} ± {:.2} % within {:.4} s",
+            "the motion does not decay: its strongest line, {:.5} Hz, loses {:.2} ± {:.2} % within {:.4} s, a mode more than {:.1} %",
             periods * self.rate / self.n as f64,
             100.0 * lost,
             100.0 * group.std(m, [0.0, 1.0, 0.0, 0.0]) * (-decay).exp(),
-            self.n as f64 / self.rate
+            self.n as f64 / self.rate,
+            100.0 * SURE * STEADY
         );
         Error::refused(why)
             .hint("read what follows the release or the blow, or choose the band of the mode")

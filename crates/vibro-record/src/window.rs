@@ -19,7 +19,7 @@ pub enum Window {
     Hann,
     /// 0.54 − 0.46 cos.
     Hamming,
-    /// Three-term Blackman (exact coefficients 0.42, 0.5, 0.08).
+    /// Three-term Blackman (coefficients 0.42, 0.5, 0.08).
     Blackman,
     /// Four-term Blackman–Harris, −92 dB.
     BlackmanHarris,

@@ -297,6 +297,10 @@ fn second(values: &[f64], before: usize, sign: f64, noise: f64) -> bool {
     let push = |j: usize| sign * (values[j] - quiet.level);
     let Some(top) = (before..values.len()).max_by(|a, b| push(*a).total_cmp(&push(*b))) else { return false };
     let peak = push(top);
+    // Smoothed, a blow of few samples may lie below the level before it.
+    if peak.is_nan() || peak <= 0.0 {
+        return false;
+    }
     let level = (SIGMAS * noise.max(quiet.sigma)).clamp(SECOND * peak, TRIGGER * peak);
     let rises = |mut side: Box<dyn Iterator<Item = usize>>| {
         let mut valley = peak;

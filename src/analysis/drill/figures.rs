@@ -153,8 +153,8 @@ fn speed(name: &str, drill: &Drill) -> Figure {
     Figure::double(format!("Speed, {name}")).height(70.0).panel(plot).caption(caption)
 }
 
-/// Envelope of the acceleration's spectrum: the largest sine of each frequency within the largest speed,
-/// acceleration and jerk; `None` where f₁ is not below f₂.
+/// Envelope of the acceleration's spectrum: the largest sine of each frequency within the speed, acceleration
+/// and jerk of a turn, medians over turns of their largest values; `None` where f₁ is not below f₂.
 fn bandwidth(name: &str, drill: &Drill) -> Option<Figure> {
     let b = &drill.bandwidth;
     let corners = b.f1 > 0.0 && b.f2.is_finite() && b.f1 < b.f2;
@@ -169,8 +169,9 @@ fn bandwidth(name: &str, drill: &Drill) -> Option<Figure> {
     let plot = plot.with(Series::line("", f.to_vec(), bounds.to_vec()).ink(Ink::Nth(0)));
     let plot = marks.into_iter().fold(plot, |plot, (name, at)| plot.with(Series::vertical(name, at)));
     let [v, a, j, f1, f2] = [b.speed, b.acceleration, b.jerk, b.f1, b.f2].map(|x| significant(x, 3));
+    let limit = if b.sampling_limited { " ≥" } else { " =" };
     Some(Figure::double(format!("Bandwidth, {name}")).height(80.0).panel(plot).caption(format!(
-        "Largest sine of each frequency within the largest speed {v} m/s (up to f₁ = {f1} Hz), acceleration {a} m/s² and jerk {j} m/s³ (from f₂ = {f2} Hz): the approximate spectrum of the acceleration."
+        "Largest sine of each frequency within speed {v} m/s (up to f₁ = {f1} Hz), acceleration {a} m/s² and jerk {j} m/s³ (from f₂{limit} {f2} Hz), each the median over turns of the largest of a turn: a limit of the acceleration's spectrum, not the spectrum."
     )))
 }
 

@@ -106,7 +106,7 @@ pub fn stabilisation(
         below = below.with(Series::vertical("", mode.frequency.value));
     }
     let caption = "Poles of models of rising order. A pole of the structure keeps its frequency (to 1 %) and damping \
-                   ratio (to 5 %) from one order to the next; vertical lines are the fitted modes.";
+                   ratio (to 5 %) from one order to the next; vertical lines are the fitted modes. Damping of low peaks beside high ones is too small at low orders.";
     let figure = Figure::double(format!("Stabilisation diagram, {title}")).caption(caption);
     Some(lettered(figure.height(150.0).shared_x().panel(above).panel(below)))
 }

@@ -51,9 +51,9 @@ fn contact_law(scene: &Scene, wanted: Contact) -> Result<Option<Law>> {
     if let Some((key, value)) =
         given.iter().find_map(|(k, v)| v.filter(|_| !used_keys.contains(k)).map(|v| (k, v)))
     {
-        let expected = format!("what this law takes: {}", used_keys.join(" and "));
+        let expected = format!("what this law takes: {}", used_keys.join(", "));
         return Err(Error::usage(format!("contact.{key} = {value} for this law"), expected)
-            .hint("remove the key, or choose the law that has it: hunt-crossley takes all of them"));
+            .hint("remove the key, or choose the law that has it: hunt-crossley takes stiffness, exponent and damping"));
     }
     let stated = |value: Option<f64>, key: &str, unit: &str| {
         value.ok_or_else(|| {

@@ -132,6 +132,7 @@ impl Keys {
         let swept = runs.swept();
         let floor = swept.floor();
         let (irregular, by_chance) = (runs.irregular(floor), runs.by_chance(floor));
+        let coexisting = by_chance.as_deref().unwrap_or_default();
         let (resonances, jumps) =
             if over_force { (Vec::new(), Vec::new()) } else { named(&swept, &scene.rig) };
         let swept = swept.without_dust();
@@ -151,11 +152,11 @@ impl Keys {
         answer.add("", contact::buffer(&scene, self.model));
         let all = swept.up.len() + swept.down.len();
         answer.add("", points_within(&irregular, all, "sweep-cycles-unlike"));
-        answer.add("", points_within(&by_chance, all, "sweep-start-decides"));
+        answer.add("", points_within(coexisting, all, "sweep-start-decides"));
         answer.add("", still(&swept, &scene.rig));
         answer.tables.push(resonances_and_jumps(&resonances, &jumps));
-        if !(irregular.is_empty() && by_chance.is_empty()) {
-            answer.tables.push(ranges(&irregular, &by_chance, over_force, floor));
+        if !(irregular.is_empty() && coexisting.is_empty()) {
+            answer.tables.push(ranges(&irregular, coexisting, over_force, floor));
         }
         answer.tables.push(final_states(&ends, floor));
         answer.figure("sweep", figures::sweep(&swept, &resonances, &jumps, plan.observable, over_force));

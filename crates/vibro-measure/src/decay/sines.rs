@@ -26,10 +26,10 @@ pub(super) const ENOUGH: f64 = 6.0;
 /// searched. Otherwise a mode would extend over thousands of lines, which add nothing.
 const LONG: f64 = 4.0;
 /// Standard uncertainties by which a decay must exceed 0.
-const SURE: f64 = 3.0;
+pub(super) const SURE: f64 = 3.0;
 /// Part of its amplitude that steady hum may lose or gain over a record. It adds to the uncertainty of the
-/// decay: mains and machines are steady to a per cent.
-const STEADY: f64 = 0.01;
+/// decay: mains and machines are steady to half a per cent.
+pub(super) const STEADY: f64 = 0.005;
 /// Least ratio of the residual's RMS values in two successive blocks at the end of a contact.
 const FALL: f64 = 6.0;
 /// Lines on either side whose median is the height of a broad mode.

@@ -86,9 +86,11 @@ impl Candidate<'_> {
         let ahead = group.ahead.filter(|(_, other)| around(*other)).map(|(ahead, _)| ahead);
         let two = Finding::doubt("modal-two-modes").number("ahead", ahead.unwrap_or(f64::NAN));
         find(ahead.is_some(), two);
+        let pattern = group.pattern.unwrap_or(f64::NAN);
+        find(group.pattern.is_some(), Finding::doubt("modal-more-modes").number("ahead", pattern));
         // Without phases, errors by residual terms and other modes do not show in the residuals: no
         // uncertainty is stated.
-        let known = ahead.is_none() && !measured.magnitude_only;
+        let known = ahead.is_none() && group.pattern.is_none() && !measured.magnitude_only;
         Some(self.estimates(&own, std.map(|s| known.then_some(s))))
     }
 

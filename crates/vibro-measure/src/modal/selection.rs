@@ -121,7 +121,7 @@ pub(super) fn together(
     if fit.whiteness.rejected() && explained {
         return;
     }
-    let mut all = PeakGroup { peaks, lines: part, ahead: None };
+    let mut all = PeakGroup { peaks, lines: part, ahead: None, pattern: None };
     let fit = pruned(lines, &mut all, fit, unsupported);
     *fits = vec![(all, fit)];
 }
@@ -142,7 +142,7 @@ fn narrowed(lines: &Measured, group: &mut PeakGroup, wide: Rational) -> Rational
         let part = first - below..last + above + 1;
         let fit = rational(lines, part.clone(), (&starts, 0), &[]).ok();
         if let Some(fit) = fit.filter(|fit| !fit.whiteness.rejected()) {
-            group.lines = part;
+            (group.lines, group.ahead, group.pattern) = (part, None, None);
             return fit;
         }
     }
@@ -199,7 +199,8 @@ fn one_more(lines: &Measured, group: &PeakGroup, fit: &Rational, others: &[Pole]
 }
 
 /// Adds modes that the lines need although they show no peak: one beside a higher peak, or two under one.
-/// Where another mode is supported but not determined, `group.ahead` records it. Where its existence is
+/// Where another mode is supported but not determined, `group.ahead` records it, and `group.pattern` where the
+/// residuals keep a pattern with another mode, too. Where its existence is
 /// open, the uncertainties cover both cases (Burnham & Anderson 2002, 4.3.2). Returns which modes are sound.
 pub(super) fn complete(
     lines: &Measured,
@@ -207,6 +208,7 @@ pub(super) fn complete(
     fit: &mut Rational,
     others: &[Pole],
 ) -> Vec<bool> {
+    (group.ahead, group.pattern) = (None, None);
     let mut sound = fit.sound(lines, &group.peaks);
     // No neighbours are searched without phases, or around a peak of noise.
     if lines.magnitude_only || !sound.contains(&true) && fit.unexplained > NOISE {
@@ -227,11 +229,13 @@ pub(super) fn complete(
             if left_out || coloured.is_some() || better <= SPLIT {
                 break;
             }
-            group.ahead = added(&last.modes, &more.modes).map(|at| (better, at));
+            group.pattern = Some(better);
             coloured = Some(more);
             continue;
         }
-        coloured = None;
+        if coloured.take().is_some_and(|fewer| fewer.aicc <= more.aicc) {
+            break;
+        }
         let width = |pair: &[Pole]| pair[0].zeta * pair[0].frequency + pair[1].zeta * pair[1].frequency;
         let close = |w: &&[Pole]| w[1].frequency - w[0].frequency <= APART * width(w);
         let one = more.modes.windows(2).find(close).map(|w| w[0].frequency);
@@ -243,7 +247,8 @@ pub(super) fn complete(
             if group.ahead.is_some() {
                 return sound;
             }
-            (group.peaks, *fit, sound) = (peaks, more, its);
+            (group.peaks, group.pattern) = (peaks, None);
+            (*fit, sound) = (more, its);
             continue;
         }
         // A further mode that does not lower the criterion does not change the uncertainties.
@@ -255,12 +260,6 @@ pub(super) fn complete(
         break;
     }
     sound
-}
-
-/// Frequency in Hz of the mode of `more` that is farthest from all `modes`.
-fn added(modes: &[Pole], more: &[Pole]) -> Option<f64> {
-    let apart = |f: f64| modes.iter().map(|m| (m.frequency - f).abs()).fold(f64::INFINITY, f64::min);
-    more.iter().map(|m| m.frequency).max_by(|a, b| apart(*a).total_cmp(&apart(*b)))
 }
 
 /// Widens the uncertainties of a fit to cover the fit `more`, which has one more mode, by its Akaike weight;
@@ -300,6 +299,9 @@ pub(super) struct PeakGroup {
     /// Drop of Akaike's criterion with one more mode, and the frequency in Hz, where that mode is not
     /// determined: the modes around it are then doubtful.
     pub ahead: Option<(f64, f64)>,
+    /// Drop of Akaike's criterion with one more mode, where the residuals keep a pattern with it, too: all
+    /// modes of the group are then doubtful.
+    pub pattern: Option<f64>,
 }
 
 impl PeakGroup {
@@ -389,7 +391,7 @@ pub(super) fn groups(measured: &Measured, band: Option<(f64, f64)>) -> Result<Ve
         let below = i.checked_sub(1).map_or(0, |before| usize::midpoint(spans[before].1, spans[i].0));
         let above = spans.get(i + 1).map_or(f.len(), |after| usize::midpoint(after.0, spans[i].1) + 1);
         let lines = low.max(below).max(within.start)..high.min(above).min(within.end);
-        PeakGroup { peaks, lines, ahead: None }
+        PeakGroup { peaks, lines, ahead: None, pattern: None }
     };
     Ok(groups.into_iter().enumerate().map(group).collect())
 }

@@ -472,3 +472,12 @@ fn double_hits(draws: u64) -> (usize, usize) {
 fn the_ringing_of_a_filter_is_no_second_blow() {
     assert_eq!(double_hits(300), (0, 0));
 }
+
+/// A blow that is below the level before it, as the smoothed ripple of an anti-alias filter may be, is no
+/// second blow, and no reason to stop.
+#[test]
+fn a_blow_below_its_level_is_not_double() {
+    let values = [0.5, 0.5, 0.5, 0.5, 0.1, 0.2, 0.1, 0.0];
+    assert!(!second(&values, 4, 1.0, 1e-3));
+    assert!(!second(&[f64::NAN; 8], 4, 1.0, 1e-3));
+}

@@ -62,8 +62,8 @@ pub(super) struct Range {
 #[derive(Debug)]
 pub(super) struct Runs {
     legs: Vec<Leg>,
-    /// Points of the sweeps from other phases, for each of the same legs.
-    others: Vec<Vec<Vec<Point>>>,
+    /// Points of the sweeps from other phases, for each of the same legs; `None` where there was none.
+    others: Option<Vec<Vec<Vec<Point>>>>,
     over_force: bool,
 }
 
@@ -103,9 +103,9 @@ impl Runs {
             let legs: Vec<_> = sweeps.par_iter().map(|s| run((phase, s)).ok()).collect::<Option<_>>()?;
             Some(legs.into_iter().flatten().map(|leg| leg.points).collect())
         };
-        let mut runs = Runs { legs, others: Vec::new(), over_force: frequency.is_some() };
+        let mut runs = Runs { legs, others: None, over_force: frequency.is_some() };
         if runs.mostly_regular() {
-            runs.others = OTHER_PHASES.into_par_iter().filter_map(all).collect();
+            runs.others = Some(OTHER_PHASES.into_par_iter().filter_map(all).collect());
         }
         Ok(runs)
     }
@@ -139,18 +139,19 @@ impl Runs {
     }
 
     /// Ranges in which a start at another phase leads to another regular motion; amplitudes below `floor` (m)
-    /// are alike.
-    pub fn by_chance(&self, floor: f64) -> Vec<Range> {
+    /// are alike. `None` where no other start was made.
+    pub fn by_chance(&self, floor: f64) -> Option<Vec<Range>> {
+        let others = self.others.as_ref()?;
         let mut found = self.ranges(|leg, points, i| {
             let same = |other: &Point| {
                 let pairs = points[i].amplitudes().into_iter().zip(other.amplitudes());
                 pairs.into_iter().all(|(a, b)| (a - b).abs() <= (ALIKE * a.max(b)).max(floor))
             };
-            let others = || self.others.iter().filter_map(|legs| legs[leg].get(i));
+            let others = || others.iter().filter_map(|legs| legs[leg].get(i));
             points[i].is_regular(floor) && others().any(|p| p.is_regular(floor) && !same(p))
         });
         found.retain(|range| range.points >= FEWEST);
-        found
+        Some(found)
     }
 
     /// Ranges of points for which `is` holds, given the leg, its points and the index.
