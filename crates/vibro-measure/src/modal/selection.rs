@@ -199,9 +199,9 @@ fn one_more(lines: &Measured, group: &PeakGroup, fit: &Rational, others: &[Pole]
 }
 
 /// Adds modes that the lines need although they show no peak: one beside a higher peak, or two under one.
-/// Where another mode is supported but not determined, `group.ahead` records it, and `group.pattern` where the
-/// residuals keep a pattern with another mode, too. Where its existence is
-/// open, the uncertainties cover both cases (Burnham & Anderson 2002, 4.3.2). Returns which modes are sound.
+/// Where another mode is supported but not determined, `group.ahead` records it, and `group.pattern` where
+/// the residuals keep a pattern with another mode, too. Where its existence is open, the uncertainties cover
+/// both cases (Burnham & Anderson 2002, 4.3.2). Returns which modes are sound.
 pub(super) fn complete(
     lines: &Measured,
     group: &mut PeakGroup,
