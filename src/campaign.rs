@@ -158,10 +158,7 @@ impl Campaign {
         let head: Campaign = written.read(&head, 0..0).map_err(complaint)?;
         let parent = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
         let (path, folder) = (path.to_owned(), within.at(parent));
-        let mut campaign = Campaign { sections, path, folder, text, ..head };
-        campaign.check()?;
-        campaign.contact = campaign.contact.and_then(|keys| keys.resolved().ok());
-        Ok(campaign)
+        Campaign { sections, path, folder, text, ..head }.checked()
     }
 
     /// All tables of the file.
@@ -274,7 +271,8 @@ impl Campaign {
         self.sections == 0
     }
 
-    fn check(&self) -> Result<()> {
+    /// The campaign with the stiffness of its contact, if its head has no impossible value.
+    fn checked(mut self) -> Result<Campaign> {
         let at = |table: &str, key: &str, error: Error| {
             let all = self.table().unwrap_or_default();
             let found = locate::find(table_of(&all, table).unwrap_or(&all), key);
@@ -284,7 +282,7 @@ impl Campaign {
             return Err(at("rig", key, error));
         }
         let contact = self.contact.map(ContactKeys::resolved).transpose();
-        contact.map_err(|(key, error)| at("contact", key, error))?;
+        let contact = contact.map_err(|(key, error)| at("contact", key, error))?;
         let out = self.out.as_deref().unwrap_or(Path::new(RESULTS));
         self.folder.path(out).map_err(|e| at("", "out", e))?;
         let checked =
@@ -292,7 +290,8 @@ impl Campaign {
         for (table, checked) in checked {
             checked.map_err(|(key, why)| at(table, key, Error::usage(why, "")))?;
         }
-        Ok(())
+        self.contact = contact;
+        Ok(self)
     }
 
     /// Rig keys that the file does not state and that take the values of the thesis' rig.

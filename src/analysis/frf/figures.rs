@@ -20,13 +20,12 @@ const SMOOTH_CIRCLE: usize = 3000;
 pub fn frf(title: &str, meta: &Meta, measured: &Measured, modes: &[Mode]) -> Figure {
     let f = &measured.frequency;
     let magnitude: Vec<f64> = measured.values.iter().map(|v| v.norm()).collect();
-    let y = AxisSpec::new(capital(meta.quantity.name()), meta.unit.symbol()).log();
     let lines = if f.len() <= DOTS {
         Series::points("measured", f.clone(), magnitude).marker(Marker::Circle)
     } else {
         Series::line("measured", f.clone(), magnitude).stroke(Stroke::Solid)
     };
-    let mut above = Plot::new(AxisSpec::frequency(), y).with(lines.ink(Ink::Grey));
+    let mut above = Plot::new(AxisSpec::frequency(), magnitude_axis(meta)).with(lines.ink(Ink::Grey));
     // Modes that were fitted together have one curve.
     let (mut x, mut y, mut angle) = (Vec::new(), Vec::new(), Vec::new());
     for together in modes.chunk_by(|a, b| a.lines == b.lines) {
@@ -41,9 +40,7 @@ pub fn frf(title: &str, meta: &Meta, measured: &Measured, modes: &[Mode]) -> Fig
         above =
             above.with(Series::line("fitted modes", x.clone(), y).ink(Ink::Nth(0)).stroke(Stroke::Dashed));
     }
-    for mode in modes {
-        above = above.with(Series::vertical(format!("{:.2} Hz", mode.frequency.value), mode.frequency.value));
-    }
+    let above = named_modes(above, modes);
     let fitted = " with the modes fitted to it; vertical lines are natural frequencies";
     let fitted = if modes.is_empty() { "" } else { fitted };
     let figure =
@@ -69,6 +66,17 @@ pub fn frf(title: &str, meta: &Meta, measured: &Measured, modes: &[Mode]) -> Fig
     })
 }
 
+/// Axis of the magnitude of a function.
+fn magnitude_axis(meta: &Meta) -> AxisSpec {
+    AxisSpec::new(capital(meta.quantity.name()), meta.unit.symbol()).log()
+}
+
+/// The plot with a vertical line at the frequency of each mode, named by it.
+fn named_modes(plot: Plot, modes: &[Mode]) -> Plot {
+    let line = |f: f64| Series::vertical(format!("{f:.2} Hz"), f);
+    modes.iter().fold(plot, |plot, mode| plot.with(line(mode.frequency.value)))
+}
+
 /// Stabilisation diagram: the poles of models of rising order below the magnitude, with the fitted modes.
 /// `None` without poles.
 pub fn stabilisation(
@@ -82,12 +90,8 @@ pub fn stabilisation(
     let x = || AxisSpec::frequency().limits(first, last);
     let highest = poles.iter().map(|pole| pole.order).max()?;
     let magnitude: Vec<f64> = measured.values.iter().map(|v| v.norm()).collect();
-    let y = AxisSpec::new(capital(meta.quantity.name()), meta.unit.symbol()).log();
     let lines = Series::line("", measured.frequency.clone(), magnitude).stroke(Stroke::Solid).ink(Ink::Grey);
-    let mut above = Plot::new(x(), y).with(lines);
-    for mode in modes {
-        above = above.with(Series::vertical(format!("{:.2} Hz", mode.frequency.value), mode.frequency.value));
-    }
+    let above = named_modes(Plot::new(x(), magnitude_axis(meta)).with(lines), modes);
     let those = |name: &str, is: &dyn Fn(&OrderedPole) -> bool| {
         let chosen = || poles.iter().filter(|pole| is(pole));
         let x: Vec<f64> = chosen().map(|pole| pole.frequency).collect();

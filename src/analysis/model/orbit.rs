@@ -35,6 +35,11 @@ pub struct Keys {
     pub gap_std: Option<f64>,
 }
 
+/// Number of impulses at which the energy of a period is drawn.
+const ENERGY_POINTS: usize = 400;
+/// Largest of them over the larger impulse of the motions.
+const BEYOND: f64 = 1.3;
+
 impl Keys {
     /// Names of the files in its answer.
     pub const FILES: Names = Names::Numbered(&["orbits", "verdicts", "impacts", "orbit", "energy"]);
@@ -91,7 +96,7 @@ impl Keys {
         // The larger impulse comes first.
         let Some(larger) = found.first().map(|o| o.impulse).filter(|j| *j > 0.0) else { return Ok(()) };
         let balance = EnergyBalance::new(&driven.scene.rig, sine, self.cycles)?;
-        let curve = balance.curve(400, 1.3 * larger);
+        let curve = balance.curve(ENERGY_POINTS, BEYOND * larger);
         let real = found.iter().filter(|orbit| orbit.validity.exists);
         let motions: Vec<(&Orbit, EnergyPoint)> =
             real.filter_map(|orbit| Some((orbit, balance.at(orbit.impulse)?))).collect();

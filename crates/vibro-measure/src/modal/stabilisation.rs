@@ -2,7 +2,7 @@
 //! as the order rises, a pole of the noise moves.
 
 use super::Measured;
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DMatrix;
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 
@@ -84,15 +84,20 @@ pub fn stabilisation(measured: &Measured, band: Option<(f64, f64)>) -> Vec<Order
 /// Normal equations of the denominator's coefficients of z⁰ to z^`most`: those of the numerator, of the same
 /// order, are eliminated. `None` where the lines do not determine them.
 fn normal_equations(z: &[Complex64], values: &[Complex64], most: usize) -> Option<DMatrix<Complex64>> {
-    // Sums of w·z^d over the lines, from d = −most to most: the matrices of all products of powers.
-    let sums = |weight: &dyn Fn(&Complex64) -> Complex64| {
-        let sum = |d: i32| z.iter().zip(values).map(|(z, v)| weight(v) * z.powi(d)).sum();
-        let sums: Vec<Complex64> = (-(most as i32)..=most as i32).map(sum).collect();
-        DMatrix::from_fn(most + 1, most + 1, |row, column| sums[most + column - row])
-    };
-    let numerator = sums(&|_| Complex64::ONE);
-    let both = sums(&|v| -*v);
-    let denominator = sums(&|v| v.norm_sqr().into());
+    // Sums of w·z^d over the lines, from d = −most to most, for the weights w of numerator, both and
+    // denominator: the matrices of all products of powers.
+    let mut sums = vec![[Complex64::ZERO; 3]; 2 * most + 1];
+    for (z, v) in z.iter().zip(values) {
+        let weights = [Complex64::ONE, -*v, v.norm_sqr().into()];
+        let mut power = z.powi(-(most as i32));
+        for sum in &mut sums {
+            sum.iter_mut().zip(weights).for_each(|(sum, weight)| *sum += weight * power);
+            power *= z;
+        }
+    }
+    let matrix =
+        |of: usize| DMatrix::from_fn(most + 1, most + 1, |row, column| sums[most + column - row][of]);
+    let [numerator, both, denominator] = [0, 1, 2].map(matrix);
     let eliminated = numerator.cholesky()?.solve(&both);
     Some(denominator - both.adjoint() * eliminated)
 }
@@ -103,31 +108,14 @@ fn roots(normal: &DMatrix<Complex64>, order: usize) -> Vec<Complex64> {
     let right = -normal.view((1, 0), (order, 1)).into_owned();
     let solved = part.lu().solve(&right).filter(|solved| solved.iter().all(|v| v.is_finite()));
     let Some(solved) = solved else { return Vec::new() };
-    let coefficients =
-        DVector::from_fn(order + 1, |i, _| if i == 0 { Complex64::ONE } else { solved[(i - 1, 0)] });
-    let highest = coefficients[order];
+    let highest = solved[(order - 1, 0)];
     let companion = DMatrix::from_fn(order, order, |row, column| {
         let below = if row == column + 1 { Complex64::ONE } else { Complex64::ZERO };
-        if column + 1 == order { below - coefficients[row] / highest } else { below }
+        let coefficient = if row == 0 { Complex64::ONE } else { solved[(row - 1, 0)] };
+        if column + 1 == order { below - coefficient / highest } else { below }
     });
     let Some(schur) = nalgebra::Schur::try_new(companion, f64::EPSILON, 1000) else { return Vec::new() };
     schur.eigenvalues().map_or_else(Vec::new, |all| all.iter().copied().collect())
-}
-
-/// Poles that have stayed in frequency and damping ratio over at least `orders` orders in turn, up to the
-/// highest one: mean frequency in Hz and damping ratio of each.
-#[cfg(test)]
-fn lasting(poles: &[OrderedPole], orders: usize) -> Vec<(f64, f64)> {
-    let highest = poles.iter().map(|p| p.order).max().unwrap_or(0);
-    let stays = |p: &OrderedPole, order: usize| {
-        poles.iter().any(|q| {
-            q.order == order && q.damping_stays && (q.frequency / p.frequency - 1.0).abs() < FREQUENCY
-        })
-    };
-    let last = poles.iter().filter(|p| p.order == highest && p.damping_stays);
-    last.filter(|p| (highest + 1 - orders..=highest).all(|order| stays(p, order)))
-        .map(|p| (p.frequency, p.zeta))
-        .collect()
 }
 
 #[cfg(test)]
@@ -136,6 +124,21 @@ mod tests {
     use super::*;
     use vibro_math::Noise;
     use vibro_record::units::Quantity;
+
+    /// Poles that have stayed in frequency and damping ratio over at least `orders` orders in turn, up to the
+    /// highest one: frequency in Hz and damping ratio of each.
+    fn lasting(poles: &[OrderedPole], orders: usize) -> Vec<(f64, f64)> {
+        let highest = poles.iter().map(|p| p.order).max().unwrap_or(0);
+        let stays = |p: &OrderedPole, order: usize| {
+            poles.iter().any(|q| {
+                q.order == order && q.damping_stays && (q.frequency / p.frequency - 1.0).abs() < FREQUENCY
+            })
+        };
+        let last = poles.iter().filter(|p| p.order == highest && p.damping_stays);
+        last.filter(|p| (highest + 1 - orders..=highest).all(|order| stays(p, order)))
+            .map(|p| (p.frequency, p.zeta))
+            .collect()
+    }
 
     /// Receptance of modes (frequency in Hz, damping ratio, constant) from 20 to 220 Hz in steps of 0.25 Hz,
     /// with noise of this standard deviation over the highest line.

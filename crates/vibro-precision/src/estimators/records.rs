@@ -10,9 +10,9 @@ use vibro_record::{Error, Result};
 
 /// Row of `records.json`: a record of one setting of a scene.
 #[derive(Serialize)]
-struct Row<'a> {
-    scene: &'a str,
-    setting: &'a str,
+struct Row {
+    scene: &'static str,
+    setting: String,
     /// The value that is to be estimated.
     truth: f64,
     /// Unit of the scene's error, in that of the truth.
@@ -43,8 +43,8 @@ pub fn write_records(folder: &Path, quick: bool) -> Result<()> {
                 file.write_all(&v.to_le_bytes()).map_err(failed)?;
             }
             let (scene, count) = (scene.texts[0], values.len());
-            let row = Row { scene, setting, truth, unit, start, step, known, first, count };
-            rows.push(serde_json::to_value(row).map_err(|e| failed(e.into()))?);
+            let setting = setting.to_owned();
+            rows.push(Row { scene, setting, truth, unit, start, step, known, first, count });
             first += count;
             Ok(())
         };
