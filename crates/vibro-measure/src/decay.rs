@@ -161,7 +161,7 @@ impl Sines {
         let Damped { periods, decay, .. } = group.sines[m];
         let lost = -(-decay).exp_m1();
         let why = format!(
-            "the motion does not decay: its strongest line, {:.5} Hz, loses {:.2} ± {:.2} % within {:.4} s, a mode more than {:.1} %",
+            "the motion does not decay: its strongest line, {:.5} Hz, loses {:.2} ± {:.2} % within {:.4} s; a mode must lose more than {:.1} %",
             periods * self.rate / self.n as f64,
             100.0 * lost,
             100.0 * group.std(m, [0.0, 1.0, 0.0, 0.0]) * (-decay).exp(),
