@@ -49,7 +49,13 @@ pub use sweep::modelled::fit;
 pub use sweep::{named, responses};
 pub(crate) use unnamed::unnamed;
 
+#[cfg(feature = "cli")]
+pub(crate) use kind::FileCommand;
 pub(crate) use kind::{Analysis, OfFile};
+#[cfg(feature = "cli")]
+pub(crate) use kinds::commands;
+#[cfg(any(feature = "cli", test))]
+pub(crate) use kinds::key_ranges;
 pub(crate) use kinds::sections;
 pub(crate) use named_file::few;
 pub(crate) use source::{Source, file_name};

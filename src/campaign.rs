@@ -28,8 +28,8 @@
 //! An unknown key is an error that points at its line.
 
 mod entry;
+mod key_range;
 mod locate;
-mod range;
 mod reading;
 mod tables;
 mod value;
@@ -37,7 +37,7 @@ mod value;
 pub use tables::{Compute, Drive, FitEntry, Follows, ModelEntry};
 
 pub(crate) use entry::Entry;
-pub(crate) use range::in_range;
+pub(crate) use key_range::KeyRange;
 pub(crate) use reading::{Channel, Reading, above_zero};
 pub(crate) use value::{LowPass, channel, channels, one_or_more, two, word};
 

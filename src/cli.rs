@@ -16,20 +16,21 @@ mod shell;
 mod stdout;
 mod sweep;
 
-use crate::analysis::{decay, frf};
-use crate::campaign::in_range;
+use crate::analysis::{self, FileCommand};
+use crate::campaign::KeyRange;
 use crate::error::{Error, Result};
 use crate::read::Limit;
 use crate::record::Kind;
 use crate::record::kind::{number, whole};
 use crate::report::Medium;
+use crate::report::files::Names;
 use crate::report::words::Voice;
 use clap::{Arg, ArgAction, ArgMatches, Args, Command as Typed};
 use std::any::TypeId;
 use std::path::PathBuf;
 
 /// All commands by purpose, in the order of the help. Each row states an example, without `vibro`, and what
-/// the command does. A new command is a new row.
+/// the command does. A new command is a new row. [`MEASURE`] has the commands of kinds of records, too.
 const GROUPS: &[(&str, &[CommandRow])] = &[
     (
         "Begin with a folder of recordings",
@@ -58,7 +59,7 @@ const GROUPS: &[(&str, &[CommandRow])] = &[
         ],
     ),
     (
-        "Measure",
+        MEASURE,
         &[
             CommandRow::of::<sweep::ResponseArgs>(
                 "response step*.csv --out figures",
@@ -76,13 +77,9 @@ const GROUPS: &[(&str, &[CommandRow])] = &[
                 "spectrum trace.csv --channel velocity --out figures",
                 "Spectrum of a channel, or frequency response function between two",
             ),
-            CommandRow::of::<record::MeasuredFile<frf::Keys>>(
+            CommandRow::of::<record::Modal>(
                 "modal blows.csv --reference force --hammer",
                 "Natural frequency, damping and modal constant of the modes of a frequency response function",
-            ),
-            CommandRow::of::<record::MeasuredFile<decay::Keys>>(
-                "decay release.csv",
-                "Natural frequency and damping of each mode of a free decay",
             ),
             CommandRow::of::<record::Impacts>(
                 "impacts contact.csv --excitation 11.2",
@@ -131,9 +128,21 @@ const GROUPS: &[(&str, &[CommandRow])] = &[
     ),
 ];
 
+/// Heading of the commands that measure.
+const MEASURE: &str = "Measure";
+
+/// All groups of commands, with the commands that kinds of records bring.
+fn groups() -> impl Iterator<Item = (&'static str, Vec<CommandRow>)> {
+    GROUPS.iter().map(|&(name, rows)| {
+        let of_kinds = analysis::commands().filter(|_| name == MEASURE);
+        let of_kinds = of_kinds.map(|(command, names)| CommandRow::of_kind(command, names));
+        (name, rows.iter().copied().chain(of_kinds).collect())
+    })
+}
+
 /// All commands.
-fn rows() -> impl Iterator<Item = &'static CommandRow> {
-    GROUPS.iter().flat_map(|(_, rows)| rows.iter())
+fn rows() -> impl Iterator<Item = CommandRow> {
+    groups().flat_map(|(_, rows)| rows)
 }
 
 /// Arguments of a command, and the function that runs it.
@@ -146,13 +155,22 @@ trait CommandArgs: Args {
 }
 
 /// A row of the table of commands.
+#[derive(Clone, Copy)]
 struct CommandRow {
     /// Example of what is typed after `vibro`.
     example: &'static str,
     about: &'static str,
     voice: Voice,
-    options: fn(Typed) -> Typed,
-    run: fn(&ArgMatches, bool) -> Result<u8>,
+    source: CommandSource,
+}
+
+/// Where the options and the function of a command are.
+#[derive(Clone, Copy)]
+enum CommandSource {
+    /// In this folder.
+    Args { options: fn(Typed) -> Typed, run: fn(&ArgMatches, bool) -> Result<u8> },
+    /// With the kind of record that it measures, whose results have these names.
+    Kind(FileCommand, Names),
 }
 
 impl CommandRow {
@@ -161,7 +179,30 @@ impl CommandRow {
             Ok(typed) => typed.run(json),
             Err(error) => Ok(complain::usage(&error, json)),
         };
-        CommandRow { example, about, voice: T::VOICE, options: T::augment_args, run }
+        let source = CommandSource::Args { options: T::augment_args, run };
+        CommandRow { example, about, voice: T::VOICE, source }
+    }
+
+    /// The command of a kind of record.
+    fn of_kind(command: FileCommand, names: Names) -> CommandRow {
+        let FileCommand { example, about, .. } = command;
+        CommandRow { example, about, voice: Voice::Command, source: CommandSource::Kind(command, names) }
+    }
+
+    /// The command line with its options.
+    fn options(&self, line: Typed) -> Typed {
+        match self.source {
+            CommandSource::Args { options, .. } => options(line),
+            CommandSource::Kind(command, _) => record::with_file(line, command),
+        }
+    }
+
+    /// Runs the command and returns the exit code.
+    fn run(&self, typed: &ArgMatches, json: bool) -> Result<u8> {
+        match self.source {
+            CommandSource::Args { run, .. } => run(typed, json),
+            CommandSource::Kind(command, names) => record::measure_file(typed, command, names, json),
+        }
     }
 
     /// The name of the command.
@@ -191,7 +232,7 @@ const FIRST: [&str; 5] = ["init", "run", "demo", "info", "response"];
 
 /// Help that is printed if no command was typed.
 fn short() -> String {
-    let lines: String = rows().filter(|row| FIRST.contains(&row.name())).map(CommandRow::line).collect();
+    let lines: String = rows().filter(|row| FIRST.contains(&row.name())).map(|row| row.line()).collect();
     format!(
         "{ABOUT}\n\nUsage: vibro COMMAND\n\n{lines}\nAll commands: vibro --help. Options and an example: vibro COMMAND --help\n"
     )
@@ -199,10 +240,10 @@ fn short() -> String {
 
 /// Help with all commands by purpose.
 fn long() -> String {
-    let group = |(name, rows): &(&str, &[CommandRow])| {
+    let group = |(name, rows): (&str, Vec<CommandRow>)| {
         format!("{name}:\n{}\n", rows.iter().map(CommandRow::line).collect::<String>())
     };
-    let groups: String = GROUPS.iter().map(group).collect();
+    let groups: String = groups().map(group).collect();
     format!(
         "{ABOUT}\n\nUsage: vibro COMMAND\n\n{groups}Options:\n  --json              Print one JSON object instead of a table\n  --max-memory SIZE   {MEMORY}\n  --version           Print the version\n\nOptions and an example of a command: vibro COMMAND --help\n"
     )
@@ -216,7 +257,7 @@ fn command() -> Typed {
     let memory = memory.value_parser(size).help(MEMORY);
     let commands = rows().map(|row| {
         let example = format!("Example:\n  vibro {}", row.example);
-        (row.options)(Typed::new(row.name())).about(row.about).after_help(example)
+        row.options(Typed::new(row.name())).about(row.about).after_help(example)
     });
     let all = Typed::new("vibro")
         .version(env!("CARGO_PKG_VERSION"))
@@ -264,17 +305,18 @@ pub fn main() -> u8 {
     let Some((row, typed)) = typed.subcommand().and_then(row) else {
         return complain::nothing(&short(), json);
     };
-    (row.run)(typed, json).unwrap_or_else(|error| complain::error(&error, row.voice, json))
+    row.run(typed, json).unwrap_or_else(|error| complain::error(&error, row.voice, json))
 }
 
 /// Checks that each number typed after a command is in the range of its option: a single number, one in a
 /// range such as 1:2, or one in a list.
 fn numbers(typed: &ArgMatches) -> Result<()> {
     for key in typed.ids().map(clap::Id::as_str) {
+        let Some(range) = KeyRange::of(key, analysis::key_ranges()) else { continue };
         for words in typed.try_get_raw(key).ok().flatten().into_iter().flatten() {
             let words = words.to_string_lossy();
             let mut numbers = words.split([':', ',']).filter_map(|word| word.trim().parse().ok());
-            numbers.try_for_each(|number| in_range(key, number))?;
+            numbers.try_for_each(|number| range.check(key, number))?;
         }
     }
     Ok(())
@@ -385,7 +427,8 @@ mod tests {
                 .filter(|arg| numbers.iter().any(|of| arg.get_value_parser().type_id() == *of))
             {
                 let key = arg.get_id().as_str();
-                assert!(of_model(key) || in_range(key, f64::NAN).is_err(), "{key} of {}", at.get_name());
+                let range = KeyRange::of(key, analysis::key_ranges());
+                assert!(of_model(key) || range.is_some(), "{key} of {}", at.get_name());
                 seen += 1;
             }
         }

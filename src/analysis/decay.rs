@@ -5,9 +5,11 @@ pub mod figures;
 use super::answer::Answer;
 use super::headline::headline;
 use super::job::Job;
+#[cfg(feature = "cli")]
+use super::kind::FileCommand;
 use super::kind::{Analysis, OfFile, no_file};
 use super::source::Source;
-use crate::campaign::Entry;
+use crate::campaign::{Entry, KeyRange};
 use crate::error::Result;
 use crate::measure::Estimate;
 use crate::measure::decay::{DecayOptions, DecayResult, decay};
@@ -104,6 +106,12 @@ impl Analysis for Keys {
     const SECTION: &'static str = "decay";
     const TITLE: &'static str = "Free decays";
     const FILES: Names = Names::Numbered(&["modes", "levels", "decay"]);
+    #[cfg(feature = "cli")]
+    const COMMAND: Option<FileCommand> = Some(FileCommand::of::<Keys>(
+        "decay release.csv",
+        "Natural frequency and damping of each mode of a free decay",
+    ));
+    const RANGES: &'static [KeyRange] = &[KeyRange::count(1e3, &["modes"])];
 
     fn check(entry: &Entry<Keys>, _: &[Entry<Keys>]) -> Result<()> {
         entry.file.as_ref().ok_or_else(no_file).map(drop)

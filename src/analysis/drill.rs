@@ -10,7 +10,7 @@ use super::headline::headline;
 use super::job::Job;
 use super::kind::{Analysis, no_file};
 use super::source::Source;
-use crate::campaign::{Channel, Entry, LowPass, channel, channels};
+use crate::campaign::{Channel, Entry, KeyRange, LowPass, channel, channels};
 use crate::error::{Error, Result};
 use crate::measure::drill::{
     AngleOrigin, Beam, Cycle, Drill, DrillOptions, Edge, Slices, Smoothing, drill_each,
@@ -295,6 +295,19 @@ impl Analysis for Keys {
         "drill_noise",
         "drill_bandwidth",
     ]);
+    const RANGES: &'static [KeyRange] = &[
+        KeyRange::above_zero("Hz", &["instrument"]),
+        KeyRange::above_zero("s", &["smoothing"]).times(),
+        KeyRange::from_zero("s", &["longest_dropout"]).times(),
+        // Checked against the duration of a turn when that is known.
+        KeyRange::above_zero("s", &["contact", "fit_duration"]).within(1e-12, f64::MAX),
+        KeyRange::above_zero("kg", &["struck_mass"]),
+        KeyRange::any("", &["sensitivity", "handle_sensitivity", "level"]),
+        KeyRange::any("°", &["beam_angle"]).within(1e-50, 360.0),
+        KeyRange::any("dB", &["margin"]).within(1e-50, 1e3),
+        KeyRange::from_zero("h", &["exposure"]).within(1e-50, 24.0),
+        KeyRange::count(1e9, &["pulses_per_turn"]),
+    ];
 
     fn check(entry: &Entry<Keys>, _: &[Entry<Keys>]) -> Result<()> {
         entry.file.as_ref().ok_or_else(no_file)?;

@@ -9,7 +9,7 @@ use super::job::Job;
 use super::kind::{Analysis, name_of};
 use super::source::Source;
 use super::source::file_name;
-use crate::campaign::Entry;
+use crate::campaign::{Entry, KeyRange};
 use crate::error::{Error, Hint, Result};
 use crate::measure::impacts::ImpactsOptions;
 use crate::measure::restitution::{Drop, GRAVITY, Measured, Restitution, Train, Velocities, restitution};
@@ -322,6 +322,14 @@ impl Analysis for Keys {
     const SECTION: &'static str = "drop";
     const TITLE: &'static str = "Restitution";
     const FILES: Names = Names::Numbered(&["drop", "restitution"]);
+    const RANGES: &'static [KeyRange] = &[
+        KeyRange::above_zero("s", &["interval", "intervals"]).times(),
+        KeyRange::from_zero("s", &["interval_std", "contact_time"]).times(),
+        KeyRange::above_zero("kg", &["masses"]),
+        KeyRange::above_zero("", &["height", "gravity"]),
+        KeyRange::from_zero("", &["height_std", "gravity_std", "velocity_std"]),
+        KeyRange::any("", &["before", "after", "after2"]),
+    ];
     const TOGETHER: bool = true;
 
     fn check(entry: &Entry<Keys>, earlier: &[Entry<Keys>]) -> Result<()> {

@@ -33,7 +33,7 @@ fn expanded<A: Analysis>(campaign: &Campaign) -> Result<Vec<(Entry<A>, Result<()
         };
         files.into_iter().map(entry_of_file).collect()
     };
-    Ok(campaign.entries(A::SECTION, A::OF_FILES)?.into_iter().flat_map(expand).collect())
+    Ok(campaign.entries(A::SECTION, A::OF_FILES, A::RANGES)?.into_iter().flat_map(expand).collect())
 }
 
 /// The faultless tables of a kind of record. A table with a pattern gives one table for each matching

@@ -15,7 +15,7 @@ use super::source::Source;
 use super::spectrum::{self, Detrend};
 use super::sweep;
 use super::tone::Strongest;
-use crate::campaign::{Campaign, Entry, channel};
+use crate::campaign::{Campaign, Entry, KeyRange, channel};
 use crate::error::{Error, Result};
 use crate::measure::modal::{Measured, ModalOptions, ModalResult, modal, stabilisation};
 use crate::record::code;
@@ -284,6 +284,7 @@ impl Analysis for Keys {
     const SECTION: &'static str = "frf";
     const TITLE: &'static str = "Frequency response functions";
     const FILES: Names = Names::Numbered(&["modes", "methods", "frf", "argand", "stability"]);
+    const RANGES: &'static [KeyRange] = &[KeyRange::from_zero("", &["least_coherence"]).within(1e-9, 1.0)];
     const RESTS_ON: &'static [&'static str] = &["sweep"];
 
     fn check(entry: &Entry<Keys>, _: &[Entry<Keys>]) -> Result<()> {

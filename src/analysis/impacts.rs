@@ -7,7 +7,7 @@ use super::headline::headline;
 use super::job::Job;
 use super::kind::{Analysis, no_file};
 use super::source::Source;
-use crate::campaign::{Entry, channel};
+use crate::campaign::{Entry, KeyRange, channel};
 use crate::error::{Error, Result};
 use crate::measure::impacts::{Impacts, ImpactsOptions, REGULAR, impacts};
 use crate::read::Reader;
@@ -183,6 +183,7 @@ impl Analysis for Keys {
     const SECTION: &'static str = "impacts";
     const TITLE: &'static str = "Impacts";
     const FILES: Names = Names::Numbered(&["impacts"]);
+    const RANGES: &'static [KeyRange] = &[KeyRange::above_zero("Hz", &["shape_rate"])];
 
     fn check(entry: &Entry<Keys>, _: &[Entry<Keys>]) -> Result<()> {
         entry.file.as_ref().ok_or_else(no_file)?;

@@ -4,7 +4,7 @@ use super::answer::Answer;
 use super::job::Job;
 use super::named_file::NamedFile;
 use super::source::{Source, file_name};
-use crate::campaign::{Campaign, Entry, Fault};
+use crate::campaign::{Campaign, Entry, Fault, KeyRange};
 use crate::error::{Error, Result};
 use crate::report::files::Names;
 use serde::de::DeserializeOwned;
@@ -26,6 +26,14 @@ pub(crate) trait Analysis: Clone + DeserializeOwned {
     const TOGETHER: bool = false;
     /// Other sections that a table without a file may refer to by name.
     const RESTS_ON: &'static [&'static str] = &[];
+
+    /// Ranges of the numbers of keys that no other kind has.
+    const RANGES: &'static [KeyRange] = &[];
+
+    /// The command that measures the record of one file. `None` where the command line has one of its own,
+    /// which takes more than that.
+    #[cfg(feature = "cli")]
+    const COMMAND: Option<FileCommand> = None;
 
     /// Checks a table before anything is measured, given the tables before it. The error names the key at
     /// fault as its setting.
@@ -81,12 +89,43 @@ pub(crate) trait OfFile {
     fn measure(&self, source: &Source<'_>) -> Result<Answer>;
 }
 
+/// A command on the record of one file: what is typed, and how its options become keys.
+#[cfg(feature = "cli")]
+#[derive(Clone, Copy)]
+pub(crate) struct FileCommand {
+    /// Example of what is typed after `vibro`; its first word is the name of the command.
+    pub(crate) example: &'static str,
+    pub(crate) about: &'static str,
+    /// Adds the options of the keys to a command.
+    pub(crate) options: fn(clap::Command) -> clap::Command,
+    /// The keys of typed options.
+    pub(crate) keys: fn(&clap::ArgMatches) -> std::result::Result<Box<dyn OfFile>, clap::Error>,
+}
+
+#[cfg(feature = "cli")]
+impl FileCommand {
+    pub(super) const fn of<K: clap::Args + OfFile + 'static>(
+        example: &'static str,
+        about: &'static str,
+    ) -> FileCommand {
+        FileCommand {
+            example,
+            about,
+            options: K::augment_args,
+            keys: |typed| Ok(Box::new(K::from_arg_matches(typed)?)),
+        }
+    }
+}
+
 /// A row of the table of kinds: names and functions of one kind.
 #[derive(Clone, Copy)]
 pub(crate) struct AnalysisKind {
     pub(super) section: &'static str,
     pub(super) title: &'static str,
     pub(super) names: Names,
+    pub(super) ranges: &'static [KeyRange],
+    #[cfg(feature = "cli")]
+    pub(super) command: Option<FileCommand>,
     pub(super) check: fn(&Campaign) -> Result<Vec<Fault>>,
     pub(super) files: fn(&Campaign) -> Result<Vec<PathBuf>>,
     pub(super) channels: fn(&Campaign) -> Result<Vec<Error>>,

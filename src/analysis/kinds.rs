@@ -4,13 +4,17 @@
 use super::answer::left_out;
 use super::entries::{check, entries};
 use super::job::Job;
+#[cfg(feature = "cli")]
+use super::kind::FileCommand;
 use super::kind::{Analysis, AnalysisKind, name_of};
 use super::named_file::NamedFile;
 use super::{decay, drill, drop, frf, impacts, pulse, spectrum, sweep};
-use crate::campaign::{Campaign, Entry, Fault};
+use crate::campaign::{Campaign, Entry, Fault, KeyRange};
 use crate::error::{Error, Result};
 use crate::read::{Folder, plain};
 use crate::record::{find_channel, shown};
+#[cfg(feature = "cli")]
+use crate::report::files::Names;
 use std::path::{Path, PathBuf};
 
 /// All kinds of analysis, in the order in which they are measured and shown.
@@ -28,6 +32,18 @@ pub(crate) const KINDS: &[AnalysisKind] = &[
 /// Names of the sections of a campaign, in the order in which they are measured and shown.
 pub(crate) fn sections() -> impl Iterator<Item = &'static str> {
     KINDS.iter().map(|kind| kind.section)
+}
+
+/// Ranges of the numbers of keys, of all kinds.
+#[cfg(any(feature = "cli", test))]
+pub(crate) fn key_ranges() -> impl Iterator<Item = &'static KeyRange> {
+    KINDS.iter().flat_map(|kind| kind.ranges)
+}
+
+/// Commands that measure the record of one file, with the names of the files that each writes.
+#[cfg(feature = "cli")]
+pub(crate) fn commands() -> impl Iterator<Item = (FileCommand, Names)> {
+    KINDS.iter().filter_map(|kind| Some((kind.command?, kind.names)))
 }
 
 /// Reads a campaign and checks all its tables. A table with an impossible value is left out: see
@@ -98,6 +114,9 @@ const fn row<A: Analysis>() -> AnalysisKind {
         section: A::SECTION,
         title: A::TITLE,
         names: A::FILES,
+        ranges: A::RANGES,
+        #[cfg(feature = "cli")]
+        command: A::COMMAND,
         check: check::<A>,
         files: files_of::<A>,
         channels: channel_errors::<A>,

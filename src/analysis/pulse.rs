@@ -7,7 +7,7 @@ use super::headline::headline;
 use super::job::Job;
 use super::kind::Analysis;
 use super::source::Source;
-use crate::campaign::{Entry, LowPass};
+use crate::campaign::{Entry, KeyRange, LowPass};
 use crate::error::{Error, Result};
 use crate::measure::pulse::{Instrument, PulseOptions, PulseResult, pulse, two_times};
 use crate::report::files::Names;
@@ -174,6 +174,10 @@ impl Analysis for Keys {
     const SECTION: &'static str = "pulse";
     const TITLE: &'static str = "Contact pulses";
     const FILES: Names = Names::Numbered(&["pulse", "pulse_fits"]);
+    const RANGES: &'static [KeyRange] = &[
+        KeyRange::above_zero("s", &["time_to_peak", "duration"]).times(),
+        KeyRange::from_zero("s", &["std"]).times(),
+    ];
 
     fn check(entry: &Entry<Keys>, _: &[Entry<Keys>]) -> Result<()> {
         entry.keys.usable(entry.file.is_some())

@@ -7,7 +7,7 @@ use super::answer::Answer;
 use super::job::Job;
 use super::kind::{Analysis, OfFile, named_in, no_file};
 use super::source::Source;
-use crate::campaign::{Campaign, Entry, channel};
+use crate::campaign::{Campaign, Entry, KeyRange, channel};
 use crate::error::{Error, Result};
 use crate::measure::spectral::{Lines, Method, SpectralOptions, SpectralResult, spectral, stored};
 use crate::read::Header;
@@ -401,6 +401,8 @@ impl Analysis for Keys {
     const SECTION: &'static str = "spectrum";
     const TITLE: &'static str = "Spectra";
     const FILES: Names = Names::Named(&["spectrum", "frf", "argand_frf", "argand_spectrum"]);
+    const RANGES: &'static [KeyRange] =
+        &[KeyRange::above_zero("", &["decibel"]), KeyRange::count(1e3, &["tones"])];
 
     fn check(entry: &Entry<Keys>, _: &[Entry<Keys>]) -> Result<()> {
         entry.file.as_ref().ok_or_else(no_file)?;

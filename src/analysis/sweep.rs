@@ -16,7 +16,7 @@ use super::entries::{all_entries, check, entries};
 use super::job::Job;
 use super::kind::Analysis;
 use super::progress::Progress;
-use crate::campaign::{Campaign, Entry, Fault, one_or_more};
+use crate::campaign::{Campaign, Entry, Fault, KeyRange, one_or_more};
 use crate::error::{Error, Place, Result};
 use crate::measure::response::{Response, ResponseOptions};
 use crate::measure::waterfall::{Waterfall, waterfall};
@@ -291,6 +291,11 @@ impl Analysis for Keys {
         "fit",
         "fit_points",
     ]);
+    const RANGES: &'static [KeyRange] = &[
+        KeyRange::above_zero("", &["force_calibration"]),
+        KeyRange::count(1e3, &["analyser_integrated"]),
+        KeyRange::count(1e9, &["lines"]),
+    ];
     const OF_FILES: bool = false;
     const TOGETHER: bool = true;
 

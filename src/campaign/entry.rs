@@ -1,6 +1,6 @@
 //! One table of a section of a campaign: `[[impacts]]`.
 
-use super::{Campaign, Channel, Reading, locate, range};
+use super::{Campaign, Channel, KeyRange, Reading, locate};
 use crate::error::{Error, Result};
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
@@ -53,7 +53,8 @@ impl<K> Entry<K> {
 }
 
 impl Campaign {
-    /// The tables of a section in their order, each with the error of a number outside its range, if any.
+    /// The tables of a section in their order, each with the error of a number outside its range, if any:
+    /// one of `ranges`, or one of the keys that all sections share.
     /// With `of_a_file` they also have the keys `name` and `file`, and those of `Reading` and `Channel`.
     ///
     /// # Errors
@@ -62,6 +63,7 @@ impl Campaign {
         &self,
         section: &str,
         of_a_file: bool,
+        ranges: &[KeyRange],
     ) -> Result<Vec<(Entry<K>, Result<()>)>> {
         let Some(all) = self.table()?.remove(section) else { return Ok(Vec::new()) };
         let several = |span: Range<usize>| {
@@ -72,7 +74,7 @@ impl Campaign {
         let span = all.span();
         let DeValue::Array(all) = all.into_inner() else { return Err(several(span)) };
         let one = |(number, table): (usize, Spanned<DeValue<'_>>)| match (table.span(), table.into_inner()) {
-            (head, DeValue::Table(rows)) => self.entry(number, rows, head, of_a_file),
+            (head, DeValue::Table(rows)) => self.entry(number, rows, head, of_a_file, ranges),
             (span, _) => Err(several(span)),
         };
         (1..).zip(all).map(one).collect()
@@ -101,6 +103,7 @@ impl Campaign {
         mut rows: DeTable<'_>,
         head: Range<usize>,
         of_a_file: bool,
+        ranges: &[KeyRange],
     ) -> Result<(Entry<K>, Result<()>)> {
         let places =
             rows.iter().map(|(k, v)| (k.get_ref().to_string(), k.span().start..v.span().end)).collect();
@@ -109,7 +112,8 @@ impl Campaign {
         // An error about the kind of a value is reported before one about its range.
         let in_range = rows.iter().try_for_each(|(key, value)| {
             let span = || key.span().start..value.span().end;
-            range::all_in_range(key.get_ref(), value.get_ref()).map_err(|e| self.pointed(e, span()))
+            let Some(range) = KeyRange::of(key.get_ref(), ranges) else { return Ok(()) };
+            range.check_all(key.get_ref(), value.get_ref()).map_err(|e| self.pointed(e, span()))
         });
         let mut part = |keys: &[&str]| -> DeTable<'_> {
             keys.iter().filter(|key| beside.contains(key)).filter_map(|key| rows.remove_entry(*key)).collect()

@@ -87,7 +87,7 @@ fn file_of(error: &Error, words: impl Iterator<Item = OsString>) -> Option<OsStr
 struct TypedCommand {
     /// Full name: `vibro model orbit`.
     command: String,
-    row: Option<&'static CommandRow>,
+    row: Option<CommandRow>,
     /// Definition of the command: subcommands and arguments.
     definition: Typed,
 }

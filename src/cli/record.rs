@@ -4,7 +4,9 @@ use super::sweep::{SweepPlace, of_script};
 use super::{CommandArgs, complain, print};
 use crate::analysis::drill::cycles;
 use crate::analysis::sweep::{Files, Listed, StoredResponseKeys, named};
-use crate::analysis::{self, Analysis, Answer, OfFile, Source, drill, drop, frf, impacts, pulse, spectrum};
+use crate::analysis::{
+    self, Analysis, Answer, FileCommand, OfFile, Source, drill, drop, frf, impacts, pulse, spectrum,
+};
 use crate::campaign::{Channel, Reading};
 use crate::error::{Error, Result};
 use crate::measure::drill::Cycle;
@@ -15,7 +17,7 @@ use crate::record::{Finding, Trace, shown};
 use crate::report::Output;
 use crate::report::files::Names;
 use crate::report::layout::{headed, table};
-use clap::Args;
+use clap::{ArgMatches, Args, Command, FromArgMatches as _};
 use serde_json::json;
 use std::path::{Path, PathBuf};
 
@@ -31,14 +33,20 @@ pub struct RecordArgs {
     out: Option<PathBuf>,
 }
 
-/// A file with the keys of its analysis.
+/// The file of a command that measures one.
 #[derive(Debug, Args)]
-pub struct MeasuredFile<K: Args> {
+pub struct MeasurementFile {
     /// Measurement file
     #[arg(index = 1)]
     file: PathBuf,
+}
+
+#[derive(Debug, Args)]
+pub struct Modal {
     #[command(flatten)]
-    keys: K,
+    of: MeasurementFile,
+    #[command(flatten)]
+    keys: frf::Keys,
     #[command(flatten)]
     record: RecordArgs,
 }
@@ -59,7 +67,11 @@ pub struct Impacts {
     /// Repeat the thesis' script timeav with its mistakes
     legacy: bool,
     #[command(flatten)]
-    of: MeasuredFile<impacts::Keys>,
+    of: MeasurementFile,
+    #[command(flatten)]
+    keys: impacts::Keys,
+    #[command(flatten)]
+    record: RecordArgs,
 }
 
 #[derive(Debug, Args)]
@@ -67,7 +79,11 @@ pub struct Drill {
     /// Write the velocity of every turn over the phase into this file
     each_cycle: Option<PathBuf>,
     #[command(flatten)]
-    of: MeasuredFile<drill::Keys>,
+    of: MeasurementFile,
+    #[command(flatten)]
+    keys: drill::Keys,
+    #[command(flatten)]
+    record: RecordArgs,
 }
 
 #[derive(Debug, Args)]
@@ -131,23 +147,26 @@ impl RecordArgs {
     }
 }
 
-impl<K: Args> MeasuredFile<K> {
-    fn by<T>(
-        &self,
-        folder: &Folder,
-        json: bool,
-        measure: impl FnOnce(&K, &Source<'_>) -> Result<T>,
-    ) -> Result<T> {
-        self.record.measured(folder, &self.file, json, |source| measure(&self.keys, source))
-    }
+/// Adds the options of a kind's command: the file, the keys of the kind, and how the file is read.
+pub(super) fn with_file(line: Command, command: FileCommand) -> Command {
+    RecordArgs::augment_args((command.options)(MeasurementFile::augment_args(line)))
 }
 
-impl<K: Args + OfFile + Analysis> CommandArgs for MeasuredFile<K> {
-    /// Prints the answer of one record.
-    fn run(&self, json: bool) -> Result<u8> {
-        let (folder, output) = self.record.results([&self.file], K::FILES)?;
-        print::answer(self.by(&folder, json, K::measure)?, output, json)
-    }
+/// Runs the command of a kind: prints the answer of one record.
+///
+/// # Errors
+/// If the file cannot be read, or its record allows no answer.
+pub(super) fn measure_file(typed: &ArgMatches, command: FileCommand, names: Names, json: bool) -> Result<u8> {
+    let of_clap = || {
+        let file = MeasurementFile::from_arg_matches(typed)?.file;
+        Ok((file, (command.keys)(typed)?, RecordArgs::from_arg_matches(typed)?))
+    };
+    let (file, keys, record) = match of_clap() {
+        Ok(all) => all,
+        Err(error) => return Ok(complain::usage(&error, json)),
+    };
+    let (folder, output) = record.results([&file], names)?;
+    print::answer(record.measured(&folder, &file, json, |source| keys.measure(source))?, output, json)
 }
 
 impl Spectrum {
@@ -221,12 +240,12 @@ impl CommandArgs for Spectrum {
 impl CommandArgs for Impacts {
     /// Prints the impacts.
     fn run(&self, json: bool) -> Result<u8> {
-        let (folder, output) = self.of.record.results([&self.of.file], impacts::Keys::FILES)?;
-        let answer = self.of.by(&folder, json, |keys, source| {
+        let (folder, output) = self.record.results([&self.of.file], impacts::Keys::FILES)?;
+        let answer = self.record.measured(&folder, &self.of.file, json, |source| {
             if self.legacy {
                 return of_timeav(&source.trace(&source.recording()?)?);
             }
-            keys.measure(source).map_err(|e| e.of_record(&source.path.display().to_string()))
+            self.keys.measure(source).map_err(|e| e.of_record(&source.path.display().to_string()))
         })?;
         print::answer(answer, output, json)
     }
@@ -259,10 +278,10 @@ fn of_timeav(trace: &Trace) -> Result<Answer> {
     Ok(answer)
 }
 
-impl MeasuredFile<frf::Keys> {
+impl Modal {
     /// The receptance of a sweep, if the file is a list of a sweep or a campaign.
     fn sweep(&self, folder: &Folder) -> Result<Option<frf::Function>> {
-        let typed = self.file.to_string_lossy();
+        let typed = self.of.file.to_string_lossy();
         let SweepPlace { path, name, campaign } = SweepPlace::of(&typed);
         let listed = if campaign {
             named(&analysis::open_in(&folder.clone().allow_outside(false), Path::new(path))?, name)?
@@ -280,13 +299,13 @@ impl MeasuredFile<frf::Keys> {
     }
 }
 
-impl CommandArgs for MeasuredFile<frf::Keys> {
+impl CommandArgs for Modal {
     /// Prints the modes.
     fn run(&self, json: bool) -> Result<u8> {
-        let (folder, output) = self.record.results([&self.file], frf::Keys::FILES)?;
+        let (folder, output) = self.record.results([&self.of.file], frf::Keys::FILES)?;
         let mut answers = match self.sweep(&folder)? {
             Some(function) => vec![self.keys.modes(&function.meta.name, &function)?],
-            None => self.by(&folder, json, frf::Keys::measure)?,
+            None => self.record.measured(&folder, &self.of.file, json, |source| self.keys.measure(source))?,
         };
         if answers.len() > 1 {
             let names: Vec<&str> = answers.iter().map(|answer| answer.channel.as_str()).collect();
@@ -332,7 +351,7 @@ impl CommandArgs for Restitution {
 impl CommandArgs for Drill {
     /// Prints speed, impacts and the average turn.
     fn run(&self, json: bool) -> Result<u8> {
-        let (folder, output) = self.of.record.results([&self.of.file], drill::Keys::FILES)?;
+        let (folder, output) = self.record.results([&self.of.file], drill::Keys::FILES)?;
         let of_cycles = |path: &PathBuf| print::File::of(&folder, path, Owner::Results);
         let file = self.each_cycle.as_ref().map(of_cycles).transpose()?;
         let mut turns = String::new();
@@ -345,7 +364,9 @@ impl CommandArgs for Drill {
             }
             Ok(())
         };
-        let mut answer = self.of.by(&folder, json, |keys, source| keys.measure(source, &mut each))?;
+        let mut answer = self
+            .record
+            .measured(&folder, &self.of.file, json, |source| self.keys.measure(source, &mut each))?;
         if let Some(file) = file {
             let written = file.write(turns)?;
             complain::line(&format!("wrote {written}"));
