@@ -16,7 +16,7 @@ use vibroimpact::model::{
 use vibroimpact::record::Direction;
 
 /// Contact of the thesis' simulations.
-pub const CONTACT: Law = Law::KelvinVoigt { stiffness: 1e5, damping: 0.1 };
+pub const CONTACT: Law = Law::spring(1e5, 0.1);
 
 /// Ranges in Hz in which the grazing and the clapping resonance are sought.
 const TWO: [(f64, f64); 2] = [(4.0, 8.0), (8.0, 14.0)];

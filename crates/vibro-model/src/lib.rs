@@ -59,7 +59,7 @@ pub use excitation::{Excitation, Impulses, Part, Pulses, Sine, Sines};
 pub use flow::{Flight, State};
 pub use green::Green;
 pub use impact::{Counts, Impact};
-pub use law::{HertzRebound, Law};
+pub use law::{FORMS, HertzRebound, Law, LawDamping, LawForm};
 pub use motion::{Event, Motion, Path, Piece};
 pub use observable::Observable;
 pub use orbit::{

@@ -143,6 +143,7 @@ mod tests {
     use super::*;
     use crate::contact::Compliant;
     use crate::excitation::{Excitation, Sine};
+    use crate::law::samples;
     use crate::rig::Rig;
     use crate::simulate::Simulation;
 
@@ -171,12 +172,7 @@ mod tests {
         let rig = Rig::thesis();
         let sine = |force, frequency| Excitation::Sine(Sine { force, frequency });
         let pressed = Rig { gap: -5e-4, ..rig };
-        let laws = [
-            Law::kelvin_voigt(1e5, 0.7, rig.reduced_mass()).unwrap(),
-            Law::Hertz { stiffness: 1e7 },
-            Law::HuntCrossley { stiffness: 1e7, exponent: 1.5, damping: 0.5 },
-        ];
-        let giving = laws.map(|law| {
+        let giving = samples().map(|law| {
             Box::new(Compliant::new(&rig, &sine(0.5, 11.0), law, State::REST, 0.0).unwrap())
                 as Box<dyn Motion>
         });
@@ -186,7 +182,7 @@ mod tests {
             // Chatter and lasting contact every cycle.
             Box::new(Simulation::from_state(&pressed, &sine(0.35, 2.354), start, 0.0).unwrap()),
         ];
-        for mut motion in giving.into_iter().chain(at_once) {
+        for mut motion in giving.chain(at_once) {
             let (found, taken) = seen(&mut *motion, 20.0, 7);
             // Trapezoidal rule with panels of 1/400 of a flight of at most half a cycle: error (π/400)²/12 =
             // 5e-6.
@@ -204,7 +200,7 @@ mod tests {
         // 0.5 N and the springs' 1 N, over a thousandth of a second.
         let rig = Rig { restitution: 1.0, ..Rig::thesis() };
         let k = 1e8;
-        let law = Law::KelvinVoigt { stiffness: k, damping: 0.0 };
+        let law = Law::spring(k, 0.0);
         let sine = Excitation::Sine(Sine { force: 0.5, frequency: 11.0 });
         let mut motion = Compliant::new(&rig, &sine, law, State::REST, 0.0).unwrap();
         let mut tally = Tally::new(&motion, 0.0);

@@ -107,7 +107,7 @@ impl Scene {
     /// As [`Law::kelvin_voigt`] and [`Law::check`].
     pub fn spring(&self, stiffness: f64) -> Result<Law> {
         let law = match self.contact.and_then(|keys| keys.damping) {
-            Some(damping) => Law::KelvinVoigt { stiffness, damping },
+            Some(damping) => Law::spring(stiffness, damping),
             None => Law::kelvin_voigt(stiffness, self.rig.restitution, self.rig.reduced_mass())?,
         };
         law.check().map(|()| law)

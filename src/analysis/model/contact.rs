@@ -1,57 +1,89 @@
 //! The contact law of a scene.
 
 use crate::error::{Error, Result};
-use crate::model::{Buffer, Compliant, Excitation, Law, Motion, Scene, Simulation, State};
-use crate::record::Finding;
-use serde::Deserialize;
+use crate::model::{
+    Buffer, Compliant, Excitation, FORMS, Law, LawDamping, LawForm, Motion, Scene, Simulation, State,
+};
+use crate::record::{Finding, Kind};
 
-/// Models of the contact by their names.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "kebab-case")]
+/// Models of the contact.
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Contact {
     /// Instantaneous, with the rig's restitution.
     Restitution,
-    /// Spring and damper that do not pull.
-    KelvinVoigt,
-    /// Hertzian contact of spheres, without losses.
-    Hertz,
-    /// Nonlinear contact with losses; exponent 1.5 (spheres) unless stated.
-    HuntCrossley,
+    /// It gives way, with a law of this form.
+    Law(LawForm),
     /// A mass that is loose on its spring.
     LooseMass,
 }
 
+/// Names of the models of the contact: the forms of laws between the first and the last.
+const NAMES: [&str; FORMS.len() + 2] = {
+    let mut names = ["restitution"; FORMS.len() + 2];
+    let mut k = 0;
+    while k < FORMS.len() {
+        names[k + 1] = FORMS[k].name;
+        k += 1;
+    }
+    names[k + 1] = "loose-mass";
+    names
+};
+
+impl Contact {
+    /// The model of this name.
+    ///
+    /// # Errors
+    /// With the names of all, if it is none of them.
+    pub fn named(name: &str) -> std::result::Result<Contact, Kind> {
+        match name {
+            "restitution" => Ok(Contact::Restitution),
+            "loose-mass" => Ok(Contact::LooseMass),
+            _ => {
+                let form = FORMS.iter().find(|form| form.name == name);
+                form.map(|form| Contact::Law(*form)).ok_or(Kind::Names(&NAMES))
+            }
+        }
+    }
+
+    /// Whether it is a law without losses.
+    pub fn is_lossless(self) -> bool {
+        matches!(self, Contact::Law(LawForm { damping: LawDamping::Lossless, .. }))
+    }
+}
+
 /// Help of the option for the contact law.
-pub(super) const HELP: &str = "Contact law: restitution, kelvin-voigt, hertz, hunt-crossley, loose-mass";
+#[cfg(feature = "cli")]
+pub(super) fn help() -> String {
+    format!("Contact law: {}", NAMES.join(", "))
+}
 
 /// A motion with any contact law.
 pub(super) type Moving = Box<dyn Motion>;
 
-/// The contact law of a scene, `None` for instantaneous impacts. A spring and a damper without a stated
-/// damping rebound with the rig's restitution.
+/// The contact law of a scene, `None` for instantaneous impacts.
 fn contact_law(scene: &Scene, wanted: Contact) -> Result<Option<Law>> {
-    let keys = scene.contact.unwrap_or_default();
-    // Keys of `[contact]` that the law uses, and the exponent that it implies.
-    let (used_keys, implied_exponent): (&[&str], _) = match wanted {
-        Contact::Restitution | Contact::HuntCrossley => {
-            (&["stiffness", "exponent", "damping", "radius"], None)
-        }
-        Contact::KelvinVoigt | Contact::LooseMass => (&["stiffness", "damping"], Some(1.0)),
-        Contact::Hertz => (&["stiffness", "radius"], Some(1.5)),
+    // A loose mass strikes a contact that is linear, or rebounds at once where none is stated.
+    let form = match wanted {
+        Contact::Restitution => return Ok(None),
+        Contact::Law(form) => form,
+        Contact::LooseMass if scene.contact.is_none() => return Ok(None),
+        Contact::LooseMass => Law::spring(1.0, 0.0).form,
     };
+    let keys = scene.contact.unwrap_or_default();
     // A key that the law does not use is an error: the law decides whether a stiffness is in N/m or
     // N/m^1.5.
-    let exponent = keys.exponent.filter(|n| Some(*n) != implied_exponent);
+    let exponent = keys.exponent.filter(|n| *n != form.exponent);
     let given = [
         ("radius", keys.radius.map(|[first, _]| first)),
         ("stiffness", keys.stiffness),
         ("exponent", exponent),
         ("damping", keys.damping),
     ];
-    if let Some((key, value)) =
-        given.iter().find_map(|(k, v)| v.filter(|_| !used_keys.contains(k)).map(|v| (k, v)))
-    {
-        let expected = format!("what this law takes: {}", used_keys.join(", "));
+    let unused = |(key, value): &(&'static str, Option<f64>)| {
+        value.filter(|_| !form.keys().contains(key)).map(|value| (*key, value))
+    };
+    if let Some((key, value)) = given.iter().find_map(unused) {
+        let expected = format!("what this law takes: {}", form.keys().join(", "));
         return Err(Error::usage(format!("contact.{key} = {value} for this law"), expected)
             .hint("remove the key, or choose the law that has it: hunt-crossley takes stiffness, exponent and damping"));
     }
@@ -64,18 +96,18 @@ fn contact_law(scene: &Scene, wanted: Contact) -> Result<Option<Law>> {
                 .setting("set")
         })
     };
-    let stiffness = || stated(keys.stiffness, "stiffness", "N/m, or N/mⁿ");
-    Ok(match wanted {
-        Contact::Restitution => None,
-        Contact::KelvinVoigt => Some(scene.spring(stiffness()?)?),
-        Contact::Hertz => Some(Law::Hertz { stiffness: stiffness()? }),
-        Contact::HuntCrossley => Some(Law::HuntCrossley {
-            stiffness: stiffness()?,
-            exponent: keys.exponent.unwrap_or(1.5),
-            damping: stated(keys.damping, "damping", "s/m")?,
-        }),
-        Contact::LooseMass => scene.contact.map(|_| scene.spring(stiffness()?)).transpose()?,
-    })
+    let stiffness = stated(keys.stiffness, "stiffness", "N/m, or N/mⁿ")?;
+    let exponent = keys.exponent.unwrap_or(form.exponent);
+    let damping = match form.damping {
+        LawDamping::Lossless => 0.0,
+        LawDamping::Stated => stated(keys.damping, "damping", form.damping_unit)?,
+        LawDamping::OrRestitution(law) => match keys.damping {
+            Some(damping) => damping,
+            None => return law(stiffness, scene.rig.restitution, scene.rig.reduced_mass()).map(Some),
+        },
+    };
+    let law = form.law(stiffness, exponent, damping);
+    law.check().map(|()| Some(law))
 }
 
 /// Returns a function that starts motions of a scene from an excitation, a state and a phase (rad). Where

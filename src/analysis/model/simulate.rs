@@ -5,7 +5,7 @@ use super::{Driven, SceneKeys, figures};
 use crate::analysis::answer::Answer;
 use crate::error::{Error, Result};
 use crate::model::portrait::{Portrait, PortraitOptions};
-use crate::model::{HertzRebound, Motion, Regime, Rig, Scene, Simulation, State};
+use crate::model::{HertzRebound, Law, Motion, Regime, Rig, Scene, Simulation, State};
 use crate::record::Finding;
 use crate::report::Table;
 use crate::report::files::Names;
@@ -23,7 +23,7 @@ pub struct Keys {
     /// Excitation frequency in Hz
     pub frequency: Option<f64>,
     /// The contact law.
-    #[cfg_attr(feature = "cli", arg(help = contact::HELP, value_name = "LAW", value_parser = crate::campaign::word::<Contact>, default_value = "restitution"))]
+    #[cfg_attr(feature = "cli", arg(help = contact::help(), value_name = "LAW", value_parser = Contact::named, default_value = "restitution"))]
     pub model: Contact,
     /// Excitation cycles analysed
     #[cfg_attr(feature = "cli", arg(default_value_t = 100))]
@@ -107,7 +107,8 @@ impl Keys {
     /// Free rebound of a Hertz contact at the largest approach speed; `None` for other laws and without
     /// impacts.
     fn rebound(&self, scene: &Scene, portrait: &Portrait) -> Option<HertzRebound> {
-        let stiffness = scene.contact?.stiffness.filter(|_| self.model == Contact::Hertz)?;
+        let stiffness =
+            scene.contact?.stiffness.filter(|_| self.model == Contact::Law(Law::hertz(1.0).form))?;
         let fastest = portrait.impacts.iter().map(|i| i.approach_velocity).max_by(f64::total_cmp)?;
         Some(HertzRebound::new(stiffness, scene.rig.reduced_mass(), fastest))
     }
@@ -154,7 +155,7 @@ impl Keys {
                 None => moving,
             });
         }
-        if self.model == Contact::Hertz && rig.restitution < 1.0 {
+        if self.model.is_lossless() && rig.restitution < 1.0 {
             found.push(Finding::caution("hertz-lossless").number("restitution", rig.restitution));
         }
         let State { x1, x2, .. } = observed.end.2;

@@ -38,7 +38,7 @@ pub struct Keys {
     /// Excitation frequency in Hz of a sweep of the force
     pub frequency: Option<f64>,
     /// The contact law.
-    #[cfg_attr(feature = "cli", arg(help = contact::HELP, value_name = "LAW", value_parser = crate::campaign::word::<Contact>, default_value = "restitution"))]
+    #[cfg_attr(feature = "cli", arg(help = contact::help(), value_name = "LAW", value_parser = Contact::named, default_value = "restitution"))]
     pub model: Contact,
     /// Direction: up, down, both (each from the start), up-down (down from where up ends)
     #[cfg_attr(feature = "cli", arg(value_name = "WAY", value_parser = crate::campaign::word::<Directions>, default_value = "both"))]

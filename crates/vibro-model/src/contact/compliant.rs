@@ -118,7 +118,7 @@ impl Compliant {
         state: State,
         phase: f64,
     ) -> Result<Compliant> {
-        if law.is_some_and(|law| !matches!(law, Law::KelvinVoigt { .. })) {
+        if law.is_some_and(|law| !law.is_linear()) {
             let expected =
                 "rebounds at once or a Kelvin–Voigt contact: the other laws are for masses on their springs";
             return Err(Error::usage("a loose mass with a contact law that is not linear", expected));

@@ -30,10 +30,7 @@ impl Modes {
     pub fn new(rig: &Rig, law: Option<Law>, buffer: Option<Buffer>) -> Modes {
         let [first, second] = rig.bodies();
         let inverse = rig.masses().map(|mass| 1.0 / mass);
-        let (k3, c3) = match law {
-            Some(Law::KelvinVoigt { stiffness, damping }) => (stiffness, damping),
-            _ => (0.0, 0.0),
-        };
+        let (k3, c3) = law.filter(Law::is_linear).map_or((0.0, 0.0), |law| (law.stiffness, law.damping));
         let gap = buffer.map_or(0.0, |b| b.gap);
         let own = |acting: bool| {
             let k1 = if acting { first.stiffness } else { 0.0 };

@@ -33,7 +33,7 @@ pub(super) struct Within {
 
 impl Within {
     pub fn new(rig: &Rig, law: Option<Law>, reduced_mass: f64) -> Within {
-        let law = law.filter(|law| !matches!(law, Law::KelvinVoigt { .. }));
+        let law = law.filter(|law| !law.is_linear());
         let inverse = rig.masses().map(|mass| 1.0 / mass);
         Within { law, inverse, gap: rig.gap, reduced_mass, speed: 0.0, scale: 0.0, next: 0.0 }
     }
@@ -51,7 +51,7 @@ impl Within {
 
     /// Stiffness k and exponent n.
     fn spring(&self) -> (f64, f64) {
-        self.law.map_or((0.0, 1.0), |law| (law.numbers().0, law.numbers().1))
+        self.law.map_or((0.0, 1.0), |law| (law.stiffness, law.exponent))
     }
 
     /// Smallest sizes that the relative error refers to: the indentation and the speed of the contact, but at

@@ -6,7 +6,6 @@ use super::question::{Answer, Change};
 use super::reading::Settling;
 use super::rung::{Model, Need, Needed, Rung};
 use super::{Choice, Sensitivity};
-use crate::law::Law;
 use crate::law::conversion;
 use std::f64::consts::PI;
 use vibro_record::{Finding, Result};
@@ -194,7 +193,7 @@ impl<'a> Climb<'a> {
         let row = |decade: i32| {
             let stiffness = 10_f64.powi(decade);
             let law = scene.spring(stiffness).ok().filter(|_| !is_curved(scene))?;
-            let Law::KelvinVoigt { damping, .. } = law else { return None };
+            let damping = law.damping;
             let answer = match &self.motions {
                 Some(motions) => self.stage.with(motions, law).ok()?.0.answer,
                 None => self.stage.loose_mass(Some(stiffness)).ok()?.full()?,

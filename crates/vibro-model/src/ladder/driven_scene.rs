@@ -45,7 +45,7 @@ pub fn curved(scene: &Scene, speed: f64) -> Result<Law> {
     let exponent = keys.exponent.unwrap_or(HERTZ);
     let stiffness = keys.stiffness.ok_or_else(|| Error::refused("contact.stiffness is not known"))?;
     let law = match keys.damping {
-        Some(damping) => Law::HuntCrossley { stiffness, exponent, damping },
+        Some(damping) => Law::curved(stiffness, exponent, damping),
         None => Law::hunt_crossley(stiffness, exponent, scene.rig.restitution, speed)?,
     };
     law.check().map(|()| law)

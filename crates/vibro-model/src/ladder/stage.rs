@@ -21,7 +21,10 @@ use vibro_record::{Finding, Result};
 ///
 /// Its duration without losses is 2.9432 (5Mv²/4k)^{2/5}/v, which gives k.
 fn as_long(rig: &Rig, law: Law, speed: f64) -> Result<Law> {
-    let Law::KelvinVoigt { stiffness, damping } = law else { return Ok(law) };
+    if !law.is_linear() {
+        return Ok(law);
+    }
+    let Law { stiffness, damping, .. } = law;
     let mass = rig.reduced_mass();
     let ratio = damping / (2.0 * (stiffness * mass).sqrt());
     let lasts = conversion::duration(ratio, stiffness, mass);

@@ -15,7 +15,7 @@ fn at_once(rig: &Rig, excitation: &Excitation, state: State, phase: f64) -> Simu
 }
 
 fn giving(rig: &Rig, excitation: &Excitation, state: State, phase: f64) -> Compliant {
-    let law = Law::KelvinVoigt { stiffness: 1e5, damping: 3.0 };
+    let law = Law::spring(1e5, 3.0);
     Compliant::new(rig, excitation, law, state, phase).unwrap()
 }
 

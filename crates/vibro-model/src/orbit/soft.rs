@@ -49,7 +49,7 @@ impl Compliance {
     /// restitution.
     pub fn new(rig: &Rig, stiffness: f64, damping: Option<f64>) -> Result<Compliance> {
         rig.check()?;
-        Law::KelvinVoigt { stiffness, damping: damping.unwrap_or(0.0) }.check()?;
+        Law::spring(stiffness, damping.unwrap_or(0.0)).check()?;
         let mass = rig.reduced_mass();
         let omega = (stiffness / mass).sqrt();
         let ratio = match damping {

@@ -58,7 +58,7 @@ fn the_thesis_sweep_has_its_peaks() {
 #[test]
 fn the_thesis_contact_that_gives_way_has_the_known_peaks() {
     let rig = Rig::thesis();
-    let law = Law::KelvinVoigt { stiffness: 1e5, damping: 0.1 };
+    let law = Law::spring(1e5, 0.1);
     let pace = Pace::Rate { rate: 0.02, points: 2200 };
     let plan = |from: f64| Plan { from, to: 14.0, pace, observable: Observable::Rms };
     let sine = |frequency| Excitation::Sine(Sine { force: 0.1, frequency });

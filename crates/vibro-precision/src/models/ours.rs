@@ -40,7 +40,7 @@ pub fn swept(task: &Task, deviation: f64) -> Result<Log, OutcomeWithReason> {
 pub fn kelvin_voigt(task: &Task) -> Result<Log, OutcomeWithReason> {
     damping_ratio(task.rig.restitution)?;
     let Spring { stiffness, damping, .. } = task.spring();
-    let law = Law::KelvinVoigt { stiffness, damping };
+    let law = Law::spring(stiffness, damping);
     let mut motion = Compliant::new(&task.rig, &Excitation::Sine(sine(task)), law, start(task), task.phase)?;
     let mut log = Log::default();
     // A soft contact is reported when it is over: the motion is followed for longer, and contacts that begin

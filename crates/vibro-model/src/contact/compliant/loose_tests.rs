@@ -83,7 +83,7 @@ fn all_four_modes_agree_with_a_plain_integration() {
 fn agrees(buffer: Buffer) {
     let rig = Rig::thesis();
     let (k3, c3, force, omega) = (1e4, 5.0, 0.3, std::f64::consts::TAU * 5.0);
-    let law = Law::KelvinVoigt { stiffness: k3, damping: c3 };
+    let law = Law::spring(k3, c3);
     let mut motion = Compliant::loose(&rig, &sine(force, 5.0), buffer, Some(law), State::REST, 0.3).unwrap();
     let (mut touches, mut switches) = (0, 0);
     motion
@@ -123,7 +123,7 @@ fn the_upward_sweep_has_its_resonance_where_the_thesis_has() {
     // Contact of the thesis: 1e5 N/m with a damper of 0.1 N s/m; 0.1 N, 0.02 Hz/s in steps of 1 ms. In an
     // independent integration (Runge–Kutta of fourth order, 10 µs) the running RMS through a 10 rad/s
     // low-pass is largest at 4.62 to 4.66 Hz: the motion is irregular there, so this depends on the start.
-    let law = Law::KelvinVoigt { stiffness: 1e5, damping: 0.1 };
+    let law = Law::spring(1e5, 0.1);
     let mut motion =
         Compliant::loose(&Rig::thesis(), &sine(0.1, 3.0), Buffer::thesis(), Some(law), State::REST, 0.0)
             .unwrap();
@@ -176,7 +176,7 @@ fn impossible_ones_are_refused() {
     }
     assert!(new(&rig, 0.0, State { x1: 2e-3, ..State::REST }).is_err());
     assert!(new(&Rig { m1: 0.0, ..rig }, 0.0, State::REST).is_err());
-    let hertz = Law::Hertz { stiffness: 1e8 };
+    let hertz = Law::hertz(1e8);
     assert!(
         Compliant::loose(&rig, &sine(0.1, 5.0), Buffer::thesis(), Some(hertz), State::REST, 0.0).is_err()
     );
