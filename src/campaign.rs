@@ -38,6 +38,8 @@ pub use tables::{Compute, Drive, FitEntry, Follows, ModelEntry};
 
 pub(crate) use entry::Entry;
 pub(crate) use key_range::KeyRange;
+#[cfg(test)]
+pub(crate) use key_range::SHARED;
 pub(crate) use reading::{Channel, Reading, above_zero};
 pub(crate) use value::{LowPass, channel, channels, one_or_more, two, word};
 

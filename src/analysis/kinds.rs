@@ -196,3 +196,26 @@ fn run_all<A: Analysis>(job: &mut Job<'_>) -> Result<()> {
     }
     A::run(&entries, job)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::campaign::SHARED;
+
+    #[test]
+    fn every_key_stands_once_and_lets_in_no_value_that_is_no_number() {
+        let keys: Vec<&str> = key_ranges().chain(SHARED).flat_map(|range| range.keys).copied().collect();
+        for (i, key) in keys.iter().enumerate() {
+            assert!(!keys[..i].contains(key), "{key} stands twice");
+            for value in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1e-300, -1e300] {
+                let range = KeyRange::of(key, key_ranges()).expect("a range");
+                let said = range.check(key, value).unwrap_err().to_string();
+                assert!(said.starts_with(&format!("{key} is ")) && said.contains("expected "), "{said}");
+            }
+        }
+        let lets_in =
+            |key, value| KeyRange::of(key, key_ranges()).expect("a range").check(key, value).is_ok();
+        assert!(lets_in("band", 0.0) && lets_in("delay", -1e-3));
+        assert!(!lets_in("band", 1e51) && !lets_in("mass", 0.0) && !lets_in("overlap", 1.5));
+    }
+}

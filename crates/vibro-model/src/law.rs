@@ -1,5 +1,5 @@
-//! Contact laws: the force from the indentation and its rate. A law is a form with its numbers; each form is a
-//! module here and a row of [`FORMS`].
+//! Contact laws: the force from the indentation and its rate. A law is a form with its numbers; each form is
+//! a module here and a row of [`FORMS`].
 
 pub mod conversion;
 mod form;

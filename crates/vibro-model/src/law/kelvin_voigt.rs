@@ -1,5 +1,5 @@
-//! F = k₃δ + c₃δ̇: a spring and a damper in parallel. The contact ends where the force falls to zero, not where
-//! δ = 0.
+//! F = k₃δ + c₃δ̇: a spring and a damper in parallel. The contact ends where the force falls to zero, not
+//! where δ = 0.
 
 use super::{Law, LawDamping, LawForm, conversion};
 use crate::least::{NumberRange, number};
