@@ -92,6 +92,7 @@ impl Keys {
         answer.add("", finding);
         answer.add("", contact::buffer(&scene, self.model));
         answer.add("", self.doubts(&observed, &scene.rig));
+        answer.add("", rebound.as_ref().and_then(|rebound| beyond_elastic(rebound, &scene)));
         answer.tables.push(summary(&observed));
         answer.tables.extend(rebound.as_ref().map(rebounding));
         answer.figure("traces", figures::traces("Traces of both masses", portrait, scene.rig.gap));
@@ -107,10 +108,10 @@ impl Keys {
     /// Free rebound of a Hertz contact at the largest approach speed; `None` for other laws and without
     /// impacts.
     fn rebound(&self, scene: &Scene, portrait: &Portrait) -> Option<HertzRebound> {
-        let stiffness =
-            scene.contact?.stiffness.filter(|_| self.model == Contact::Law(Law::hertz(1.0).form))?;
+        let contact = scene.contact.filter(|_| self.model == Contact::Law(Law::hertz(1.0).form))?;
         let fastest = portrait.impacts.iter().map(|i| i.approach_velocity).max_by(f64::total_cmp)?;
-        Some(HertzRebound::new(stiffness, scene.rig.reduced_mass(), fastest))
+        let (mass, radius) = (scene.rig.reduced_mass(), contact.relative_radius());
+        Some(HertzRebound::new(contact.stiffness?, mass, fastest, radius))
     }
 
     /// The state at the start.
@@ -196,7 +197,14 @@ fn summary(observed: &ObservedMotion) -> Table {
     .note("Phase: of the excitation at the last impact, after the crest of a sine force, the impulse or the onset of the pulse.")
 }
 
-/// Stiffness, duration and largest force of a Hertz contact.
+/// Caution where the bodies of a Hertz contact yield, or a modulus or a radius has another unit than was meant.
+fn beyond_elastic(rebound: &HertzRebound, scene: &Scene) -> Option<Finding> {
+    let radius = scene.contact?.relative_radius()?;
+    let found = Finding::caution("hertz-yields").number("pressure", rebound.pressure?);
+    rebound.yields(radius).then(|| found.number("speed", rebound.speed))
+}
+
+/// Stiffness, duration, largest force and pressure of a Hertz contact.
 fn rebounding(rebound: &HertzRebound) -> Table {
     table(
         "Hertz contact",
@@ -208,6 +216,7 @@ fn rebounding(rebound: &HertzRebound) -> Table {
             ("largest indentation", "m", &|r| r.indentation.into()),
             ("largest force", "N", &|r| r.force.into()),
             ("duration", "s", &|r| r.duration.into()),
+            ("largest pressure", "Pa", &|r| r.pressure.into()),
         ],
     )
     .note("Closed form of the fastest impact, without the forces of springs and excitation.")

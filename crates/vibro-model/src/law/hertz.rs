@@ -2,6 +2,7 @@
 
 use super::{Law, LawDamping, LawForm, conversion};
 use serde::Serialize;
+use std::f64::consts::PI;
 
 pub(super) const FORM: LawForm = LawForm {
     name: "hertz",
@@ -35,17 +36,34 @@ pub struct HertzRebound {
     pub force: f64,
     /// Duration in s.
     pub duration: f64,
+    /// Largest pressure between the bodies in Pa; `None` where their radii are not known.
+    pub pressure: Option<f64>,
 }
 
 impl HertzRebound {
-    /// Rebound of the stiffness (N/m^{3/2}) for a reduced mass (kg) at an approach speed (m/s), all above 0.
-    pub fn new(stiffness: f64, mass: f64, speed: f64) -> HertzRebound {
+    /// Rebound of the stiffness (N/m^{3/2}) for a reduced mass (kg) at an approach speed (m/s), all above 0,
+    /// between bodies of the radius R, 1/R = 1/R₁ + 1/R₂ (m), where it is known.
+    ///
+    /// The pressure is 3F/(2πa²) at the centre of the circle of contact, a² = Rδ (Johnson 1985, 4.22 to 4.24).
+    pub fn new(stiffness: f64, mass: f64, speed: f64, radius: Option<f64>) -> HertzRebound {
         let indentation = conversion::hertz_depth(stiffness, mass, speed);
         let force = Law::hertz(stiffness).force(indentation, 0.0);
         let duration = conversion::hertz_duration(stiffness, mass, speed);
-        HertzRebound { stiffness, mass, speed, indentation, force, duration }
+        let pressure = radius.map(|radius| 1.5 * force / (PI * radius * indentation));
+        HertzRebound { stiffness, mass, speed, indentation, force, duration, pressure }
+    }
+
+    /// Whether the largest pressure is beyond what any metal bears without yielding. A ball yields at 1.6
+    /// times the yield stress (Johnson 1985, 6.1), and the hardest steels yield at a fiftieth of E*, which is
+    /// 3k/(4√R).
+    pub fn yields(&self, radius: f64) -> bool {
+        let modulus = 0.75 * self.stiffness / radius.sqrt();
+        self.pressure.is_some_and(|pressure| pressure > 1.6 * HARDEST * modulus)
     }
 }
+
+/// Yield stress over E* of the hardest steels: 2.3e9 Pa over 1.15e11 Pa.
+const HARDEST: f64 = 0.02;
 
 #[cfg(test)]
 mod tests {
@@ -55,7 +73,7 @@ mod tests {
     #[test]
     fn a_hertz_rebound_is_that_of_small_steps() {
         for (stiffness, mass, speed) in [(1e10, 0.093, 7.5), (3e7, 0.05, 0.3), (2e11, 4.0, 1e-3)] {
-            let found = HertzRebound::new(stiffness, mass, speed);
+            let found = HertzRebound::new(stiffness, mass, speed, None);
             let step = found.duration * 1e-5;
             let (mut depth, mut rate, mut deepest, mut steps) = (0.0_f64, speed, 0.0_f64, 0.0_f64);
             while steps == 0.0 || depth > 0.0 {
@@ -69,5 +87,21 @@ mod tests {
             assert!((found.indentation / deepest - 1.0).abs() < 1e-8, "{found:?}");
             assert!((found.force / (stiffness * deepest.powf(1.5)) - 1.0).abs() < 2e-8);
         }
+    }
+
+    /// A sphere of steel of 10 mm on a plane under 100 N: a = (3FR/4E*)^{1/3}, p = 3F/(2πa²), in other words
+    /// (6FE*²/π³R²)^{1/3} (Johnson 1985, 4.24).
+    #[test]
+    fn the_largest_pressure_is_that_of_the_force() {
+        let (radius, modulus) = (0.01, 1.153_846e11);
+        let stiffness = 4.0 / 3.0 * modulus * f64::sqrt(radius);
+        let found = HertzRebound::new(stiffness, 0.1, 0.5, Some(radius));
+        let expected = (6.0 * found.force * modulus.powi(2) / (PI.powi(3) * radius.powi(2))).cbrt();
+        assert!((found.pressure.unwrap() / expected - 1.0).abs() < 1e-13, "{found:?} {expected}");
+        // 1.6 · 0.02 E* is 3.7 GPa.
+        let soft = |speed| HertzRebound::new(stiffness, 0.1, speed, Some(radius));
+        let yields: Vec<bool> = [0.5, 8.0].map(|speed| soft(speed).yields(radius)).into();
+        assert_eq!(yields, [0.5, 8.0].map(|speed| soft(speed).pressure.unwrap() > 3.692_307e9));
+        assert_eq!(yields, [false, true]);
     }
 }

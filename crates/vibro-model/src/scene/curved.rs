@@ -10,12 +10,22 @@ const STEEL: &str =
 
 /// Stiffness k = (4/3) E* √R in N/m^{3/2} of F = kδ^{3/2}, with 1/R = 1/R₁ + 1/R₂ and
 /// 1/E* = (1 − ν₁²)/E₁ + (1 − ν₂²)/E₂ (Johnson 1985, 4.23).
-fn stiffness([r1, r2]: [f64; 2], [e1, e2]: [f64; 2], [nu1, nu2]: [f64; 2]) -> f64 {
+fn stiffness(radius: [f64; 2], [e1, e2]: [f64; 2], [nu1, nu2]: [f64; 2]) -> f64 {
     let yielding = (1.0 - nu1 * nu1) / e1 + (1.0 - nu2 * nu2) / e2;
-    4.0 / (3.0 * yielding * (1.0 / r1 + 1.0 / r2).sqrt())
+    4.0 / (3.0 * yielding) * relative(radius).sqrt()
+}
+
+/// Radius R of both bodies in m, with 1/R = 1/R₁ + 1/R₂.
+fn relative([r1, r2]: [f64; 2]) -> f64 {
+    1.0 / (1.0 / r1 + 1.0 / r2)
 }
 
 impl ContactKeys {
+    /// Radius R in m with 1/R = 1/R₁ + 1/R₂, where the radii of both bodies are stated.
+    pub fn relative_radius(&self) -> Option<f64> {
+        self.radius.map(relative)
+    }
+
     /// The keys, with stiffness and exponent of a Hertz contact where the bodies are stated.
     ///
     /// # Errors
@@ -39,8 +49,8 @@ impl ContactKeys {
         for (key, value, unit) in curved.chain(modulus.map(|e| ("modulus", e, "Pa"))) {
             number(&format!("contact.{key}"), value, unit, NumberRange::AboveZero).map_err(|e| (key, e))?;
         }
-        if let Some(ratio) = poisson.iter().find(|ratio| !(-1.0..=0.5).contains(*ratio)) {
-            let error = Error::usage(format!("contact.poisson is {ratio}"), "a value from -1 to 0.5");
+        if let Some(ratio) = poisson.iter().find(|ratio| !(**ratio > -1.0 && **ratio <= 0.5)) {
+            let error = Error::usage(format!("contact.poisson is {ratio}"), "a value above -1, at most 0.5");
             return Err(("poisson", error));
         }
         if radius == [f64::INFINITY; 2] {
@@ -89,6 +99,7 @@ mod tests {
             ("[0.01, nan]", ELASTIC, 2, "contact.radius is NaN m"),
             ("[0.01, 1]", "modulus = [0, 1]\npoisson = [0, 0]", 3, "contact.modulus is 0 Pa"),
             ("[0.01, 1]", "modulus = [1, 1]\npoisson = [0, 0.6]", 4, "contact.poisson is 0.6"),
+            ("[0.01, 1]", "modulus = [1, 1]\npoisson = [-1, -1]", 4, "contact.poisson is -1"),
             ("[0.01, inf]", &format!("{ELASTIC}stiffness = 1e9"), 5, "stiffness beside contact.radius"),
             ("[0.01, inf]", &format!("{ELASTIC}exponent = 1.5"), 5, "exponent beside contact.radius"),
             ("[0.01]", ELASTIC, 2, "radius"),
