@@ -126,7 +126,7 @@ fn absent() -> Result<Sheet> {
     let over_time = |slips| programs::impulses(1.0, 0.0, IMPULSE, slips).at(2.1301);
     let [slow, fast] = [over_time(JIDTW)?, over_time(&[])?];
     let outside = format!(
-        "the root of 3.42 has τ {:.3} T; jidtw, with φ/ω, draws it at {:.3} T, {:.2} mm off the contact",
+        "the root of 3.42 has τ {:.3} T; jidtw, with φ/ω on the other branch of the arcsine, draws a motion at {:.3} T, {:.2} mm off the contact",
         fast.timing,
         slow.timing,
         1e3 * slow.miss

@@ -12,58 +12,95 @@ use vibroimpact::model::{
 };
 use vibroimpact::{Error, Result};
 
+fn sine(force: f64, frequency: f64) -> Excitation {
+    Excitation::Sine(Sine { force, frequency })
+}
+
+fn pulses(force: f64, frequency: f64) -> Excitation {
+    Excitation::Pulse(Pulses { force, width: 0.01, frequency })
+}
+
 /// Motions that chapter 4 shows over time.
 pub fn simulated() -> Result<Vec<Sheet>> {
-    let sine = |force| Excitation::Sine(Sine { force, frequency: 3.0 });
-    let pulses = |force| Excitation::Pulse(Pulses { force, width: 0.01, frequency: 3.0 });
     let mut all = vec![eleven()?];
-    let missed = "its grazing resonance is at 5.58 Hz here";
-    for (name, title, hz, excitation, in_phase, why) in [
-        ("motion_missed", "Figure 4.20: motion at 4.66 Hz, sine of 0.1 N", 4.66, sine(0.1), true, missed),
-        ("motion_grazing", "Beside 4.20: motion at 5.5 Hz, sine of 0.1 N", 5.5, sine(0.1), true, ""),
-        ("motion_pulses", "Figure 4.21: motion at 5.66 Hz, pulses of 0.5 N", 5.66, pulses(0.5), true, ""),
-        ("motion_clapping", "Figure 4.22: motion at 10.61 Hz, sine of 0.2 N", 10.61, sine(0.2), false, ""),
-        (
-            "motion_hammering",
-            "Figure 4.23: motion at 10.72 Hz, pulses of 0.6 N",
-            10.72,
-            pulses(0.6),
-            false,
-            "",
-        ),
+    for (name, title, hz, drawn, in_phase, with) in [
+        ("motion_missed", "Figure 4.20: motion at 4.66 Hz, sine of 0.1 N", 4.66, 0.1, true, sine as Force),
+        ("motion_grazing", "Beside 4.20: motion at 5.5 Hz, sine of 0.1 N", 5.5, 0.1, true, sine),
+        ("motion_pulses", "Figure 4.21: motion at 5.66 Hz, pulses of 0.5 N", 5.66, 0.5, true, pulses),
+        ("motion_clapping", "Figure 4.22: motion at 10.61 Hz, sine of 0.2 N", 10.61, 0.2, false, sine),
+        ("motion_hammering", "Figure 4.23: motion at 10.72 Hz, pulses of 0.6 N", 10.72, 0.6, false, pulses),
     ] {
-        let (figure, claim) = swept_to(title, hz, &excitation, in_phase, why)?;
-        all.push(Sheet::new(name, title, figure, vec![claim.only_with("this force")]));
+        let shown = |force| Shown::swept_to(hz, &with(force, 3.0));
+        let motion = shown(drawn)?;
+        let what = format!("motion of both masses at {hz} Hz");
+        let claim = |what: String, motion: &Shown| {
+            let thesis = match (name, in_phase) {
+                ("motion_grazing", _) => "–",
+                (_, true) => "in phase",
+                (_, false) => "out of phase",
+            };
+            let why = if thesis == "–" { "near the grazing resonance of this page" } else { "" };
+            Claim::told(what, thesis, motion.words(), motion.is(in_phase), why)
+        };
+        let mut claims = vec![claim(what.clone(), &motion)];
+        if name != "motion_grazing" {
+            let tried = FORCES.map(|force| Ok((force, shown(force)?.is(in_phase))));
+            let tried: Vec<(f64, bool)> = tried.into_iter().collect::<Result<_>>()?;
+            claims = claims.into_iter().map(|claim| claim.of_forces("", &tried)).collect();
+        }
+        if name == "motion_missed" {
+            claims.push(claim(format!("{what}, from rest"), &Shown::from_rest(hz, &with(drawn, hz))?));
+        }
+        let figure = figures::traces(title, &motion.0, Rig::thesis().gap).height(100.0);
+        all.push(Sheet::new(name, title, figure, claims));
     }
     Ok(all)
 }
 
-/// The motion at `hz` (Hz) in an upward sweep from 3 Hz, with the claim whether the masses move in phase.
-fn swept_to(
-    title: &str,
-    hz: f64,
-    excitation: &Excitation,
-    in_phase: bool,
-    why: &str,
-) -> Result<(Figure, Claim)> {
-    let rig = Rig::thesis();
-    let mut motion = Compliant::new(&rig, excitation, CONTACT, State::REST, 0.0)?;
-    Chirp::new(0.02).advance(&mut motion, (hz - 3.0) / 0.02, &mut |_| {})?;
-    motion.advance(motion.time() + 300.0 / hz, &mut |_| {})?;
-    let portrait = Portrait::take(&mut motion, &PortraitOptions { cycles: 40, samples: 150, shown: 4 })?;
-    let product: f64 = portrait.states.iter().map(|s| s.x1 * s.x2).sum();
-    let squares = |of: fn(&State) -> f64| portrait.states.iter().map(|s| of(s).powi(2)).sum::<f64>().sqrt();
-    let alike = product / squares(|s| s.x1) / squares(|s| s.x2);
-    let claim = Claim::told(
-        format!("motion of both masses at {hz} Hz"),
-        if in_phase { "in phase" } else { "out of phase" },
-        format!("correlation of x₁ and x₂ {alike:.2}, impacts/cycles {}", portrait.pattern.regime)
-            .replace('-', "−"),
-        (alike > 0.0) == in_phase,
-        why,
-    );
-    let figure = figures::traces(title, &portrait, rig.gap).height(100.0);
-    Ok((figure, claim))
+/// Forces in N that are tried where the thesis states none.
+const FORCES: [f64; 5] = [0.1, 0.2, 0.5, 1.0, 1.5];
+
+/// An excitation of a force (N) at a frequency (Hz).
+type Force = fn(f64, f64) -> Excitation;
+
+/// A motion over 40 cycles.
+struct Shown(Portrait);
+
+impl Shown {
+    /// The motion at `hz` (Hz) in an upward sweep from 3 Hz.
+    fn swept_to(hz: f64, excitation: &Excitation) -> Result<Shown> {
+        let mut motion = Compliant::new(&Rig::thesis(), excitation, CONTACT, State::REST, 0.0)?;
+        Chirp::new(0.02).advance(&mut motion, (hz - 3.0) / 0.02, &mut |_| {})?;
+        Shown::settled(motion, hz)
+    }
+
+    /// The motion at `hz` (Hz) from rest.
+    fn from_rest(hz: f64, excitation: &Excitation) -> Result<Shown> {
+        Shown::settled(Compliant::new(&Rig::thesis(), excitation, CONTACT, State::REST, 0.0)?, hz)
+    }
+
+    /// The motion after 300 cycles more.
+    fn settled(mut motion: Compliant, hz: f64) -> Result<Shown> {
+        motion.advance(motion.time() + 300.0 / hz, &mut |_| {})?;
+        Portrait::take(&mut motion, &PortraitOptions { cycles: 40, samples: 150, shown: 4 }).map(Shown)
+    }
+
+    /// Correlation of both displacements.
+    fn alike(&self) -> f64 {
+        let states = &self.0.states;
+        let squares = |of: fn(&State) -> f64| states.iter().map(|s| of(s).powi(2)).sum::<f64>().sqrt();
+        states.iter().map(|s| s.x1 * s.x2).sum::<f64>() / squares(|s| s.x1) / squares(|s| s.x2)
+    }
+
+    /// Whether the masses strike, and move in phase or out of phase.
+    fn is(&self, in_phase: bool) -> bool {
+        self.0.pattern.regime != Regime::NoImpact && (self.alike() > 0.0) == in_phase
+    }
+
+    fn words(&self) -> String {
+        let (alike, regime) = (self.alike(), self.0.pattern.regime);
+        format!("correlation of x₁ and x₂ {alike:.2}, impacts/cycles {regime}").replace('-', "−")
+    }
 }
 
 fn eleven() -> Result<Sheet> {
@@ -124,23 +161,21 @@ pub fn patterns() -> Result<Sheet> {
                 .legend(Legend::Hidden);
         figure = figure.panel(plot);
         let found = portrait.pattern.regime;
-        let agrees = match found {
+        let claimed = |regime| match regime {
             Regime::Irregular => thesis == "irregular",
             Regime::Periodic { impacts: 1, cycles: 1 } => thesis != "irregular",
             _ => false,
         };
-        let (mut others, mut values) = (Vec::new(), format!("{force} N"));
-        for other in [0.7, 0.2112] {
-            let pattern = settled(other, force, hz)?;
-            others.push(format!("{pattern} with R {other}"));
-            if pattern != found {
-                values = format!("R {restitution} and {force} N");
-            }
-        }
-        let here = format!("impacts/cycles {found}; {}", others.join(", "));
+        let here = format!("impacts/cycles {found} with R {restitution} and {force} N");
         let figure = if hz < 7.0 { "5.2" } else { "5.3" };
-        let claim = Claim::told(format!("{figure}: impacts at {hz} Hz"), thesis, here, agrees, "");
-        claims.push(claim.only_with(&values));
+        let mut claim =
+            Claim::told(format!("{figure}: impacts at {hz} Hz"), thesis, here, claimed(found), "");
+        for other in [restitution, 0.7, 0.2112] {
+            let tried = [0.1, 0.2, 0.3, 0.5].map(|force| Ok((force, claimed(settled(other, force, hz)?))));
+            let tried: Vec<(f64, bool)> = tried.into_iter().collect::<Result<_>>()?;
+            claim = claim.of_forces(&format!("R {other} and "), &tried);
+        }
+        claims.push(claim);
     }
     let figure = figure.caption(
         "Approach speed from impact to impact, sine of 0.3 N, R = 0.98, after 3000 cycles from rest.",

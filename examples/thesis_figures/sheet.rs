@@ -97,6 +97,24 @@ impl Claim {
         Claim { verdict, ..self }
     }
 
+    /// Whether the claim holds with other forces (N), since the thesis states none; `with` are other values.
+    pub fn of_forces(mut self, with: &str, tried: &[(f64, bool)]) -> Claim {
+        let of = |holds: bool| {
+            let forces: Vec<String> =
+                tried.iter().filter(|(_, held)| *held == holds).map(|(force, _)| force.to_string()).collect();
+            (!forces.is_empty()).then(|| format!("{with}{} N", forces.join(", ")))
+        };
+        let verdict = match (of(true), of(false)) {
+            (Some(yes), Some(no)) => format!("agrees with {yes}, not with {}", no.trim_start_matches(with)),
+            (Some(yes), None) => format!("agrees with {yes}"),
+            (None, no) => format!("does not with {}", no.unwrap_or_default()),
+        };
+        let stated = "the thesis states no force";
+        let before = self.verdict.strip_suffix(stated).unwrap_or("");
+        self.verdict = format!("{before}{verdict}; {stated}");
+        self
+    }
+
     /// The claim holds only with `values`, which the thesis does not state.
     pub fn only_with(mut self, values: &str) -> Claim {
         self.verdict = self.verdict.replacen(

@@ -180,7 +180,9 @@ fn branches() -> Result<Sheet> {
     let claims = vec![Claim::told(
         "clapping resonance",
         "only when sweeping up",
-        format!("branch ends in a fold at {top:.2} Hz, the motion without impacts is stable beside it"),
+        format!(
+            "with R 0.98 and 0.1 N its branch ends in a fold at {top:.2} Hz, the motion without impacts is stable beside it"
+        ),
         top > 9.0,
         "a sweep down finds the other motion",
     )];
