@@ -69,7 +69,9 @@ impl Keys {
         let columns: Vec<&[CurvePoint]> = found.points.chunk_by(|a, b| a.frequency == b.frequency).collect();
         let shown = columns.iter().step_by(columns.len().div_ceil(SHOWN));
         let shown: Vec<&CurvePoint> = shown.copied().flatten().collect();
-        answer.figure("backbone", figures::backbone("Response and backbone", &found, &columns, &shown));
+        let step = (self.to - self.from) / (self.points - 1) as f64;
+        let figure = figures::backbone("Response and backbone", &found, &columns, &shown, step);
+        answer.figure("backbone", figure);
         let heads: [Shown<&CurvePoint>; 7] = [
             ("frequency", "Hz", &|p| p.frequency.into()),
             ("amplitude, harmonic balance", "m", &|p| p.amplitude.into()),

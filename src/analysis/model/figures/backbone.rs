@@ -6,16 +6,18 @@ use crate::report::layout::{line, points};
 use crate::report::{AxisSpec, Figure, Ink, Marker, Plot, Stroke};
 
 /// Amplitude over frequency by harmonic balance, whose points of each frequency are `columns`, with the exact
-/// motions of the points `shown`.
+/// motions of the points `shown`. Points more than `step` (Hz) apart are not joined.
 pub fn backbone(
     title: &str,
     found: &CurvedResponse,
     columns: &[&[CurvePoint]],
     shown: &[&CurvePoint],
+    step: f64,
 ) -> Figure {
     let mut lines: [Pieces; 2] = Default::default();
     let place = |p: &CurvePoint| (p.frequency, 1e3 * p.amplitude);
-    for pair in columns.windows(2) {
+    let near = |pair: &&[&[CurvePoint]]| pair[1][0].frequency - pair[0][0].frequency <= 1.001 * step;
+    for pair in columns.windows(2).filter(near) {
         // The columns have one or three motions: each of the smaller number goes on to the nearest alike.
         let (few, many) = if pair[0].len() < pair[1].len() { (pair[0], pair[1]) } else { (pair[1], pair[0]) };
         for a in few {
