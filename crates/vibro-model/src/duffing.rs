@@ -20,6 +20,7 @@ use std::f64::consts::TAU;
 use vibro_math::root::bracketed;
 use vibro_math::runge_kutta::{Dop853, Integrator, Tolerance};
 use vibro_math::{bisected, border};
+use vibro_record::units::notation::significant;
 use vibro_record::{Error, Result};
 
 /// Most frequencies of a response.
@@ -102,6 +103,14 @@ pub struct CurvedResponse {
     pub backbone: Vec<[f64; 3]>,
 }
 
+impl ExactMotion {
+    /// Whether it is stable; without damper all multipliers lie on the unit circle, to an error of the integration
+    /// below 1e-6.
+    pub fn is_stable(&self) -> bool {
+        self.spectral_radius <= 1.0 + 1e-6
+    }
+}
+
 impl CurvePoint {
     /// Relative error of the amplitude by harmonic balance.
     pub fn error(&self) -> Option<f64> {
@@ -124,7 +133,9 @@ impl Duffing {
         if cubic == 0.0 {
             let expected = format!("springs.cubic{mass} in N/m³, not 0");
             return Err(Error::usage(format!("spring {mass} is straight"), expected)
-                .hint(format!("set springs.cubic{mass}: 1e7 adds 10 mN at 1 mm"))
+                .hint(format!(
+                    "state springs.cubic{mass}, such as springs.cubic{mass}=1e7: 10 mN more at 1 mm"
+                ))
                 .setting("set"));
         }
         Ok(Duffing { body, cubic })
@@ -277,7 +288,8 @@ impl Duffing {
         let points: Vec<CurvePoint> = found.into_iter().flat_map(|(within, _)| within).collect();
         let Some(largest) = points.iter().map(|p| p.amplitude).reduce(f64::max) else {
             return Err(Error::refused(format!(
-                "all motions go beyond {limit} m, where the softening spring has its largest force"
+                "all motions go beyond {} m, where the softening spring has its largest force",
+                significant(limit, 3)
             ))
             .hint("give a smaller force"));
         };

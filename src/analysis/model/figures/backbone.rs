@@ -41,7 +41,7 @@ pub fn backbone(
         [(true, "exact, stable", Marker::Circle), (false, "exact, unstable", Marker::OpenCircle)]
     {
         let exact = shown.iter().filter_map(|p| Some((p.frequency, p.exact?)));
-        let of_kind = exact.filter(|(_, exact)| (exact.spectral_radius <= 1.0) == stable);
+        let of_kind = exact.filter(|(_, exact)| exact.is_stable() == stable);
         let places = of_kind.map(|(frequency, exact)| (frequency, 1e3 * exact.amplitude));
         plot = points(plot, name, places, Ink::Black, marker);
     }
