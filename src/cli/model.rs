@@ -24,7 +24,7 @@ enum Question {
     Simulate(ModelArgs<simulate::Keys>),
     /// All motions with one impact a period over frequency, with folds and stability limits
     Response(ModelArgs<response::Keys>),
-    /// Response of one mass on its curved spring without impacts, with jumps and backbone, beside exact motions
+    /// Response of one mass on its curved spring without impacts: jumps and backbone, beside exact motions
     Backbone(ModelArgs<backbone::Keys>),
     /// Motions with P impacts in Q cycles followed over frequency, force, gap or restitution, through folds,
     /// flips and grazing

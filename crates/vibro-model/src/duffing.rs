@@ -1,12 +1,13 @@
-//! One mass on a spring with a cubic term under a sine force: m ẍ + c ẋ + k x + k₃ x³ = F₀ cos ωt (Duffing 1918,
-//! *Erzwungene Schwingungen bei veränderlicher Eigenfrequenz*).
+//! One mass on a spring with a cubic term under a sine force: m ẍ + c ẋ + k x + k₃ x³ = F₀ cos ωt
+//! (Duffing 1918, *Erzwungene Schwingungen bei veränderlicher Eigenfrequenz*).
 //!
 //! Harmonic balance keeps the first harmonic of x³: x = A cos(ωt − φ) sees the stiffness k + ¾k₃A², and
-//! ((k + ¾k₃A² − mω²)² + c²ω²) A² = F₀² is a cubic in A² (Nayfeh & Mook 1979, *Nonlinear Oscillations*, 4.1.1).
-//! Two exact calculations state its error: the free period without damper, and periodic motions by shooting.
+//! ((k + ¾k₃A² − mω²)² + c²ω²) A² = F₀² is a cubic in A² (Nayfeh & Mook 1979, *Nonlinear Oscillations*,
+//! 4.1.1). Two exact calculations state its error: the free period without damper, and periodic motions
+//! by shooting.
 //!
-//! The spring hardens with k₃ > 0. With k₃ < 0 it softens, and its force falls beyond x = √(k/3|k₃|): a cubic
-//! holds for no real spring there, so larger motions are left out.
+//! The spring hardens with k₃ > 0. With k₃ < 0 it softens, and its force falls beyond x = √(k/3|k₃|): a
+//! cubic holds for no real spring there, so larger motions are left out.
 
 use super::body::Body;
 use super::excitation::Sine;
@@ -35,7 +36,8 @@ const FOUND: f64 = 1e-9;
 const ITERATIONS: usize = 20;
 /// Displacement over the amplitude by harmonic balance beyond which a motion is given up.
 const FAR: f64 = 4.0;
-/// Most swings in a cycle for which an exact motion is sought: a thousand points then take some ten seconds.
+/// Most swings in a cycle for which an exact motion is sought: a thousand points then take some ten
+/// seconds.
 const MOST_SWINGS: f64 = 100.0;
 
 /// One mass on a spring with a cubic term.
@@ -98,14 +100,14 @@ pub struct CurvedResponse {
     pub jumps: Vec<Jump>,
     /// Number of motions beyond the largest force of a softening spring, which are left out.
     pub beyond: usize,
-    /// Free motion without damper up to the largest amplitude: amplitude in m, frequency in Hz by harmonic
-    /// balance, and the exact one.
+    /// Free motion without damper up to the largest amplitude: amplitude in m, frequency in Hz by
+    /// harmonic balance, and the exact one.
     pub backbone: Vec<[f64; 3]>,
 }
 
 impl ExactMotion {
-    /// Whether it is stable; without damper all multipliers lie on the unit circle, to an error of the integration
-    /// below 1e-6.
+    /// Whether it is stable; without damper all multipliers lie on the unit circle, to an error of the
+    /// integration below 1e-6.
     pub fn is_stable(&self) -> bool {
         self.spectral_radius <= 1.0 + 1e-6
     }
@@ -141,7 +143,8 @@ impl Duffing {
         Ok(Duffing { body, cubic })
     }
 
-    /// Deflection in m at which the force of a softening spring is largest; infinite for a hardening one.
+    /// Deflection in m at which the force of a softening spring is largest; infinite for a hardening
+    /// one.
     pub fn limit(&self) -> f64 {
         limit(self.body.stiffness, self.cubic)
     }
@@ -151,24 +154,24 @@ impl Duffing {
         self.free(0.0)[1]
     }
 
-    /// Frequency in Hz of the free motion without damper: by harmonic balance, and the exact one. The amplitude
-    /// (m) must not exceed [`Duffing::limit`].
+    /// Frequency in Hz of the free motion without damper: by harmonic balance, and the exact one. The
+    /// amplitude (m) must not exceed [`Duffing::limit`].
     ///
-    /// T = 4K/√((k + k₃A²)/m) with the complete elliptic integral K of the parameter k₃A²/2(k + k₃A²). By K =
-    /// π/2agm(1, k′), ω is the arithmetic-geometric mean of √((k + k₃A²)/m) and √((k + ½k₃A²)/m). Harmonic
-    /// balance takes the root of their mean square: it is too high, by up to 2.3 % with k₃ > 0, and up to 0.24 %
-    /// with k₃ < 0.
+    /// T = 4K/√((k + k₃A²)/m) with the complete elliptic integral K of the parameter k₃A²/2(k + k₃A²).
+    /// By K = π/2agm(1, k′), ω is the arithmetic-geometric mean of √((k + k₃A²)/m) and √((k + ½k₃A²)/m).
+    /// Harmonic balance takes the root of their mean square: it is too high, by up to 2.3 % with k₃ > 0,
+    /// and up to 0.24 % with k₃ < 0.
     pub fn free(&self, amplitude: f64) -> [f64; 2] {
         let added = self.cubic * amplitude * amplitude;
         let hz = |part: f64| ((self.body.stiffness + part * added) / self.body.mass).sqrt() / TAU;
         [hz(0.75), agm(hz(1.0), hz(0.5))]
     }
 
-    /// All motions by harmonic balance, amplitudes rising, each with its complex amplitude in m and whether it
-    /// is stable.
+    /// All motions by harmonic balance, amplitudes rising, each with its complex amplitude in m and
+    /// whether it is stable.
     ///
-    /// F₀² over A² has at most two turning points: each stretch between them holds one motion at most, and that
-    /// of the falling stretch is unstable.
+    /// F₀² over A² has at most two turning points: each stretch between them holds one motion at most,
+    /// and that of the falling stretch is unstable.
     fn balanced(&self, sine: &Sine) -> Vec<(Complex64, bool)> {
         let omega = sine.omega();
         let offset = self.body.stiffness - self.body.mass * omega * omega;
@@ -194,7 +197,8 @@ impl Duffing {
         ends.windows(2).enumerate().filter_map(motion).collect()
     }
 
-    /// The exact periodic motion near a complex amplitude, by Newton's method on the state after a cycle.
+    /// The exact periodic motion near a complex amplitude, by Newton's method on the state after a
+    /// cycle.
     fn shoot(&self, sine: &Sine, near: Complex64) -> Option<ExactMotion> {
         let stiffest = self.body.stiffness + 3.0 * self.cubic.max(0.0) * near.norm_sqr();
         if (stiffest / self.body.mass).sqrt() > MOST_SWINGS * sine.omega() {
@@ -221,8 +225,8 @@ impl Duffing {
         None
     }
 
-    /// State and monodromy (by columns) after a cycle from `start`, and half the peak-to-peak displacement. `None`
-    /// beyond [`FAR`] times the displacement `size` in m.
+    /// State and monodromy (by columns) after a cycle from `start`, and half the peak-to-peak
+    /// displacement. `None` beyond [`FAR`] times the displacement `size` in m.
     fn cycle(&self, sine: &Sine, start: [f64; 2], size: f64) -> Option<([f64; 6], f64)> {
         let (omega, Body { mass, damping, stiffness }) = (sine.omega(), self.body);
         let rate = |t: f64, y: &[f64; 6]| {
@@ -240,21 +244,19 @@ impl Duffing {
             let before = flight.y()[1];
             let step = flight.step(rate, period).ok()?;
             // Steps are much shorter than the time between two turning points.
-            let turn = match before * step.end[1] < 0.0 {
-                true => border(0.0, step.duration, |t| step.at(t)[1] * before > 0.0),
-                false => step.duration,
-            };
-            let x = step.at(turn)[0];
+            let turns = before * step.end[1] < 0.0;
+            let turn = turns.then(|| border(0.0, step.duration, |t| step.at(t)[1] * before > 0.0));
+            let x = step.at(turn.unwrap_or(step.duration))[0];
             (low, high) = (low.min(x), high.max(x));
-            if !(high.max(-low) <= FAR * size) {
+            if high.max(-low) > FAR * size {
                 return None;
             }
         }
         Some((*flight.y(), (high - low) / 2.0))
     }
 
-    /// Response to a force of this amplitude (N) at `points` frequencies from `from` to `to` (Hz), and at the
-    /// jumps between them.
+    /// Response to a force of this amplitude (N) at `points` frequencies from `from` to `to` (Hz), and
+    /// at the jumps between them.
     ///
     /// # Errors
     /// If the force or the axis is impossible, or all motions are beyond the largest force of the spring.

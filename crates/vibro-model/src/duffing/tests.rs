@@ -10,8 +10,8 @@ fn mass(cubic: f64, damping: f64) -> Duffing {
 
 #[test]
 fn the_exact_free_period_is_that_of_its_integral() {
-    // T = 4∫dx/v over a quarter; with x = A sin θ and v from the energy, T = 4∫₀^{π/2} dθ √(m/(k + ½k₃A²(1 +
-    // sin²θ))). The trapezoidal rule of this smooth periodic function converges exponentially.
+    // T = 4∫dx/v over a quarter; with x = A sin θ and v from the energy, T = 4∫₀^{π/2} dθ √(m/(k +
+    // ½k₃A²(1 + sin²θ))). The trapezoidal rule of this smooth periodic function converges exponentially.
     for (cubic, amplitude) in [(1e7, 1e-3), (1e7, 0.1), (-1e7, 2.1e-3), (-1e7, 1e-6)] {
         let duffing = mass(cubic, 0.1);
         let added = cubic * amplitude * amplitude;
@@ -23,7 +23,8 @@ fn the_exact_free_period_is_that_of_its_integral() {
         let period = TAU * (0..n).map(rate).sum::<f64>() / n as f64;
         let [balance, exact] = duffing.free(amplitude);
         assert!((exact * period - 1.0).abs() < 1e-14, "{cubic} {amplitude}: {exact} {period}");
-        // To first order harmonic balance shifts the frequency by 3k₃A²/8k; it is too high by the stated bounds.
+        // To first order harmonic balance shifts the frequency by 3k₃A²/8k; it is too high by the stated
+        // bounds.
         let small = added.abs() / 135.0;
         let shift = balance / duffing.natural_frequency() - 1.0;
         assert!((shift - 3.0 * added / (8.0 * 135.0)).abs() < 0.1 * small * small, "{shift}");
@@ -34,8 +35,8 @@ fn the_exact_free_period_is_that_of_its_integral() {
 
 #[test]
 fn every_motion_solves_the_balance_and_has_its_stability() {
-    // Random masses, forces and frequencies: the sign changes of the cubic over A², on a grid from 1 µm to 98 m,
-    // are all its roots.
+    // Random masses, forces and frequencies: the sign changes of the cubic over A², on a grid from 1 µm
+    // to 98 m, are all its roots.
     let mut noise = vibro_math::Noise::new(20_261_129);
     let mut three = 0;
     for _ in 0..100 {
@@ -64,14 +65,15 @@ fn every_motion_solves_the_balance_and_has_its_stability() {
 
 #[test]
 fn shooting_is_right_where_the_motion_is_known() {
-    // Nearly without curvature the motion is the linear one, and the multipliers have the modulus e^{−cT/2m}.
+    // Nearly without curvature the motion is the linear one, and the multipliers have the modulus
+    // e^{−cT/2m}.
     let (linear, sine) = (mass(1e-3, 0.1), Sine { force: 0.3, frequency: 4.0 });
     let known = linear.body.receptance(sine.omega()).norm() * 0.3;
     let found = linear.shoot(&sine, linear.balanced(&sine)[0].0).unwrap();
     assert!((found.amplitude / known - 1.0).abs() < 1e-9, "{found:?} {known}");
     assert!((found.spectral_radius / (-0.1_f64 / (2.0 * 0.125 * 4.0)).exp() - 1.0).abs() < 1e-9);
-    // A tiny force keeps the free motion without damper at its exact frequency; F₀/A of the spring's force
-    // shifts the amplitude by a like part.
+    // A tiny force keeps the free motion without damper at its exact frequency; F₀/A of the spring's
+    // force shifts the amplitude by a like part.
     for cubic in [1e7, -4e6] {
         let free = mass(cubic, 0.0);
         let [_, exact] = free.free(2e-3);

@@ -49,7 +49,8 @@ impl<'a> Climb<'a> {
         &self.rungs[model as usize]
     }
 
-    /// The motion with rigid impacts after its transients; `None` where several coexist, and for a loose mass.
+    /// The motion with rigid impacts after its transients; `None` where several coexist, and for a loose
+    /// mass.
     pub fn settled(&self) -> Option<Simulation> {
         self.motions.as_ref().filter(|m| m.on != CurrentMotion::Open).map(|m| m.end.clone())
     }

@@ -1,5 +1,6 @@
-//! Effect of a spring's curvature on the answer. No rung has a curved spring: each curved spring is replaced by
-//! the straight one that harmonic linearisation gives for the motion found, and the answers are compared.
+//! Effect of a spring's curvature on the answer. No rung has a curved spring: each curved spring is
+//! replaced by the straight one that harmonic linearisation gives for the motion found, and the answers
+//! are compared.
 
 use super::driven_scene::DrivenScene;
 use super::{Change, Choice, Model, Question, elsewhere};
@@ -13,8 +14,9 @@ use vibro_record::{Finding, Result};
 
 /// Cycles over which the motion is averaged: whole patterns of 1 to 6 cycles.
 const CYCLES: usize = 60;
-/// Samples in a cycle, or in a swing of the faster mass if that is shorter: a peak is up to 0.03 % too low.
-const SAMPLES: f64 = 64.0;
+/// Samples in a cycle, or in a swing of the faster mass if that is shorter: a peak is up to 0.03 % too
+/// low.
+const SAMPLES: f64 = 128.0;
 
 /// Effect of the curvature of a spring.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -23,8 +25,8 @@ pub struct Curvature {
     pub spring: u8,
     /// Half the peak-to-peak displacement of its mass in m.
     pub amplitude: f64,
-    /// Relative shift of its natural frequency by harmonic balance, to first order 3k₃A²/8k for a sine of
-    /// amplitude A. `None` where a softening spring goes beyond its largest force.
+    /// Relative shift of its natural frequency by harmonic balance, to first order 3k₃A²/8k for a sine
+    /// of amplitude A. `None` where a softening spring goes beyond its largest force.
     pub shift: Option<f64>,
     /// Change of the answer with the equivalent straight spring; `None` where there is no answer.
     pub change: Option<Change>,
@@ -52,7 +54,8 @@ impl Displacement {
         }
     }
 
-    /// Slope of the line that fits x³ best over the motion, cov(x³, x)/var(x): ¾A² for a sine of amplitude A.
+    /// Slope of the line that fits x³ best over the motion, cov(x³, x)/var(x): ¾A² for a sine of
+    /// amplitude A.
     fn slope(&self) -> f64 {
         let [x, xx, xxx, xxxx] = self.sums.map(|sum| sum / self.time);
         let variance = xx - x * x;
@@ -61,8 +64,9 @@ impl Displacement {
     }
 }
 
-/// Effects of the curved springs on the chosen answer, or on that with rigid impacts where none is chosen.
-/// `settled` is the motion with rigid impacts after its transients; without it nothing is computed.
+/// Effects of the curved springs on the chosen answer, or on that with rigid impacts where none is
+/// chosen. `settled` is the motion with rigid impacts after its transients; without it nothing is
+/// computed.
 ///
 /// # Errors
 /// If the motion cannot be followed.

@@ -475,8 +475,8 @@ fn a_law_that_matters_is_a_doubt() {
     assert!(scene_b(Some(1e8)).findings.iter().all(|f| f.code != "law-matters"));
 }
 
-/// The linear motion near resonance, 5 mN at 5.1 Hz: from the closed form A = F₀/|k − mω² + icω|, the shift is
-/// √(1 + 3k₃A²/4k) − 1, and the answer is that of a spring stiffer by ¾k₃A².
+/// The linear motion near resonance, 5 mN at 5.1 Hz: from the closed form A = F₀/|k − mω² + icω|, the
+/// shift is √(1 + 3k₃A²/4k) − 1, and the answer is that of a spring stiffer by ¾k₃A².
 #[test]
 fn a_curved_spring_counts_by_its_equivalent_stiffness() {
     let question = Question { history: Some(Direction::Up), ..Question::new(Observable::Fundamental) };
