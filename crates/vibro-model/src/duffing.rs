@@ -36,8 +36,8 @@ const FOUND: f64 = 1e-9;
 const ITERATIONS: usize = 20;
 /// Displacement over the amplitude by harmonic balance beyond which a motion is given up.
 const FAR: f64 = 4.0;
-/// Most swings in a cycle for which an exact motion is sought: a thousand points then take some ten
-/// seconds.
+/// Most swings, or decays by e, in a cycle for which an exact motion is sought: a thousand
+/// points then take some ten seconds.
 const MOST_SWINGS: f64 = 100.0;
 
 /// One mass on a spring with a cubic term.
@@ -201,7 +201,8 @@ impl Duffing {
     /// cycle.
     fn shoot(&self, sine: &Sine, near: Complex64) -> Option<ExactMotion> {
         let stiffest = self.body.stiffness + 3.0 * self.cubic.max(0.0) * near.norm_sqr();
-        if (stiffest / self.body.mass).sqrt() > MOST_SWINGS * sine.omega() {
+        let fastest = (stiffest / self.body.mass).sqrt().max(self.body.damping / self.body.mass);
+        if fastest > MOST_SWINGS * sine.omega() {
             return None;
         }
         let mut start = [near.re, -sine.omega() * near.im];
@@ -263,6 +264,7 @@ impl Duffing {
     pub fn response(&self, force: f64, from: f64, to: f64, points: usize) -> Result<CurvedResponse> {
         let at = axis(from, to, points, MOST_POINTS)?;
         Sine { force, frequency: from }.check()?;
+        scales::check_sizes([force, from, to].into_iter())?;
         if force == 0.0 {
             return Err(Error::usage("nothing drives the mass", "a force above 0").setting("force"));
         }

@@ -68,7 +68,8 @@ pub struct Choice {
     /// Changes of the chosen answer where the gap is smaller or larger by its uncertainty; `None` where the
     /// chosen model has no answer with that gap.
     pub gap: Vec<Option<Change>>,
-    /// Effect of each curved spring on the answer; empty where the springs are straight or the motion is open.
+    /// Effect of each curved spring on the answer; empty where the springs are straight or the motion is
+    /// open.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub springs: Vec<Curvature>,
     /// The answers over a range of contact stiffnesses, where the stiffness is unknown and no rung is good

@@ -44,7 +44,8 @@ pub struct Scene {
     pub springs: Option<Springs>,
 }
 
-/// Cubic coefficients k₃ in N/m³ of the springs' forces kx + k₃x³: above 0 a spring hardens, below it softens.
+/// Cubic coefficients k₃ in N/m³ of the springs' forces kx + k₃x³: above 0 a spring hardens, below 0 it
+/// softens.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields, expecting = "a table")]
 pub struct Springs {
