@@ -1,6 +1,7 @@
 //! The model of a rig: `vibro model`, one file for each question; figures of its orbits, motions, sweeps,
 //! maps, and of the choice of a model.
 
+pub mod backbone;
 pub mod branch;
 pub mod choose;
 pub mod contact;
@@ -23,8 +24,8 @@ use std::path::PathBuf;
 #[derive(Debug, Clone, Default)]
 #[cfg_attr(feature = "cli", derive(clap::Args))]
 pub struct SceneKeys {
-    /// Rig as a TOML file: m1 m2 k1 k2 c1 c2 gap restitution, tables excitation, contact, buffer [default:
-    /// the thesis' rig]
+    /// Rig as a TOML file: m1 m2 k1 k2 c1 c2 gap restitution, tables excitation, contact, buffer, springs
+    /// [default: the thesis' rig]
     #[cfg_attr(feature = "cli", arg(index = 1))]
     pub rig: Option<PathBuf>,
     /// Set a key of the rig, tables with a dot: gap=0.5e-3, contact.stiffness=1e5
@@ -39,19 +40,25 @@ pub struct SceneKeys {
     pub width: Option<f64>,
 }
 
-/// A scene with its excitation, and a finding on missing keys of the rig.
+/// A scene with its excitation, and findings on keys of the rig that are missing or not used.
 #[derive(Debug, Clone)]
 struct Driven {
     scene: Scene,
     excitation: Excitation,
-    finding: Option<Finding>,
+    findings: Vec<Finding>,
 }
 
 impl SceneKeys {
-    /// The scene: the rig file, with the keys in `set` replaced, then with the keys of the excitation.
-    /// `frequency`
-    /// in Hz replaces that of the excitation.
+    /// The scene for a model with straight springs, with a caution where `[springs]` is stated.
     fn driven(&self, frequency: Option<f64>) -> Result<Driven> {
+        let mut driven = self.driven_with_springs(frequency)?;
+        driven.findings.extend(driven.scene.springs.map(|springs| springs.unused()));
+        Ok(driven)
+    }
+
+    /// The scene: the rig file, with the keys in `set` replaced, then with the keys of the excitation.
+    /// `frequency` in Hz replaces that of the excitation.
+    fn driven_with_springs(&self, frequency: Option<f64>) -> Result<Driven> {
         let mut draft = self.rig.as_ref().map_or_else(|| Ok(Draft::default()), Draft::from_path)?;
         let missing = if self.rig.is_some() { draft.left_out() } else { Vec::new() };
         for assignment in &self.set {
@@ -78,7 +85,8 @@ impl SceneKeys {
                 "a force (sine), an impulse, a force with a width (pulse), or [excitation] in the rig file";
             Error::usage("nothing drives the rig", expected).setting("force").setting("impulse")
         })?;
-        Ok(Driven { scene, excitation, finding: rig_left_out("The file", &missing) })
+        let findings = rig_left_out("The file", &missing).into_iter().collect();
+        Ok(Driven { scene, excitation, findings })
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::{CommandArgs, print};
 use crate::analysis::Answer;
-use crate::analysis::model::{branch, choose, map, orbit, response, simulate, sweep};
+use crate::analysis::model::{backbone, branch, choose, map, orbit, response, simulate, sweep};
 use crate::error::Result;
 use crate::read::Folder;
 use clap::{Args, Subcommand};
@@ -24,6 +24,8 @@ enum Question {
     Simulate(ModelArgs<simulate::Keys>),
     /// All motions with one impact a period over frequency, with folds and stability limits
     Response(ModelArgs<response::Keys>),
+    /// Response of one mass on its curved spring without impacts: jumps and backbone, beside exact motions
+    Backbone(ModelArgs<backbone::Keys>),
     /// Motions with P impacts in Q cycles followed over frequency, force, gap or restitution, through folds,
     /// flips and grazing
     Continue(ModelArgs<branch::Keys>),
@@ -53,6 +55,7 @@ impl CommandArgs for Model {
             Question::Orbit(of) => (&of.out, orbit::Keys::FILES, Box::new(|_| of.keys.answer())),
             Question::Simulate(of) => (&of.out, simulate::Keys::FILES, Box::new(|_| of.keys.answer())),
             Question::Response(of) => (&of.out, response::Keys::FILES, Box::new(|_| of.keys.answer())),
+            Question::Backbone(of) => (&of.out, backbone::Keys::FILES, Box::new(|_| of.keys.answer())),
             Question::Continue(of) => (&of.out, branch::Keys::FILES, Box::new(|_| of.keys.answer())),
             Question::Sweep(of) => (&of.out, sweep::Keys::FILES, Box::new(|_| of.keys.answer())),
             Question::Choose(of) => (&of.out, choose::Keys::FILES, Box::new(|_| of.keys.answer())),

@@ -24,6 +24,7 @@ mod safe;
 mod series;
 mod simulate;
 mod spectrum;
+mod springs;
 mod stepped;
 mod sweeps;
 

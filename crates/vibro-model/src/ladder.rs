@@ -21,6 +21,7 @@
 
 mod axis;
 mod climb;
+mod curvature;
 mod driven_scene;
 mod findings;
 mod motions;
@@ -31,6 +32,7 @@ mod stage;
 mod starts;
 
 pub use axis::{MOST_POINTS, Stretch, Summary, Survey, choose_over};
+pub use curvature::Curvature;
 pub use motions::KnownMotion;
 pub use question::{Change, Question};
 pub use rung::{Model, Need, Needed, Rung};
@@ -66,6 +68,10 @@ pub struct Choice {
     /// Changes of the chosen answer where the gap is smaller or larger by its uncertainty; `None` where the
     /// chosen model has no answer with that gap.
     pub gap: Vec<Option<Change>>,
+    /// Effect of each curved spring on the answer; empty where the springs are straight or the motion is
+    /// open.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub springs: Vec<Curvature>,
     /// The answers over a range of contact stiffnesses, where the stiffness is unknown and no rung is good
     /// enough without it; empty where they cannot be computed.
     pub sensitivity: Vec<Sensitivity>,
@@ -166,26 +172,36 @@ fn chosen(scene: &Scene, frequency: f64, question: &Question, bend: bool) -> Res
     scales::check_swings(&scene.rig, frequency, MOST_SWINGS)?;
     scales::check_slow(&scene.rig, frequency, reading::MOST_CYCLES)?;
     let stage = DrivenScene { scene, excitation: &excitation, question };
-    let mut choice = Climb::new(stage)?.choose(bend);
+    let climb = Climb::new(stage)?;
+    let settled = scene.springs.and_then(|_| climb.settled());
+    let mut choice = climb.choose(bend);
     if bend && question.gap_std > 0.0 {
         choice.gap = gaps(&choice, &stage);
     }
     choice.findings = findings::findings(&choice, question);
+    if let Some(springs) = &scene.springs {
+        choice.springs = curvature::effects(&choice, &stage, settled)?;
+        choice.findings.push(curvature::finding(&choice, springs, question));
+    }
     Ok(choice)
 }
 
 /// Changes of the chosen answer at the lower and the upper end of the gap's standard uncertainty.
 fn gaps(choice: &Choice, stage: &DrivenScene<'_>) -> Vec<Option<Change>> {
-    let (Some(model), Some(value)) = (choice.chosen, choice.answer()) else { return Vec::new() };
-    let here = Answer { spread: choice.rung(model).spread, ..Answer::exact(value) };
-    let question = Question { gap_std: 0.0, ..*stage.question };
-    let at = |std: f64| {
-        let rig = Rig { gap: stage.scene.rig.gap + std, ..stage.scene.rig };
-        let scene = Scene { rig, ..stage.scene.clone() };
-        let there = Climb::new(DrivenScene { scene: &scene, question: &question, ..*stage }).ok()?;
-        Some(here.change(&there.answer(model)?, model, &question))
-    };
+    let Some(model) = choice.chosen else { return Vec::new() };
+    let rig = stage.scene.rig;
+    let at = |std: f64| elsewhere(choice, model, stage, Rig { gap: rig.gap + std, ..rig });
     [-1.0, 1.0].map(|sign| at(sign * stage.question.gap_std)).to_vec()
+}
+
+/// Change of the answer of a model on another rig; `None` where the model has no answer there.
+fn elsewhere(choice: &Choice, model: Model, stage: &DrivenScene<'_>, rig: Rig) -> Option<Change> {
+    let rung = choice.rung(model);
+    let here = Answer { spread: rung.spread, ..Answer::exact(rung.answer?) };
+    let question = Question { gap_std: 0.0, ..*stage.question };
+    let scene = Scene { rig, ..stage.scene.clone() };
+    let there = Climb::new(DrivenScene { scene: &scene, question: &question, ..*stage }).ok()?;
+    Some(here.change(&there.answer(model)?, model, &question))
 }
 
 #[cfg(test)]

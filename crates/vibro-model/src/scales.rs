@@ -48,8 +48,16 @@ pub(super) fn check(rig: &Rig, excitation: &Excitation) -> Result<()> {
 pub(super) fn check_values<const N: usize>(rig: &Rig, beside: [f64; N]) -> Result<()> {
     rig.check()?;
     let own = Parameter::of_rig().filter(|p| *p != Parameter::Restitution).filter_map(|p| p.counting(rig));
+    check_sizes(own.chain(beside))
+}
+
+/// Checks that values are 0 or within 1e-50 to 1e50 in SI units.
+///
+/// # Errors
+/// If one is not.
+pub(super) fn check_sizes(mut values: impl Iterator<Item = f64>) -> Result<()> {
     let in_range = |value: f64| value == 0.0 || (LARGEST.recip()..=LARGEST).contains(&value.abs());
-    if let Some(value) = own.chain(beside).find(|value| !in_range(*value)) {
+    if let Some(value) = values.find(|value| !in_range(*value)) {
         return Err(Error::refused(format!(
             "a value of {value:e}: products of such values leave the range of numbers"
         ))

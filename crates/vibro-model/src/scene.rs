@@ -9,14 +9,14 @@ use super::excitation::Excitation;
 use super::law::Law;
 use super::rig::Rig;
 use serde::{Deserialize, Serialize};
-use vibro_record::Result;
+use vibro_record::{Finding, Result};
 
 /// The input of a computation of the rig's motion.
 ///
 /// As a TOML file: the keys of [`Rig`] at the top, `[excitation]` with `kind` and the keys of that kind,
 /// `[contact]` with `stiffness`, `damping`, `exponent`, or `radius`, `modulus` and `poisson` in place of
-/// stiffness and exponent, and `[buffer]` with `gap` and `damper_always`. Keys of the rig that are left out
-/// take the values of [`Rig::thesis`].
+/// stiffness and exponent, `[buffer]` with `gap` and `damper_always`, and `[springs]` with `cubic1` and
+/// `cubic2`. Keys of the rig that are left out take the values of [`Rig::thesis`].
 ///
 /// ```
 /// use vibro_model::{Excitation, Scene, Sine};
@@ -39,6 +39,32 @@ pub struct Scene {
     /// Buffer of a loose mass 1: its spring and damper act only beyond a gap.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub buffer: Option<Buffer>,
+    /// Curvature of the springs. Only [`Duffing`](crate::Duffing) has it; the ladder checks its effect.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub springs: Option<Springs>,
+}
+
+/// Cubic coefficients k₃ in N/m³ of the springs' forces kx + k₃x³: above 0 a spring hardens, below 0 it
+/// softens.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields, expecting = "a table")]
+pub struct Springs {
+    /// Of the spring of mass 1.
+    pub cubic1: f64,
+    /// Of the spring of mass 2.
+    pub cubic2: f64,
+}
+
+impl Springs {
+    /// Of both springs.
+    pub fn cubic(&self) -> [f64; 2] {
+        [self.cubic1, self.cubic2]
+    }
+
+    /// Caution that a model takes the springs as straight.
+    pub fn unused(&self) -> Finding {
+        Finding::caution("springs-unused").number("cubic1", self.cubic1).number("cubic2", self.cubic2)
+    }
 }
 
 /// Numbers of a compliant contact; the contact law determines which of them are needed.
@@ -85,11 +111,11 @@ impl Buffer {
 
 impl Scene {
     /// Names of its tables in files; every other key is the rig's.
-    pub const TABLES: [&str; 3] = ["excitation", "contact", "buffer"];
+    pub const TABLES: [&str; 4] = ["excitation", "contact", "buffer", "springs"];
 
     /// The rig of the thesis, without excitation.
     pub fn thesis() -> Scene {
-        Scene { rig: Rig::thesis(), excitation: None, contact: None, buffer: None }
+        Scene { rig: Rig::thesis(), excitation: None, contact: None, buffer: None, springs: None }
     }
 
     /// Reads the text of a file.

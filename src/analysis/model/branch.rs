@@ -81,7 +81,7 @@ impl Keys {
         check_range(over, self.from, self.to, self.from)?;
         let middle =
             Some(f64::midpoint(self.from, self.to)).filter(|_| self.over == BranchParameter::Frequency);
-        let Driven { scene, excitation, finding } = self.scene.driven(self.frequency.or(middle))?;
+        let Driven { scene, excitation, findings } = self.scene.driven(self.frequency.or(middle))?;
         let (rig, sine) = (scene.rig, pattern::sine(&excitation)?);
         check_range(over, self.from, self.to, over.of(&rig, &sine))?;
         let one = ones(&rig, &sine)?;
@@ -100,7 +100,7 @@ impl Keys {
             "branches": branches.iter().map(|b| to_json(over, b)).collect::<Vec<Value>>(),
             "one_impact": beside.iter().map(|b| to_json(over, b)).collect::<Vec<Value>>(),
         }))?;
-        answer.add("", finding);
+        answer.add("", findings);
         if self.impacts > 1 || self.cycles > 1 {
             answer.add("", [Finding::note("orbits-perhaps-more")]);
         }

@@ -6,7 +6,8 @@ use crate::compare::Overlay;
 use crate::error::{Error, Result};
 use crate::model::Observable;
 use crate::model::ladder::{
-    Choice, Model, Need, Question, Rung, Sensitivity, Stretch, Summary, Survey, choose, choose_over,
+    Choice, Curvature, Model, Need, Question, Rung, Sensitivity, Stretch, Summary, Survey, choose,
+    choose_over,
 };
 use crate::record::{Direction, Finding, Severity};
 use crate::report::files::Names;
@@ -56,7 +57,8 @@ pub struct Keys {
 
 impl Keys {
     /// Names of the files in its answer.
-    pub const FILES: Names = Names::Numbered(&["rungs", "sensitivity", "stretches", "points", "ladder"]);
+    pub const FILES: Names =
+        Names::Numbered(&["rungs", "springs", "sensitivity", "stretches", "points", "ladder"]);
 
     /// The chosen rung, at one frequency or over a range of frequencies, with its reasons.
     ///
@@ -71,12 +73,13 @@ impl Keys {
             history: self.history,
         };
         question.check()?;
-        let Driven { scene, excitation, finding } = self.scene.driven(self.frequency.or(self.from))?;
+        let Driven { scene, excitation, findings } =
+            self.scene.driven_with_springs(self.frequency.or(self.from))?;
         let mut answer = Answer::of(&json!({ "scene": scene }))?;
         if let Value::Object(asked) = json!(question) {
             answer.result.extend(asked);
         }
-        answer.add("", finding);
+        answer.add("", findings);
         if let Some((from, to)) = self.from.zip(self.to) {
             over_range(&choose_over(&scene, from, to, self.points, &question)?, &question, &mut answer)?;
             return Ok(answer);
@@ -96,6 +99,9 @@ fn at_one_frequency(choice: &Choice, question: &Question, answer: &mut Answer) -
     answer.result.extend(Answer::of(&WordedChoice::of(choice))?.result);
     answer.add("", &choice.findings);
     answer.table("rungs", rungs(choice, question));
+    if !choice.springs.is_empty() {
+        answer.table("springs", springs(&choice.springs));
+    }
     if !choice.sensitivity.is_empty() {
         answer.table("sensitivity", sensitivity(&choice.sensitivity, question));
     }
@@ -236,6 +242,21 @@ fn rungs(choice: &Choice, question: &Question) -> Table {
         ],
     );
     answered(found, question, choice.rungs.iter().map(|r| r.answer))
+}
+
+/// Effect of the curvature of the springs.
+fn springs(all: &[Curvature]) -> Table {
+    table(
+        "Curvature of the springs",
+        all,
+        &[
+            ("spring", "", &|s| usize::from(s.spring).into()),
+            ("amplitude", "m", &|s| s.amplitude.into()),
+            ("natural frequency shifts by", "%", &|s| percent(s.shift)),
+            ("answer changes by", "%", &|s| percent(s.change.map(|c| c.change))),
+            ("within the tolerance", "", &|s| s.change.map(|c| c.enough).into()),
+        ],
+    )
 }
 
 /// The answer as a function of an unknown contact stiffness.

@@ -1,5 +1,6 @@
 //! Figures of the model.
 
+mod backbone;
 mod branches;
 mod energy;
 mod ladder;
@@ -7,6 +8,7 @@ mod motion;
 mod regimes;
 mod sweep;
 
+pub use backbone::backbone;
 pub use branches::{branches, continued};
 pub use energy::energy;
 pub use ladder::ladder;

@@ -51,7 +51,7 @@ impl Keys {
             width: or_varied(self.scene.width, "width"),
             ..self.scene.clone()
         };
-        let Driven { scene, excitation, finding } = scene.driven(or_varied(self.frequency, "frequency"))?;
+        let Driven { scene, excitation, findings } = scene.driven(or_varied(self.frequency, "frequency"))?;
         let plan = Plan { rig: scene.rig, excitation, x, y, cycles: self.cycles };
         plan.check()?;
         progress.start("map", plan.y.n);
@@ -68,7 +68,7 @@ impl Keys {
             "regime": grid(&|c| json!(c.regime)),
             "spectral_radius": grid(&|c| json!(c.spectral_radius)),
         }))?;
-        answer.add("", finding);
+        answer.add("", findings);
         let missing = rows.iter().flatten().filter(|c| c.regime.is_none()).count();
         if missing > 0 {
             answer.add("", [Finding::caution("map-cells-empty").count("n", missing)]);

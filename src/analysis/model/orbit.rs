@@ -55,7 +55,7 @@ impl Keys {
         if self.impacts != 1 {
             return self.several(&driven);
         }
-        let Driven { scene, excitation, finding } = &driven;
+        let Driven { scene, excitation, findings } = &driven;
         let found = orbits_of(&scene.rig, excitation, self.cycles)?;
         let mut softening = Vec::new();
         let (contact, soft) = soften(&driven, &found, &mut softening)?;
@@ -69,7 +69,7 @@ impl Keys {
             "no_impact": found.no_impact,
             "contact": contact,
         }))?;
-        answer.add("", finding);
+        answer.add("", findings);
         answer.add("", softening);
         if found.orbits.is_empty() {
             answer.add("", [Finding::note("no-orbit")]);
@@ -116,14 +116,14 @@ impl Keys {
 
     /// The motions with several impacts a period that are found.
     fn several(&self, driven: &Driven) -> Result<Answer> {
-        let Driven { scene, excitation, finding } = driven;
+        let Driven { scene, excitation, findings } = driven;
         let found = search(&scene.rig, &pattern::sine(excitation)?, self.impacts, self.cycles)?;
         let mut answer = Answer::of(&json!({
             "scene": scene,
             "orbits": found.iter().map(|o| pattern::to_json(o, self.gap_std)).collect::<Vec<Value>>(),
             "no_impact": crate::model::no_impact(&scene.rig, excitation).ok(),
         }))?;
-        answer.add("", finding.clone());
+        answer.add("", findings);
         let searched = if found.is_empty() {
             let none = Finding::note("no-orbit-found");
             none.count("impacts", self.impacts as usize).count("cycles", self.cycles as usize)

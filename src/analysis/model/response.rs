@@ -45,14 +45,14 @@ impl Keys {
         above_zero("from", Some(self.from))?;
         above_zero("to", Some(self.to))?;
         check_gap_std(self.gap_std)?;
-        let Driven { scene, excitation, finding } = self.scene.driven(Some(self.from))?;
+        let Driven { scene, excitation, findings } = self.scene.driven(Some(self.from))?;
         let found = response(&scene.rig, &excitation, self.from, self.to, self.points, self.cycles)?;
         let mut answer = Answer::of(&json!({
             "scene": scene,
             "points": found.points.iter().map(|p| self.point(p)).collect::<Vec<Value>>(),
             "changes": found.changes,
         }))?;
-        answer.add("", finding);
+        answer.add("", findings);
         let refused = found.points.iter().filter_map(|p| p.refused.as_deref());
         if let Some(why) = refused.clone().next() {
             let some = Finding::caution("frequencies-without-answer").count("n", refused.count());

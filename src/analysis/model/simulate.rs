@@ -71,7 +71,7 @@ impl Keys {
     /// # Errors
     /// If the scene or a key is invalid, the scene has no excitation, or the simulation fails.
     pub fn answer(&self) -> Result<Answer> {
-        let Driven { scene, excitation, finding } = self.scene.driven(self.frequency)?;
+        let Driven { scene, excitation, findings } = self.scene.driven(self.frequency)?;
         let start = self.start(&scene.rig)?;
         let make = contact::motions(&scene, self.model, self.grazing)?;
         let observed = self.observed(&mut *make(&excitation, start, self.phase)?)?;
@@ -89,7 +89,7 @@ impl Keys {
             "final_state": { "time": time, "phase": phase, "x1": x1, "v1": v1, "x2": x2, "v2": v2 },
             "flights": flights,
         }))?;
-        answer.add("", finding);
+        answer.add("", findings);
         answer.add("", contact::buffer(&scene, self.model));
         answer.add("", self.doubts(&observed, &scene.rig));
         answer.add("", rebound.as_ref().and_then(|rebound| beyond_elastic(rebound, &scene)));

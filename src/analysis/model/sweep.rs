@@ -117,7 +117,7 @@ impl Keys {
         let over_force = self.over == SweptParameter::Force;
         // The scene needs a frequency even where it is swept: any in the range.
         let frequency = if over_force { self.frequency } else { Some(self.from) };
-        let Driven { scene, excitation, finding } = self.scene.driven(frequency)?;
+        let Driven { scene, excitation, findings } = self.scene.driven(frequency)?;
         let pace = match self.sweep_rate {
             Some(rate) => Pace::Rate { rate, points: self.steps },
             None => Pace::Steps { points: self.steps, settle: self.settle, measure: self.measure },
@@ -148,7 +148,7 @@ impl Keys {
             "by_chance": by_chance,
             "ends": ends,
         }))?;
-        answer.add("", finding);
+        answer.add("", findings);
         answer.add("", contact::buffer(&scene, self.model));
         let all = swept.up.len() + swept.down.len();
         answer.add("", points_within(&irregular, all, "sweep-cycles-unlike"));

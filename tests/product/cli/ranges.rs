@@ -91,6 +91,7 @@ fn every_number_of_every_command_ends_soon_with_an_answer_or_a_reason() {
         (2, model("orbit --force 0.5 --frequency 11")),
         (2, model("simulate --force 0.5 --frequency 11")),
         (2, model("response --force 0.5 --from 5 --to 15 --points 50")),
+        (2, model("backbone --force 5e-3 --set springs.cubic1=2e7 --from 4 --to 7 --points 20")),
         (2, model("continue --force 0.5 --from 9 --to 12")),
         (2, model("sweep --force 0.5 --from 5 --to 15 --steps 21")),
         (2, model("choose --force 0.5 --frequency 11")),

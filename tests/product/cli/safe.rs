@@ -10,7 +10,7 @@ use tempfile::TempDir;
 use vibroimpact::math::Noise;
 
 /// Commands that write into a folder, each with the example recording that it reads (empty: none).
-const COMMANDS: [(&str, &[&str]); 19] = [
+const COMMANDS: [(&str, &[&str]); 20] = [
     ("bench/BENCH.CSV", &["spectrum", "--channel", "velocity", "--segment", "1024"]),
     ("bench/BENCH.CSV", &["spectrum", "--channel", "velocity", "--reference", "force", "--segment", "1024"]),
     ("bench/BENCH.CSV", &["modal", "--reference", "force", "--segment", "1024"]),
@@ -25,6 +25,23 @@ const COMMANDS: [(&str, &[&str]); 19] = [
     ("", &["model", "orbit", "--frequency", "11.2", "--force", "0.5"]),
     ("", &["model", "simulate", "--frequency", "11.2", "--force", "0.5", "--cycles", "40"]),
     ("", &["model", "response", "--from", "10", "--to", "12", "--points", "5", "--force", "0.5"]),
+    (
+        "",
+        &[
+            "model",
+            "backbone",
+            "--force",
+            "5e-3",
+            "--set",
+            "springs.cubic1=2e7",
+            "--from",
+            "5",
+            "--to",
+            "6",
+            "--points",
+            "5",
+        ],
+    ),
     (
         "",
         &[

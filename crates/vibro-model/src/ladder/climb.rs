@@ -7,6 +7,7 @@ use super::reading::Settling;
 use super::rung::{Model, Need, Needed, Rung};
 use super::{Choice, Sensitivity};
 use crate::law::conversion;
+use crate::simulate::Simulation;
 use std::f64::consts::PI;
 use vibro_record::{Finding, Result};
 
@@ -45,6 +46,12 @@ impl<'a> Climb<'a> {
 
     fn of(&self, model: Model) -> &Rung {
         &self.rungs[model as usize]
+    }
+
+    /// The motion with rigid impacts after its transients; `None` where several coexist, and for a loose
+    /// mass.
+    pub fn settled(&self) -> Option<Simulation> {
+        self.motions.as_ref().filter(|m| m.on != CurrentMotion::Open).map(|m| m.end.clone())
     }
 
     /// The answer of a rung.

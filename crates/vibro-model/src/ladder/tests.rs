@@ -5,7 +5,7 @@ use crate::motion::Motion;
 use crate::observable::Observable;
 use crate::orbit::{Compliance, orbits};
 use crate::rig::Rig;
-use crate::scene::{Buffer, ContactKeys, Scene};
+use crate::scene::{Buffer, ContactKeys, Scene, Springs};
 use crate::simulate::Simulation;
 use std::f64::consts::TAU;
 use vibro_record::{Direction, Fact, Finding, Severity};
@@ -473,4 +473,57 @@ fn a_law_that_matters_is_a_doubt() {
     assert_eq!(doubt.severity, Severity::Doubt);
     assert_eq!(doubt.fact("rung"), Some(&Fact::Name("soft-corrected".to_owned())));
     assert!(scene_b(Some(1e8)).findings.iter().all(|f| f.code != "law-matters"));
+}
+
+/// The linear motion near resonance, 5 mN at 5.1 Hz: from the closed form A = F₀/|k − mω² + icω|, the
+/// shift is √(1 + 3k₃A²/4k) − 1, and the answer is that of a spring stiffer by ¾k₃A².
+#[test]
+fn a_curved_spring_counts_by_its_equivalent_stiffness() {
+    let question = Question { history: Some(Direction::Up), ..Question::new(Observable::Fundamental) };
+    let at = |cubic1: f64| {
+        let springs = Some(Springs { cubic1, cubic2: 1e9 });
+        choose(&Scene { springs, ..scene(5e-3, Some(1e7)) }, 5.1, &question).unwrap()
+    };
+    let (rig, omega) = (Rig::thesis(), TAU * 5.1);
+    let linear = |k: f64| 5e-3 / (k - rig.m1 * omega * omega).hypot(rig.c1 * omega);
+    let amplitude = linear(rig.k1);
+    for (cubic, code) in [(1e4, "spring-curvature-holds"), (1e7, "spring-curvature-matters")] {
+        let choice = at(cubic);
+        assert_eq!(choice.chosen, Some(Model::Linear), "{:?}", choice.findings);
+        let [first, second] = choice.springs[..] else { panic!("{:?}", choice.springs) };
+        // Samples miss a peak by up to 0.03 %; the motion has settled to 2 % of the tolerance.
+        assert!((first.amplitude / amplitude - 1.0).abs() < 8e-4, "{first:?} {amplitude}");
+        let added = 0.75 * cubic * amplitude * amplitude;
+        let shift = (1.0 + added / rig.k1).sqrt() - 1.0;
+        assert!((first.shift.unwrap() / shift - 1.0).abs() < 2e-3, "{first:?} {shift}");
+        let change = linear(rig.k1 + added) / amplitude - 1.0;
+        assert!((first.change.unwrap().change / change - 1.0).abs() < 4e-3, "{first:?} {change}");
+        // Mass 2 rests.
+        assert_eq!((second.spring, second.amplitude, second.shift), (2, 0.0, Some(0.0)));
+        let found = finding(&choice, code);
+        assert_eq!((found.get("change"), found.get("spring")), (first.change.map(|c| c.change), Some(1.0)));
+        // Without impacts they change nothing.
+        assert_eq!(found.get("impacts").is_some(), code == "spring-curvature-matters");
+    }
+    finding(&at(-1e10), "spring-beyond-force");
+    // Where several motions coexist the amplitude is not known.
+    let springs = Some(Springs { cubic1: 1e7, cubic2: 0.0 });
+    let open = Scene { springs, ..scene(0.1, Some(1e6)) };
+    let choice = choose(&open, 7.85, &Question { history: None, ..question }).unwrap();
+    assert!(choice.needs == [Need::History] && choice.springs.is_empty());
+    finding(&choice, "springs-unused");
+}
+
+/// Pressed together by a negative gap both springs are deflected: their tangent k + 3k₃x² counts.
+#[test]
+fn a_deflected_spring_counts_by_its_tangent() {
+    let springs = Some(Springs { cubic1: 1e6, cubic2: 0.0 });
+    let rig = Rig { gap: -5e-3, ..Rig::thesis() };
+    let scene = Scene { rig, springs, ..scene(1e-4, None) };
+    let choice = choose(&scene, hz(2.1), &Question::new(Observable::Fundamental)).unwrap();
+    // Both springs have the same force: k₁x₁ = −k₂x₂ with x₁ − x₂ = −5 mm.
+    let rest = -5e-3 * rig.k2 / (rig.k1 + rig.k2);
+    let shift = (1.0_f64 + 3e6 * rest * rest / rig.k1).sqrt() - 1.0;
+    // The motion is below a thousandth of the deflection.
+    assert!((choice.springs[0].shift.unwrap() / shift - 1.0).abs() < 1e-3, "{:?} {shift}", choice.springs);
 }

@@ -1,6 +1,6 @@
 //! Draft of a scene: keys from a file and from a command line, read in the same way.
 
-use super::{Buffer, ContactKeys, Scene};
+use super::{Buffer, ContactKeys, Scene, Springs};
 use crate::excitation::{Excitation, Part};
 use crate::least::{NumberRange, number};
 use crate::parameter::Parameter;
@@ -26,6 +26,7 @@ struct Sections {
     excitation: Option<ExcitationKeys>,
     contact: Option<ContactKeys>,
     buffer: Option<Buffer>,
+    springs: Option<Springs>,
 }
 
 /// Keys of all kinds of excitation.
@@ -169,6 +170,8 @@ impl Draft {
             ("contact.damping", contact.damping, "N s/m", NumberRange::Zero),
             ("contact.exponent", contact.exponent, "", NumberRange::AboveZero),
             ("buffer.gap", keys.buffer.map(|b| b.gap), "m", NumberRange::Zero),
+            ("springs.cubic1", keys.springs.map(|s| s.cubic1), "N/m³", NumberRange::Any),
+            ("springs.cubic2", keys.springs.map(|s| s.cubic2), "N/m³", NumberRange::Any),
         ] {
             let checked = value.map_or(Ok(()), |value| number(key, value, unit, least));
             checked.map_err(|error| self.at(key, error))?;
@@ -177,7 +180,8 @@ impl Draft {
         let excitation_keys = self.table.get("excitation").and_then(Value::as_table);
         let excitation = excitation_keys.map(|section| self.excitation(section.clone())).transpose()?;
         let contact = Some(contact).filter(|c| *c != ContactKeys::default());
-        Ok(Scene { rig, excitation, contact, buffer: keys.buffer })
+        let springs = keys.springs.filter(|s| *s != Springs::default());
+        Ok(Scene { rig, excitation, contact, buffer: keys.buffer, springs })
     }
 
     /// The excitation of the table `[excitation]`, checked.
@@ -266,7 +270,7 @@ fn unread(error: &toml::de::Error) -> Error {
 fn campaign(path: &Path, text: &str) -> Option<Error> {
     let table: Table = toml::from_str(text).ok()?;
     let (key, _) = table.iter().find(|(key, value)| *key == "rig" || value.is_array())?;
-    let expected = "the keys of a rig at the top, and [excitation], [contact], [buffer]";
+    let expected = "the keys of a rig at the top, and [excitation], [contact], [buffer], [springs]";
     Some(Error::usage(format!("[{key}]: this is a campaign, not a rig"), expected).hint(format!(
         "put what stands under [rig] into a file of its own; `vibro run {}` does what the campaign asks for",
         path.display()
@@ -281,7 +285,8 @@ mod tests {
     #[test]
     fn a_scene_of_every_part() {
         let text = "m1 = 1\nrestitution = 0.2\n[excitation]\nkind = \"pulse\"\nforce = 0.5\nwidth = 0.01\nfrequency = 5\n\
-                    [contact]\nstiffness = 1e5\ndamping = 0\n[buffer]\ngap = 2e-3\ndamper_always = true\n";
+                    [contact]\nstiffness = 1e5\ndamping = 0\n[buffer]\ngap = 2e-3\ndamper_always = true\n\
+                    [springs]\ncubic1 = -1e6\n";
         let scene = Scene::from_toml(text).unwrap();
         assert_eq!(scene.rig, Rig { m1: 1.0, restitution: 0.2, ..Rig::thesis() });
         assert_eq!(
@@ -293,6 +298,7 @@ mod tests {
             (scene.contact, scene.buffer),
             (Some(contact), Some(Buffer { gap: 2e-3, damper_always: true }))
         );
+        assert_eq!(scene.springs, Some(Springs { cubic1: -1e6, cubic2: 0.0 }));
         assert_eq!(Draft::from_toml(text).unwrap().left_out(), ["m2", "k1", "k2", "c1", "c2", "gap"]);
         let json = serde_json::to_value(&scene).unwrap();
         assert_eq!((&json["m1"], &json["excitation"]["kind"]), (&1.0.into(), &"pulse".into()));
@@ -320,6 +326,7 @@ mod tests {
             ("gap = 1\ngap = 2", "line 2", "every key once"),
             ("excitation = 3", "line 1", "excitation = 3; expected a table"),
             ("[contact]\nstiffness = 0", "line 2", "contact.stiffness is 0 N/m"),
+            ("[springs]\ncubic2 = inf", "line 2", "springs.cubic2 is inf N/m³"),
             ("[excitation]\nparts = [{force = 1}]", "line 2", "the key `frequency` is missing"),
             ("restitution = nan", "line 1", "restitution is NaN"),
             ("m1 =", "line 1", ""),

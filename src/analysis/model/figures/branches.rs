@@ -27,13 +27,13 @@ fn look(v: &Validity) -> Option<MotionLook> {
 
 /// Lines that grow piece by piece.
 #[derive(Default)]
-struct Pieces {
+pub(super) struct Pieces {
     lines: Vec<Vec<(f64, f64)>>,
 }
 
 impl Pieces {
     /// Continues the line that ends at `from`, or begins one.
-    fn join(&mut self, from: (f64, f64), to: (f64, f64)) {
+    pub(super) fn join(&mut self, from: (f64, f64), to: (f64, f64)) {
         match self.lines.iter_mut().rev().find(|line| line.last() == Some(&from)) {
             Some(line) => line.push(to),
             None => self.lines.push(vec![from, to]),
@@ -41,7 +41,7 @@ impl Pieces {
     }
 
     /// All lines as one, separated by missing values: within each line the dashes run on.
-    fn places(self) -> Vec<(f64, f64)> {
+    pub(super) fn places(self) -> Vec<(f64, f64)> {
         self.lines.join(&(f64::NAN, f64::NAN))
     }
 }

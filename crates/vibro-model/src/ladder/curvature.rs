@@ -1,0 +1,131 @@
+//! Effect of a spring's curvature on the answer. No rung has a curved spring: each curved spring is
+//! replaced by the straight one that harmonic linearisation gives for the motion found, and the answers
+//! are compared.
+
+use super::driven_scene::DrivenScene;
+use super::{Change, Choice, Model, Question, elsewhere};
+use crate::duffing::limit;
+use crate::motion::Motion;
+use crate::rig::Rig;
+use crate::scene::Springs;
+use crate::simulate::Simulation;
+use serde::Serialize;
+use vibro_record::{Finding, Result};
+
+/// Cycles over which the motion is averaged: whole patterns of 1 to 6 cycles.
+const CYCLES: usize = 60;
+/// Samples in a cycle, or in a swing of the faster mass if that is shorter: a peak is up to 0.03 % too
+/// low.
+const SAMPLES: f64 = 128.0;
+
+/// Effect of the curvature of a spring.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Curvature {
+    /// Number of the spring, 1 or 2.
+    pub spring: u8,
+    /// Half the peak-to-peak displacement of its mass in m.
+    pub amplitude: f64,
+    /// Relative shift of its natural frequency by harmonic balance, to first order 3k₃A²/8k for a sine
+    /// of amplitude A. `None` where a softening spring goes beyond its largest force.
+    pub shift: Option<f64>,
+    /// Change of the answer with the equivalent straight spring; `None` where there is no answer.
+    pub change: Option<Change>,
+}
+
+/// Displacement of a mass, sampled: extremes in m, and sums over time of x, x², x³ and x⁴.
+#[derive(Clone, Copy)]
+struct Displacement {
+    low: f64,
+    high: f64,
+    sums: [f64; 4],
+    time: f64,
+}
+
+impl Displacement {
+    const NONE: Displacement =
+        Displacement { low: f64::INFINITY, high: f64::NEG_INFINITY, sums: [0.0; 4], time: 0.0 };
+
+    fn add(&mut self, x: f64, time: f64) {
+        (self.low, self.high, self.time) = (self.low.min(x), self.high.max(x), self.time + time);
+        let mut power = 1.0;
+        for sum in &mut self.sums {
+            power *= x;
+            *sum += power * time;
+        }
+    }
+
+    /// Slope of the line that fits x³ best over the motion, cov(x³, x)/var(x): ¾A² for a sine of
+    /// amplitude A.
+    fn slope(&self) -> f64 {
+        let [x, xx, xxx, xxxx] = self.sums.map(|sum| sum / self.time);
+        let variance = xx - x * x;
+        // A mass at rest has the tangent 3x².
+        if variance > 1e-12 * xx { (xxxx - xxx * x) / variance } else { 3.0 * x * x }
+    }
+}
+
+/// Effects of the curved springs on the chosen answer, or on that with rigid impacts where none is
+/// chosen. `settled` is the motion with rigid impacts after its transients; without it nothing is
+/// computed.
+///
+/// # Errors
+/// If the motion cannot be followed.
+pub fn effects(
+    choice: &Choice,
+    stage: &DrivenScene<'_>,
+    settled: Option<Simulation>,
+) -> Result<Vec<Curvature>> {
+    let (Some(mut motion), Some(springs)) = (settled, stage.scene.springs) else { return Ok(Vec::new()) };
+    let mut displacements = [Displacement::NONE; 2];
+    let rig = stage.scene.rig;
+    let fastest =
+        rig.natural_frequencies().into_iter().filter(|f| f.is_finite()).fold(choice.frequency, f64::max);
+    for _ in 0..CYCLES {
+        motion.run(motion.time() + 1.0 / choice.frequency, |leg| {
+            let n = (leg.duration * fastest * SAMPLES).ceil();
+            let time = leg.duration / n;
+            for i in 0..n as u32 {
+                let state = leg.state((f64::from(i) + 0.5) * time);
+                displacements[0].add(state.x1, time);
+                displacements[1].add(state.x2, time);
+            }
+        })?;
+    }
+    let model = choice.chosen.unwrap_or(Model::Restitution);
+    let effect = |i: usize| {
+        let (x, cubic, stiffness) = (&displacements[i], springs.cubic()[i], [rig.k1, rig.k2][i]);
+        let added = cubic * x.slope();
+        let changed =
+            if i == 0 { Rig { k1: rig.k1 + added, ..rig } } else { Rig { k2: rig.k2 + added, ..rig } };
+        let within = x.high.max(-x.low) <= limit(stiffness, cubic) && added > -stiffness;
+        Curvature {
+            spring: i as u8 + 1,
+            amplitude: (x.high - x.low) / 2.0,
+            shift: within.then(|| (1.0 + added / stiffness).sqrt() - 1.0),
+            change: within.then(|| elsewhere(choice, model, stage, changed)).flatten(),
+        }
+    };
+    let counts = |i: &usize| springs.cubic()[*i] != 0.0 && (*i == 0 || !rig.has_wall());
+    Ok((0..2).filter(counts).map(effect).collect())
+}
+
+/// The finding on the spring with the largest effect.
+pub fn finding(choice: &Choice, springs: &Springs, question: &Question) -> Finding {
+    let size = |c: &Curvature| c.change.map_or(f64::INFINITY, |change| change.change.abs());
+    let Some(worst) = choice.springs.iter().max_by(|a, b| size(a).total_cmp(&size(b))) else {
+        return springs.unused();
+    };
+    let Curvature { spring, amplitude, shift, change } = *worst;
+    let told = |found: Finding| found.count("spring", spring.into()).number("amplitude", amplitude);
+    let Some(shift) = shift else { return told(Finding::doubt("spring-beyond-force")) };
+    let enough = change.is_some_and(|c| c.enough || c.change.abs() <= question.tolerance);
+    let found = if enough {
+        Finding::note("spring-curvature-holds")
+    } else {
+        Finding::doubt("spring-curvature-matters")
+    };
+    let found = told(found).number("shift", shift).number("tolerance", question.tolerance);
+    let found = change.into_iter().fold(found, |found, change| found.number("change", change.change));
+    let impacts = choice.rung(Model::Linear).error.filter(|impacts| !enough && size(worst) > *impacts);
+    impacts.into_iter().fold(found, |found, impacts| found.number("impacts", impacts))
+}
