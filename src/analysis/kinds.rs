@@ -8,7 +8,6 @@ use super::job::Job;
 use super::kind::FileCommand;
 use super::kind::{Analysis, AnalysisKind, name_of};
 use super::named_file::NamedFile;
-use super::{decay, drill, drop, frf, impacts, pulse, spectrum, sweep};
 use crate::campaign::{Campaign, Entry, Fault, KeyRange};
 use crate::error::{Error, Result};
 use crate::read::{Folder, plain};
@@ -19,14 +18,14 @@ use std::path::{Path, PathBuf};
 
 /// All kinds of analysis, in the order in which they are measured and shown.
 pub(crate) const KINDS: &[AnalysisKind] = &[
-    row::<sweep::Keys>(),
-    row::<spectrum::Keys>(),
-    row::<frf::Keys>(),
-    row::<drill::Keys>(),
-    row::<impacts::Keys>(),
-    row::<drop::Keys>(),
-    row::<decay::Keys>(),
-    row::<pulse::Keys>(),
+    row::<super::sweep::Keys>(),
+    row::<super::spectrum::Keys>(),
+    row::<super::frf::Keys>(),
+    row::<super::drill::Keys>(),
+    row::<super::impacts::Keys>(),
+    row::<super::drop::Keys>(),
+    row::<super::decay::Keys>(),
+    row::<super::pulse::Keys>(),
 ];
 
 /// Names of the sections of a campaign, in the order in which they are measured and shown.

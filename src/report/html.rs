@@ -217,7 +217,7 @@ const STYLE: &str = include_str!("assets/page.css");
 const PLOTS: &str = include_str!("assets/page/uplot.css");
 
 /// The scripts of the page: uPlot 1.6.32 (MIT, `assets/page/LICENSE-uPlot.txt`), and those of this project.
-const SCRIPTS: [&str; 6] = [
+const SCRIPTS: &[&str] = &[
     include_str!("assets/page/uplot.js"),
     include_str!("assets/page/decode.js"),
     include_str!("assets/page/plot.js"),

@@ -1,12 +1,9 @@
 //! The table of formats, in the order in which they are tried: how each is detected and read.
 
 use crate::format::Format;
-#[cfg(feature = "hdf5")]
-use crate::hdf5;
 use crate::held::Contents;
 use crate::options::Options;
 use crate::source::Source;
-use crate::{lvm, mat, tdms, text, uff, wav};
 use vibro_record::Result;
 
 /// How one format is detected and read.
@@ -27,17 +24,17 @@ pub struct Entry {
 /// loosest.
 #[rustfmt::skip] // a table
 pub const TABLE: &[Entry] = &[
-    Entry { format: Format::Wav, endings: &["wav"], whole: false, sniff: wav::layout::sniff, read: wav::read },
+    Entry { format: Format::Wav, endings: &["wav"], whole: false, sniff: crate::wav::layout::sniff, read: crate::wav::read },
     #[cfg(feature = "hdf5")]
-    Entry { format: Format::Hdf5, endings: &["h5", "hdf5"], whole: false, sniff: hdf5::sniff, read: hdf5::read },
-    Entry { format: Format::Mat, endings: &["mat"], whole: true, sniff: mat::sniff, read: mat::read },
-    Entry { format: Format::Tdms, endings: &["tdms"], whole: false, sniff: tdms::sniff, read: tdms::read },
-    Entry { format: Format::Lvm, endings: &["lvm"], whole: true, sniff: lvm::sniff, read: lvm::read },
-    Entry { format: Format::Uff, endings: uff::ENDINGS, whole: true, sniff: uff::sniff, read: uff::read },
-    Entry { format: Format::Csv, endings: &["csv", "tsv"], whole: false, sniff: text::is_table, read: text::read_table },
+    Entry { format: Format::Hdf5, endings: &["h5", "hdf5"], whole: false, sniff: crate::hdf5::sniff, read: crate::hdf5::read },
+    Entry { format: Format::Mat, endings: &["mat"], whole: true, sniff: crate::mat::sniff, read: crate::mat::read },
+    Entry { format: Format::Tdms, endings: &["tdms"], whole: false, sniff: crate::tdms::sniff, read: crate::tdms::read },
+    Entry { format: Format::Lvm, endings: &["lvm"], whole: true, sniff: crate::lvm::sniff, read: crate::lvm::read },
+    Entry { format: Format::Uff, endings: crate::uff::ENDINGS, whole: true, sniff: crate::uff::sniff, read: crate::uff::read },
+    Entry { format: Format::Csv, endings: &["csv", "tsv"], whole: false, sniff: crate::text::is_table, read: crate::text::read_table },
     Entry {
         format: Format::Ascii, endings: &["txt", "dat", "asc"], whole: false,
-        sniff: |head, _| text::encoding::is_text(head), read: text::read_numbers,
+        sniff: |head, _| crate::text::encoding::is_text(head), read: crate::text::read_numbers,
     },
 ];
 

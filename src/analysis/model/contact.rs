@@ -84,8 +84,10 @@ fn contact_law(scene: &Scene, wanted: Contact) -> Result<Option<Law>> {
     };
     if let Some((key, value)) = given.iter().find_map(unused) {
         let expected = format!("what this law takes: {}", form.keys().join(", "));
-        return Err(Error::usage(format!("contact.{key} = {value} for this law"), expected)
-            .hint("remove the key, or choose the law that has it: hunt-crossley takes stiffness, exponent and damping"));
+        let takes = FORMS.iter().filter(|form| form.keys().contains(&key));
+        let takes: Vec<&str> = takes.map(|form| form.name).collect();
+        let hint = format!("remove the key, or choose a law that takes it: {}", takes.join(", "));
+        return Err(Error::usage(format!("contact.{key} = {value} for this law"), expected).hint(hint));
     }
     let stated = |value: Option<f64>, key: &str, unit: &str| {
         value.ok_or_else(|| {

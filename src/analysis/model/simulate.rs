@@ -197,7 +197,8 @@ fn summary(observed: &ObservedMotion) -> Table {
     .note("Phase: of the excitation at the last impact, after the crest of a sine force, the impulse or the onset of the pulse.")
 }
 
-/// Caution where the bodies of a Hertz contact yield, or a modulus or a radius has another unit than was meant.
+/// Caution where the bodies of a Hertz contact yield, or a modulus or a radius has another unit than was
+/// meant.
 fn beyond_elastic(rebound: &HertzRebound, scene: &Scene) -> Option<Finding> {
     let radius = scene.contact?.relative_radius()?;
     let found = Finding::caution("hertz-yields").number("pressure", rebound.pressure?);

@@ -226,13 +226,15 @@ fn the_example_bench_gives_back_the_truth() {
 fn every_command_and_every_key_of_a_campaign_is_described() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let text = |name: &str| std::fs::read_to_string(root.join(name)).unwrap();
-    let (readme, campaign) = (text("README.md"), text("docs/campaign.md"));
+    let (readme, campaign, guide) = (text("README.md"), text("docs/campaign.md"), text("docs/commands.md"));
     let help = String::from_utf8(super::vibro(&["--help"]).stdout).unwrap();
     let listed = help.lines().take_while(|l| *l != "Options:").filter(|l| l.starts_with("  "));
     let commands: Vec<&str> = listed.filter_map(|l| l.split_whitespace().next()).collect();
     assert!(commands.len() > 10, "{help}");
     for command in commands {
-        assert!(readme.contains(&format!("vibro {command}")), "the README says nothing of `vibro {command}`");
+        let typed = format!("vibro {command}");
+        assert!(readme.contains(&typed), "the README says nothing of `{typed}`");
+        assert!(guide.contains(&typed), "docs/commands.md says nothing of `{typed}`");
     }
     let of_rig = vibroimpact::model::Parameter::of_rig().map(|p| p.name().to_owned());
     for key in super::campaign::sections().into_iter().chain(of_rig) {

@@ -22,6 +22,9 @@ pub struct LawForm {
     pub force: fn(&Law, f64, f64) -> f64,
 }
 
+/// Exponent of curved elastic bodies, whose radii and elastic constants give a stiffness (Hertz 1882).
+const HERTZ: f64 = 1.5;
+
 /// Where the damping of a contact law comes from.
 #[derive(Debug, Clone, Copy)]
 pub enum LawDamping {
@@ -57,7 +60,7 @@ impl LawForm {
             ("stiffness", true),
             ("exponent", self.any_exponent),
             ("damping", !matches!(self.damping, LawDamping::Lossless)),
-            ("radius", !self.linear),
+            ("radius", self.any_exponent || self.exponent == HERTZ),
         ];
         all.into_iter().filter_map(|(key, taken)| taken.then_some(key)).collect()
     }

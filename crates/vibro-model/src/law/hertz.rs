@@ -44,7 +44,8 @@ impl HertzRebound {
     /// Rebound of the stiffness (N/m^{3/2}) for a reduced mass (kg) at an approach speed (m/s), all above 0,
     /// between bodies of the radius R, 1/R = 1/R₁ + 1/R₂ (m), where it is known.
     ///
-    /// The pressure is 3F/(2πa²) at the centre of the circle of contact, a² = Rδ (Johnson 1985, 4.22 to 4.24).
+    /// The pressure is 3F/(2πa²) at the centre of the circle of contact, a² = Rδ (Johnson 1985, 4.22 to
+    /// 4.24).
     pub fn new(stiffness: f64, mass: f64, speed: f64, radius: Option<f64>) -> HertzRebound {
         let indentation = conversion::hertz_depth(stiffness, mass, speed);
         let force = Law::hertz(stiffness).force(indentation, 0.0);
