@@ -289,8 +289,8 @@ mod tests {
         );
     }
 
-    /// A receptance of a blow whose record ends T = 0.98 s after it, with 12 % of the response left: its impulse
-    /// response is cut there, which takes the factor 1 − e^((s − iω)T) to each pole s.
+    /// A receptance of a blow whose record ends T = 0.98 s after it, with 12 % of the response left: its
+    /// impulse response is cut there, which gives each pole s the factor 1 − e^((s − iω)T).
     #[test]
     fn the_end_of_a_record_of_a_blow_is_a_part_of_the_mode() {
         let (own, zeta, length) = (500.0, 0.0043, 0.98);

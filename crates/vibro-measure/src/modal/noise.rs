@@ -229,8 +229,8 @@ mod tests {
     use super::*;
     use std::f64::consts::SQRT_2;
 
-    /// A mode of ten lines in the bandwidth; noise of the response of 1, and of the excitation of 0.02 H, which
-    /// is 10 times the former at the peak. Four degrees of freedom a line, as of three blows.
+    /// A mode of ten lines in the bandwidth; noise of the response of 1, and of the excitation of 0.02 H,
+    /// which is 10 times the former at the peak. Four degrees of freedom a line, as of three blows.
     #[test]
     fn noise_of_the_excitation_is_a_share_of_the_response() {
         let mut noise = vibro_math::Noise::new(4);

@@ -24,7 +24,8 @@ pub struct Measured {
     /// Window of the segments that the function was averaged over, each as long as the inverse of the line
     /// spacing. `None` where it was not averaged so, or that is not known.
     pub window: Option<Window>,
-    /// Time in s from a blow of a hammer to the end of its record, where the function was averaged over blows.
+    /// Time in s from a blow of a hammer to the end of its record, where the function was averaged over
+    /// blows.
     pub after_blow: Option<f64>,
     /// Standard uncertainty of one component of each value, above 0, where it is known.
     pub std: Option<Vec<f64>>,

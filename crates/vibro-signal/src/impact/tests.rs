@@ -315,7 +315,7 @@ fn a_dip_of_the_force_shows_no_end_of_a_record() {
         let how = Blows { length, before: length / 50, force_window: None, left_at_end: None };
         let found = from_blows(&force, &response, &how, Estimator::H1).unwrap().transfer;
         let at = |f: f64| (f * length as f64 / RATE) as usize - 1;
-        [found.frf.values[at(0.3 * RATE)], found.frf.values[at(MODE.1)]].map(|h| h.is_finite())
+        [found.frf.values[at(0.3 * RATE)], found.frf.values[at(MODE.1)]].map(Complex64::is_finite)
     };
     assert_eq!([dip(3000), dip(16_384)], [[false, true], [true, true]]);
 }
