@@ -183,7 +183,7 @@ fn background(total: &[f64], leakage: &[f64]) -> Vec<f64> {
 ///
 /// `total` holds a measured variance of each line, which scatters as χ² (Bendat & Piersol 2010, 8.2). The
 /// shares are likeliest where Σ ln m + v/m is least, found by steps that keep them above 0 and lower the sum
-/// (Févotte, Bertin & Durrieu 2009, Itakura–Saito divergence).
+/// (Févotte & Idier 2011, Itakura–Saito divergence).
 pub(super) fn of_both(total: &[f64], power: &[f64], x: &[f64]) -> Vec<f64> {
     let middle = x[x.len() / 2];
     let parts = |i: usize| {
@@ -208,7 +208,7 @@ pub(super) fn of_both(total: &[f64], power: &[f64], x: &[f64]) -> Vec<f64> {
     (0..total.len()).map(|i| model(&share, i)).collect()
 }
 
-/// Steps of the search for the shares of the noise: each nears the least sum by about a tenth.
+/// Steps of the search for the shares of the noise.
 const STEPS_OF_SHARES: usize = 200;
 
 /// Lines on either side over which the noise that the coherence gives is averaged. With two averages the
