@@ -138,7 +138,7 @@ fn direct_frf(mix: &mut Mix, count: usize) -> Record {
     for v in &mut values {
         *v += Complex64::new(mix.random.normal(), mix.random.normal()) * (noise * largest / 2f64.sqrt());
     }
-    compare_modes(&Measured::new(frequency, values, quantity), &poles, false)
+    compare_modes(&Measured::new(frequency, values, quantity), &poles)
 }
 
 /// One to three modes within a bandwidth of each other, some without a peak of their own. Lines are 1 Hz
@@ -173,7 +173,7 @@ fn neighbours(mix: &mut Mix) -> Record {
     for v in &mut values {
         *v += Complex64::new(mix.random.normal(), mix.random.normal()) * (noise * largest / 2f64.sqrt());
     }
-    compare_modes(&Measured::new(frequency, values, quantity), &poles, false)
+    compare_modes(&Measured::new(frequency, values, quantity), &poles)
 }
 
 /// Two modes of a stepped sweep of twelve steps.
@@ -194,7 +194,7 @@ fn coarse_sweep(mix: &mut Mix) -> Record {
     for v in &mut values {
         *v += Complex64::new(mix.random.normal(), mix.random.normal()) * (0.002 * v.norm() / 2f64.sqrt());
     }
-    compare_modes(&Measured::new(frequency, values, Quantity::Receptance), &poles, false)
+    compare_modes(&Measured::new(frequency, values, Quantity::Receptance), &poles)
 }
 
 /// Draws a random force and the response of the modes to it, disturbed as by a measuring chain, and
@@ -220,7 +220,7 @@ fn averaged_frf(mix: &mut Mix, count: usize) -> Record {
     };
     let measured = function_of([trace("N", rate, force), trace(unit, rate, motion)], &options);
     let measured = measured.map(|measured| Measured { window: Some(Window::Hann), ..measured });
-    measured.map_or_else(|| mode_answers(&poles, |_| None), |m| compare_modes(&m, &poles, false))
+    measured.map_or_else(|| mode_answers(&poles, |_| None), |m| compare_modes(&m, &poles))
 }
 
 /// The function between force and motion at its finite lines, with its coherence.
@@ -305,7 +305,7 @@ fn hammer_test(mix: &mut Mix, count: usize) -> Record {
     let options =
         SpectralOptions { hammer: true, estimator: Some(Estimator::H1), ..SpectralOptions::default() };
     let measured = function_of([trace("N", rate, force), trace(unit, rate, motion)], &options);
-    measured.map_or_else(|| mode_answers(&poles, |_| None), |m| compare_modes(&m, &poles, true))
+    measured.map_or_else(|| mode_answers(&poles, |_| None), |m| compare_modes(&m, &poles))
 }
 
 /// A random force of `n` samples up to 0.45 of the sampling rate with a peak of 1, and the response of the
@@ -345,9 +345,8 @@ fn random_response(mix: &mut Mix, poles: &[Pole], power: i32, rate: f64, n: usiz
 
 /// Fits modes to an FRF and pairs each true mode with the fitted one nearest in frequency, at most one
 /// half-power bandwidth (or one line) away. A fitted mode without a partner is an invented answer.
-fn compare_modes(measured: &Measured, poles: &[Pole], from_blows: bool) -> Record {
-    let options = ModalOptions { from_blows, ..ModalOptions::default() };
-    let Ok(fit) = modal(measured, &options) else { return mode_answers(poles, |_| None) };
+fn compare_modes(measured: &Measured, poles: &[Pole]) -> Record {
+    let Ok(fit) = modal(measured, &ModalOptions::default()) else { return mode_answers(poles, |_| None) };
     let limits: Vec<f64> = poles.iter().map(|p| (2.0 * p.zeta * p.frequency).max(1.0)).collect();
     let truths: Vec<f64> = poles.iter().map(|p| p.frequency).collect();
     let paired = pairs(&truths, &limits, &fit.modes.iter().map(|m| m.frequency.value).collect::<Vec<_>>());

@@ -207,7 +207,6 @@ impl Keys {
             mass: self.mass,
             least_coherence: self.least_coherence,
             decay: meta.added_decay(),
-            from_blows: meta.from_blows(),
             clock: meta.clock,
         };
         // A function without modes is shown.

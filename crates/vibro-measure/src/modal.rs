@@ -53,7 +53,7 @@ pub fn modal(measured: &Measured, options: &ModalOptions) -> Result<ModalResult>
     let (mut fits, mut unsupported, mut failed) = (Vec::new(), Vec::new(), None);
     let groups = groups(&lines, options.band)?;
     // A coherence shows that the function was averaged, but not how.
-    let unsaid = lines.window.is_none() && lines.coherence.is_some() && !options.from_blows;
+    let unsaid = lines.window.is_none() && lines.coherence.is_some() && lines.after_blow.is_none();
     let unsaid = unsaid && !averaging(&mut lines, &groups);
     for mut group in groups {
         match chosen(&lines, &mut group, &mut unsupported) {
@@ -287,6 +287,33 @@ mod tests {
             (with.0 / 2.0 - 1.0).abs() < 1e-4 && (with.1 / without.1 - 1.0).abs() < 1e-9,
             "{with:?} {without:?}"
         );
+    }
+
+    /// A receptance of a blow whose record ends T = 0.98 s after it, with 12 % of the response left: its
+    /// impulse response is cut there, which gives each pole s the factor 1 − e^((s − iω)T).
+    #[test]
+    fn the_end_of_a_record_of_a_blow_is_a_part_of_the_mode() {
+        let (own, zeta, length) = (500.0, 0.0043, 0.98);
+        let pole = own * Complex64::new(-zeta, f64::sqrt(1.0 - zeta * zeta));
+        let measured = two();
+        let values = measured.frequency.iter().map(|f| {
+            let part = |s: Complex64| {
+                let apart = Complex64::new(0.0, std::f64::consts::TAU * f) - s;
+                (1.0 - (-apart * length).exp()) / apart
+            };
+            2.0 * (part(pole) - part(pole.conj())) / Complex64::new(0.0, 2.0 * pole.im)
+        });
+        let kind = Quantity::Receptance;
+        let measured =
+            Measured { after_blow: Some(length), values: values.collect(), kind, ..measured.clone() };
+        let result = found(&measured, &ModalOptions::default());
+        let mode = &result.modes[0];
+        assert!((mode.zeta.value / zeta - 1.0).abs() < 1e-4, "{mode:?}");
+        assert!((mode.modal_constant.value / 2.0 - 1.0).abs() < 1e-4, "{mode:?}");
+        // What the blow before left, half of e^(−ζωT), is not known from the lines.
+        let left = 0.5 * (-own * zeta * length).exp();
+        assert!(mode.modal_constant.std.unwrap() >= 2.0 * left, "{mode:?}");
+        assert!(says(&result, "modal-blow-cut-off"), "{:?}", result.findings);
     }
 
     #[test]

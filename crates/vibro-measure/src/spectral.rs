@@ -32,7 +32,7 @@ const BLOWS: f64 = 15.0;
 /// Fewest samples of a blow's record, unless its length is stated.
 const SHORTEST: usize = 256;
 /// A hammer record begins 1/50 of its length before the blow.
-const BEFORE: usize = 50;
+pub(crate) const BEFORE: usize = 50;
 
 /// The spectrum of the only channel, or with an estimator the frequency response function from the first
 /// channel to the second. `progress` gets the number of samples read.
@@ -290,7 +290,8 @@ fn of_blows(
     estimator: Estimator,
 ) -> Result<(BlowTransfer, usize)> {
     // The part of a record before its blow is 1/[`BEFORE`].
-    let longest = spacing(force)? / (BEFORE - 1) * BEFORE;
+    let between = spacing(force)?;
+    let longest = between / (BEFORE - 1) * BEFORE;
     let mut length = options.segment.unwrap_or(SEGMENT);
     while options.segment.is_none() && length > longest && length > SHORTEST {
         length /= 2;
@@ -304,10 +305,13 @@ fn of_blows(
     let rings =
         |found: &BlowTransfer| found.transfer.findings.iter().any(|f| f.code == code::RESPONSE_CUT_OFF);
     let mut found = of(length)?;
-    while options.segment.is_none() && rings(&found) && 2 * length <= longest {
+    // At last a record from blow to blow, which ends before the next one rises.
+    let whole = between / 2 * 2;
+    while options.segment.is_none() && rings(&found) && length < whole {
+        let more = if 2 * length <= longest { 2 * length } else { whole };
         // A longer record that would lose a blow is not taken.
-        let Some(longer) = of(2 * length).ok().filter(|longer| clean(longer) >= clean(&found)) else { break };
-        (found, length) = (longer, 2 * length);
+        let Some(longer) = of(more).ok().filter(|longer| clean(longer) >= clean(&found)) else { break };
+        (found, length) = (longer, more);
     }
     Ok((found, length))
 }

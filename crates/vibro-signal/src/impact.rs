@@ -175,11 +175,15 @@ pub fn from_blows(
     let metas: [Meta; 2] = [force.meta.clone(), response.meta.clone()];
     let mut transfer = transfer(&averages, 1, &metas, estimator)?;
     transfer.frf.meta.step("blows", &[("length", &how.length), ("before", &how.before)]);
-    let floor = AUDIBLE * noise * weights[0].iter().map(|w| w * w).sum::<f64>();
-    transfer.silence(&averages.auto[0], floor);
+    let left = left::widen(&mut transfer, &response.values, &kept, how, &weights[1]);
+    let force = &averages.auto[0];
+    let unseen = left.map_or(0.0, |[_, mode]| mode.unseen(force[mode.line + 1]));
+    let noise = noise * weights[0].iter().map(|w| w * w).sum::<f64>();
+    transfer.silence(force, (AUDIBLE * noise).max(unseen));
     transfer.findings.extend(left_out(&blows));
     transfer.findings.extend((kept.len() == 1).then(|| Finding::caution("frf-one-blow")));
-    left::widen(&mut transfer, &response.values, &kept, how, &weights[1]);
+    let cut_off = left.and_then(|[left, _]| left.finding(&transfer));
+    transfer.findings.extend(cut_off);
     if decay > 0.0 {
         let ratio = decay / (2.0 * PI);
         let added = Finding::caution("window-adds-decay").number("decay", decay).number("ratio", ratio);

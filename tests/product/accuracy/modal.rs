@@ -253,7 +253,7 @@ fn structures_in_a_band(with_coherence: bool, banded: bool, from: u64, draws: Dr
         let mut measured = measured(lines.clone(), noisy(&clean, &sigma, &mut noise), kind);
         measured.coherence = with_coherence.then(|| vec![gamma; lines.len()]);
         let band = banded.then(|| (truth[0][0] * 0.6, f));
-        let found = modal(&measured, &ModalOptions { band, from_blows: false, ..ModalOptions::default() })
+        let found = modal(&measured, &ModalOptions { band, ..ModalOptions::default() })
             .unwrap_or_else(|e| panic!("seed {seed}: {e}"));
         let mut matched = 0;
         for (t, seen) in truth.iter().zip(seen) {

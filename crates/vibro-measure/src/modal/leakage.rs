@@ -1,4 +1,4 @@
-//! Response of a mode in a function that was averaged over windowed segments.
+//! Response of a mode in a function that was averaged over windowed segments, or over the blows of a hammer.
 //!
 //! The mean of conj(F)X over segments of a stationary excitation, windowed by w, is the cross-spectrum
 //! smoothed by |W|² (Bendat & Piersol 2010, 8.5). Where the excitation is flat over a few lines, so is the
@@ -8,7 +8,10 @@
 //! For w = Σ cₖ exp(2πikt/T) that integral is T Σ [cⱼ² L(z − 2πij) + bⱼ E(z − 2πij)]/Σ cₖ² with z = sT, E(z)
 //! = (1 − exp(−z))/z, L(z) = (1 − E(z))/z and bⱼ = cⱼ/(πi) Σ cₘ/(m − j) over m ≠ j: the products of two terms
 //! of w, each integrated from 0 to T − τ.
+//!
+//! The record of a blow multiplies the impulse response by 1 up to its end T after the blow: T E(z).
 
+use super::Measured;
 use num_complex::Complex64;
 use std::f64::consts::{PI, TAU};
 use vibro_record::Window;
@@ -19,6 +22,15 @@ pub(super) struct Leakage {
     length: f64,
     /// 2πj, cⱼ² and bⱼ over Σ cₖ².
     terms: Vec<(f64, f64, Complex64)>,
+}
+
+impl Measured {
+    /// Leakage of the records over which the function was averaged, for angular frequencies over `unit` in
+    /// rad/s.
+    pub(super) fn leakage(&self, unit: f64) -> Option<Leakage> {
+        let segments = self.window.map(|window| Leakage::of(window, unit / self.spacing()));
+        segments.or(self.after_blow.map(|length| Leakage::of_blows(unit * length)))
+    }
 }
 
 impl Leakage {
@@ -37,6 +49,11 @@ impl Leakage {
             (TAU * f64::from(j), c(j) * c(j) / power, b / power)
         };
         Leakage { length, terms: (-most..=most).map(term).collect() }
+    }
+
+    /// For the records of blows that end `length` after the blow, in the inverse unit of s.
+    pub fn of_blows(length: f64) -> Leakage {
+        Leakage { length, terms: vec![(0.0, 0.0, Complex64::ONE)] }
     }
 
     /// The integral, which takes the place of 1/s.

@@ -1,7 +1,7 @@
 //! Modes and residual terms fitted to a part of a frequency response function in the complex plane.
 
 use super::leakage::Leakage;
-use super::noise::{LineNoise, MARGIN, STEPS, of_segments, smoothed};
+use super::noise::{LineNoise, MARGIN, STEPS, of_both, of_segments};
 use super::peak::Peak;
 use super::{Measured, Pole};
 use crate::residuals::{Whiteness, aicc, student};
@@ -82,7 +82,7 @@ impl<'a> Scaled<'a> {
             unit,
             height,
             power,
-            leakage: measured.window.map(|window| Leakage::of(window, TAU * unit / measured.spacing())),
+            leakage: measured.leakage(TAU * unit),
             magnitude_only: measured.magnitude_only,
             known: RefCell::new(vec![Default::default(); starts.len()]),
         }
@@ -370,13 +370,9 @@ fn rivals(
             {
                 vec![(noise, "noise by the coherence and the window")]
             } else {
-                let level: Vec<f64> = smoothed(&level).into_iter().map(f64::sqrt).collect();
-                let share = smoothed(&share);
-                let relative =
-                    share.iter().enumerate().map(|(i, s)| height(i).max(1e-6) * s.sqrt()).collect();
-                [level, relative]
-                    .map(|each| (LineNoise::independent(each), "noise by the coherence"))
-                    .to_vec()
+                let power: Vec<f64> = (0..lines).map(|i| height(i).powi(2)).collect();
+                let each = of_both(&level, &power, &scaled.x).into_iter().map(f64::sqrt).collect();
+                vec![(LineNoise::independent(each), "noise by the coherence")]
             }
         }
     }

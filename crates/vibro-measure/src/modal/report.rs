@@ -58,7 +58,6 @@ impl Candidate<'_> {
         // place of a.
         let bandwidth = 2.0 * pole.zeta * pole.frequency / spacing;
         let leakage = 4.0 / 3.0 / bandwidth.powi(2);
-        let blows = self.options.from_blows;
         let leaks = leakage * pole.zeta > std[1];
         let of = |found: Finding| found.number("bandwidth", bandwidth).number("part", leakage);
         if self.unsaid && leaks {
@@ -67,11 +66,14 @@ impl Candidate<'_> {
             find(true, of(Finding::caution("modal-leakage")));
         }
         find(measured.window.is_some() && leaks, of(Finding::note("modal-leakage-fitted")));
-        if blows {
-            // A record that ends T after the blow lacks e^(sT − iωT) of a mode: a factor on A.
-            let left = (-TAU * pole.frequency * pole.zeta / spacing).exp();
+        if let Some(after_blow) = measured.after_blow {
+            // The response left by the blow before, e^(sT) of its own, has the same pole, and any phase: it
+            // changes A by a factor. Its mean over blows of independent phases is smaller by √n; a coherence
+            // needs two.
+            let left = (-TAU * pole.frequency * pole.zeta * after_blow).exp();
             let cut_off = Finding::caution(code::MODAL_BLOW_CUT_OFF).number("part", left);
             find(left * pole.constant.norm() > std[2], cut_off);
+            let left = 0.5 * left;
             (std[2], std[3]) = (std[2].hypot(left * pole.constant.norm()), std[3].hypot(left));
         }
         let phase = own.constant.arg().to_degrees();

@@ -1,5 +1,6 @@
 //! The lines of a frequency response function that may be fitted.
 
+use crate::spectral::BEFORE;
 use num_complex::Complex64;
 use vibro_record::units::Quantity;
 use vibro_record::{
@@ -23,6 +24,9 @@ pub struct Measured {
     /// Window of the segments that the function was averaged over, each as long as the inverse of the line
     /// spacing. `None` where it was not averaged so, or that is not known.
     pub window: Option<Window>,
+    /// Time in s from a blow of a hammer to the end of its record, where the function was averaged over
+    /// blows.
+    pub after_blow: Option<f64>,
     /// Standard uncertainty of one component of each value, above 0, where it is known.
     pub std: Option<Vec<f64>>,
 }
@@ -30,13 +34,24 @@ pub struct Measured {
 impl Measured {
     /// Complex values of one kind over frequencies in Hz, without coherence, window or uncertainty.
     pub fn new(frequency: Vec<f64>, values: Vec<Complex64>, kind: Quantity) -> Measured {
-        Measured { frequency, values, magnitude_only: false, kind, coherence: None, window: None, std: None }
+        Measured {
+            frequency,
+            values,
+            magnitude_only: false,
+            kind,
+            coherence: None,
+            window: None,
+            after_blow: None,
+            std: None,
+        }
     }
 
     /// All lines of a complex function.
     pub fn complex(frf: &Frf) -> Measured {
         let window = frf.meta.averaged_with();
-        Measured { window, ..Measured::of(&frf.axis, frf.values.clone(), frf.meta.quantity) }
+        let all = Measured::of(&frf.axis, frf.values.clone(), frf.meta.quantity);
+        let record = frf.axis.step().map(|step| (1.0 - 1.0 / BEFORE as f64) / step);
+        Measured { window, after_blow: record.filter(|_| frf.meta.from_blows()), ..all }
     }
 
     fn of(axis: &Axis, values: Vec<Complex64>, kind: Quantity) -> Measured {

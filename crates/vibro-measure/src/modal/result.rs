@@ -17,9 +17,6 @@ pub struct ModalOptions {
     pub least_coherence: Option<f64>,
     /// Decay in 1/s that an exponential window added to the response, to be subtracted. Default: none.
     pub decay: Option<f64>,
-    /// Whether the function was averaged over the blows of a hammer, each record as long as the inverse of
-    /// the line spacing. Default: false.
-    pub from_blows: bool,
     /// Relative standard uncertainty of the sampling rate, which is common to all frequencies. Default: 0.
     pub clock: f64,
 }

@@ -1,6 +1,6 @@
 //! The part of a response that is cut off when the record of a blow ends.
 
-use super::Blows;
+use super::{AUDIBLE, Blows};
 use crate::fft::Transform;
 use crate::transfer::Transfer;
 use std::f64::consts::TAU;
@@ -19,18 +19,53 @@ const STRONG: f64 = 0.01;
 /// Smallest part of a response at the end of its record that is worth a finding: sensors are less accurate.
 const LEAST: f64 = 1e-3;
 
+/// The part of a response that is left at the end of a record, at a line.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Left {
+    /// Index of the line of the function.
+    pub line: usize,
+    /// Response at the end of the record over that at its beginning.
+    pub part: f64,
+}
+
+impl Left {
+    /// Power of the force below which a line shows the end of the record and no function; `own` is the power
+    /// at the line of this mode.
+    ///
+    /// A mode that still rings at an end of the record responds to one more blow, of which nothing was
+    /// recorded. Its spectrum is flat, and at the line of the mode it is `part` of that of the blow. Lines
+    /// within [`AUDIBLE`] of the force at the mode are kept, however early its record ends.
+    pub fn unseen(&self, own: f64) -> f64 {
+        (AUDIBLE * self.part * self.part).min(AUDIBLE.recip()) * own
+    }
+
+    /// Finding for a function, where the part is large enough.
+    pub fn finding(&self, transfer: &Transfer) -> Option<Finding> {
+        let here = Finding::caution(code::RESPONSE_CUT_OFF);
+        let here = here.number("frequency", transfer.frf.axis.at(self.line)).number("left", self.part);
+        (self.part > LEAST).then_some(here)
+    }
+}
+
 /// Adds to the standard deviations of a function, line by line, the part of the response that is left when
-/// its weighted record ends, relative to its beginning. The blows begin at `kept`. A finding states the line
-/// where it is largest. Nothing is added where records are too short to tell.
+/// its weighted record ends, relative to its beginning. The blows begin at `kept`. Returns the line where it
+/// disturbs the function most, and the line of the highest response, which is a mode and no hum. Nothing is
+/// added where records are too short to tell.
 ///
 /// In the last quarter a mode that decays as e^(−σt) has the transform of the first quarter times r =
 /// e^(−3σT/4); r^(4/3) is left at T. A mode whose record ends at T has lost e^((s − iω)T) of its transform,
 /// where s is its pole; that is also the relative error of its part of H. White noise is assumed, with the
 /// variance before the quietest blow: before the others the previous blow may still ring.
-pub(super) fn widen(transfer: &mut Transfer, values: &[f64], kept: &[usize], how: &Blows, weights: &[f64]) {
+pub(super) fn widen(
+    transfer: &mut Transfer,
+    values: &[f64],
+    kept: &[usize],
+    how: &Blows,
+    weights: &[f64],
+) -> Option<[Left; 2]> {
     let quarter = (how.length - how.before) / PARTS;
     if quarter < FEWEST || how.before < 2 || kept.is_empty() {
-        return;
+        return None;
     }
     let transform = Transform::new(quarter);
     let mut work = transform.workspace();
@@ -39,7 +74,7 @@ pub(super) fn widen(transfer: &mut Transfer, values: &[f64], kept: &[usize], how
     let mut powers = [how.before, how.length - quarter].map(|from| (from, vec![0.0; transform.lines()]));
     let mut noise = f64::INFINITY;
     for start in kept {
-        let Some(part) = values.get(*start..start + how.length) else { return };
+        let part = values.get(*start..start + how.length)?;
         let quiet = &part[..how.before];
         let level = quiet.iter().sum::<f64>() / how.before as f64;
         let variance = quiet.iter().map(|v| (v - level).powi(2)).sum::<f64>() / (how.before - 1) as f64;
@@ -73,18 +108,21 @@ pub(super) fn widen(transfer: &mut Transfer, values: &[f64], kept: &[usize], how
         head.iter().zip(&tail).enumerate().map(|line| (part(line), *line.1.0 > strong)).collect();
     // Lines of the record for one line of a part.
     let step = how.length as f64 / quarter as f64;
-    let (mut most, mut finding) = (0.0, None);
-    for (k, h) in transfer.frf.values.iter().enumerate() {
+    let highest = (0..head.len()).max_by(|a, b| head[*a].total_cmp(&head[*b])).unwrap_or(0);
+    let last = transfer.frf.values.len().saturating_sub(1);
+    let line = ((highest as f64 * step).round() as usize).saturating_sub(1).min(last);
+    let mode = Left { line, part: parts[highest].0 };
+    let (mut most, mut left) = (0.0, Left { line, part: 0.0 });
+    for (line, h) in transfer.frf.values.iter().enumerate() {
         // The first line of a function is the first above 0 Hz.
-        let place = ((k + 1) as f64 / step).round() as usize;
-        let Some((part, strong)) = parts.get(place).or(parts.last()) else { continue };
-        transfer.magnitude_std[k] = transfer.magnitude_std[k].hypot(part * h.norm());
-        transfer.phase_std[k] = transfer.phase_std[k].hypot(*part);
-        if *part > LEAST && *strong && part * h.norm() > most {
+        let place = ((line + 1) as f64 / step).round() as usize;
+        let Some((part, strong)) = parts.get(place).or(parts.last()).copied() else { continue };
+        transfer.magnitude_std[line] = transfer.magnitude_std[line].hypot(part * h.norm());
+        transfer.phase_std[line] = transfer.phase_std[line].hypot(part);
+        if strong && part * h.norm() > most {
             most = part * h.norm();
-            let here = Finding::caution(code::RESPONSE_CUT_OFF).number("frequency", transfer.frf.axis.at(k));
-            finding = Some(here.number("left", *part));
+            left = Left { line, part };
         }
     }
-    transfer.findings.extend(finding);
+    Some([left, mode])
 }

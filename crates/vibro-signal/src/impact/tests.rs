@@ -306,6 +306,20 @@ fn what_is_left_at_the_end_of_a_record_is_said() {
     assert!(!has(&found, "response-cut-off"), "{:?}", found.transfer.findings);
 }
 
+/// A half sine of five samples has no force at 0.3 of the sampling rate. What the end of a record cuts off
+/// divided by that would be a peak of the function; a record that holds the whole response has none.
+#[test]
+fn a_dip_of_the_force_shows_no_end_of_a_record() {
+    let [force, response] = bench(&[(500, 100.0), (18_000, 80.0), (36_000, 120.0)], 53_000);
+    let dip = |length: usize| {
+        let how = Blows { length, before: length / 50, force_window: None, left_at_end: None };
+        let found = from_blows(&force, &response, &how, Estimator::H1).unwrap().transfer;
+        let at = |f: f64| (f * length as f64 / RATE) as usize - 1;
+        [found.frf.values[at(0.3 * RATE)], found.frf.values[at(MODE.1)]].map(Complex64::is_finite)
+    };
+    assert_eq!([dip(3000), dip(16_384)], [[false, true], [true, true]]);
+}
+
 /// A short blow has four or five samples: clipped, it stays at its ceiling for two samples or one.
 #[test]
 fn short_blows_at_the_ceiling_are_overloads() {
