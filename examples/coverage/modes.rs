@@ -230,7 +230,9 @@ fn function_of(channels: [Trace; 2], options: &SpectralOptions) -> Option<Measur
     let mut measured = Measured::complex(&transfer.frf);
     let finite: Vec<usize> =
         (0..measured.values.len()).filter(|k| measured.values[*k].norm().is_finite()).collect();
-    measured.coherence = Some(finite.iter().map(|k| transfer.coherence[*k]).collect());
+    // A single blow that counts has no coherence.
+    let known = !transfer.coherence.is_empty();
+    measured.coherence = known.then(|| finite.iter().map(|k| transfer.coherence[*k]).collect());
     measured.frequency = finite.iter().map(|k| measured.frequency[*k]).collect();
     measured.values = finite.iter().map(|k| measured.values[*k]).collect();
     Some(measured)
