@@ -76,7 +76,7 @@ impl Doubts {
     }
 }
 
-fn provoke(cases: Vec<Case>) {
+fn provoke(cases: &[Case]) {
     let wrong = |case: &Case| {
         let found = answer(&case.arguments);
         let Doubts { codes, left } = Doubts::of(&found);
@@ -91,14 +91,14 @@ fn provoke(cases: Vec<Case>) {
 #[test]
 fn no_number_has_an_uncertainty_beside_a_doubt_about_it() {
     let folder = tempfile::tempdir().unwrap();
-    provoke(cases(folder.path()));
+    provoke(&cases(folder.path()));
 }
 
 #[test]
 #[ignore = "fits of a whole rig: cargo test --release -- --ignored"]
 fn no_parameter_has_an_uncertainty_beside_a_doubt_about_the_fit() {
     let folder = tempfile::tempdir().unwrap();
-    provoke(fits(folder.path()));
+    provoke(&fits(folder.path()));
 }
 
 #[test]

@@ -353,11 +353,11 @@ pub fn fits(folder: &Path) -> Vec<Case> {
             std::fs::create_dir_all(to.parent().unwrap()).unwrap();
             std::fs::copy(&file, to).unwrap();
         }
-        let mut parts = text.split("[[sweep]]");
-        let head = parts.next().unwrap().replace("[fit]", &format!("[fit]\nstarts = 1\n{keys}\n"));
-        let kept: String = parts.take(sweeps).map(|part| format!("[[sweep]]{part}")).collect();
+        let parts: Vec<&str> = text.split("[[sweep]]").collect();
+        let head = parts[0].replace("[fit]", &format!("[fit]\nstarts = 1\n{keys}\n"));
+        let parts = [&[head.replace(rig.0, rig.1).as_str()], &parts[1..=sweeps]].concat();
         let campaign = own.join("campaign.toml");
-        std::fs::write(&campaign, head.replace(rig.0, rig.1) + &kept).unwrap();
+        std::fs::write(&campaign, parts.join("[[sweep]]")).unwrap();
         case(name, &format!("compare --fit {fitted}"), Some(&campaign), codes)
     };
     vec![
