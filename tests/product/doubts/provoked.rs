@@ -355,7 +355,8 @@ pub fn fits(folder: &Path) -> Vec<Case> {
         }
         let parts: Vec<&str> = text.split("[[sweep]]").collect();
         let head = parts[0].replace("[fit]", &format!("[fit]\nstarts = 1\n{keys}\n"));
-        let parts = [&[head.replace(rig.0, rig.1).as_str()], &parts[1..=sweeps]].concat();
+        let head = head.replace(rig.0, rig.1);
+        let parts = [&[head.as_str()], &parts[1..=sweeps]].concat();
         let campaign = own.join("campaign.toml");
         std::fs::write(&campaign, parts.join("[[sweep]]")).unwrap();
         case(name, &format!("compare --fit {fitted}"), Some(&campaign), codes)
