@@ -234,11 +234,9 @@ impl Keys {
         let first_handle = names.len();
         names.extend(self.handle.iter().map(String::as_str));
         let mut channels = Channels::read(source.reader()?, source.path, &names, source.progress)?;
-        if !channels.is(0, Quantity::Velocity) {
+        let is_velocity = channels.is(0, Quantity::Velocity);
+        if !is_velocity {
             needed("sensitivity", self.sensitivity)?;
-        } else if options.sensitivity != 1.0 {
-            let found = Finding::doubt("drill-velocity-scaled-twice");
-            channels.findings.push(found.number("sensitivity", options.sensitivity));
         }
         if (first_handle..names.len()).any(|channel| !channels.is(channel, Quantity::Acceleration)) {
             needed("handle_sensitivity", self.handle_sensitivity)?;
@@ -257,7 +255,9 @@ impl Keys {
             Slices { rate: channels.rate, channels: channels.values.iter().map(Vec::as_slice).collect() };
         let options = DrillOptions { clock: channels.clock(), ..options };
         let mut found = drill_each(&record, &options, noise.as_deref(), each)?;
-        found.findings.splice(..0, channels.findings);
+        let twice = Finding::doubt("drill-velocity-scaled-twice").number("sensitivity", options.sensitivity);
+        let twice = (is_velocity && options.sensitivity != 1.0).then(|| twice.of(&mut found));
+        found.findings.splice(..0, channels.findings.into_iter().chain(twice));
         answer(source.name, &found)
     }
 }

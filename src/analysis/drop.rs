@@ -13,7 +13,7 @@ use crate::campaign::{Entry, KeyRange};
 use crate::error::{Error, Hint, Result};
 use crate::measure::impacts::ImpactsOptions;
 use crate::measure::restitution::{Drop, GRAVITY, Measured, Restitution, Train, Velocities, restitution};
-use crate::record::{Finding, Trace, shown};
+use crate::record::{Doubt, Finding, Trace, shown};
 use crate::report::files::Names;
 use crate::report::layout::{Shown, table};
 use crate::report::words::{About, Voice};
@@ -161,6 +161,8 @@ pub struct Series {
     /// File and trace of each drop with a record.
     records: Vec<(String, Plot)>,
     findings: Vec<About>,
+    /// File and doubt of each record in which impacts may be missing.
+    doubts: Vec<(String, Doubt)>,
     /// Records left out, each with the reason why it allows no answer.
     refused: Vec<(String, Error)>,
 }
@@ -176,14 +178,14 @@ impl Series {
             gravity_std: keys.gravity_std,
             ..Drop::default()
         };
-        let (trains, records, findings) = (Vec::new(), Vec::new(), Vec::new());
         Series {
             drop,
-            trains,
             velocities: None,
             contact_time: keys.contact_time,
-            records,
-            findings,
+            trains: Vec::new(),
+            records: Vec::new(),
+            findings: Vec::new(),
+            doubts: Vec::new(),
             refused: Vec::new(),
         }
     }
@@ -221,6 +223,7 @@ impl Series {
         let of_trace = trace.meta.findings.iter().filter(|found| found.code != Trace::UNCALIBRATED);
         let findings = recording.findings.iter().chain(of_trace).chain(&found.findings);
         self.findings.extend(findings.map(|found| (file.clone(), found.clone())));
+        self.doubts.extend(found.doubts.into_iter().map(|doubt| (file.clone(), doubt)));
         let plot = impacts::figures::drop(&file, &trace, &found.times);
         self.records.push((file, plot));
         Ok(())
@@ -261,7 +264,9 @@ impl Series {
         let has_fall = drop.height.is_finite() && !drop.intervals.is_empty();
         let drop = has_fall.then_some(drop);
         let (trains, velocities, contact_time) = (self.trains, self.velocities, self.contact_time);
-        let found = restitution(&Measured { drop, trains, velocities, contact_time })?;
+        let mut found = restitution(&Measured { drop, trains, velocities, contact_time })?;
+        let doubts = self.doubts.into_iter().map(|(file, doubt)| (file, doubt.of(&mut found)));
+        self.findings.extend(doubts);
         let mut answer = Answer::of(&found)?;
         answer.findings = self.findings;
         if !self.records.is_empty() {

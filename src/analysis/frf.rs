@@ -19,7 +19,7 @@ use crate::campaign::{Campaign, Entry, KeyRange, channel};
 use crate::error::{Error, Result};
 use crate::measure::modal::{Measured, ModalOptions, ModalResult, modal, stabilisation};
 use crate::record::code;
-use crate::record::{Axis, Meta, Record, Trace, Traces, Window, shown};
+use crate::record::{Axis, Meta, Record, Severity, Trace, Traces, Uncertain, Window, shown};
 use crate::report::Cell;
 use crate::report::files;
 use crate::report::files::Names;
@@ -172,6 +172,7 @@ impl Keys {
             // A single blow has no coherence.
             let measured = if records.len() > 1 { measured.with_coherence_of(&records)? } else { measured };
             return Ok(vec![Function {
+                in_doubt: found.findings.iter().any(|found| found.severity() == Severity::Doubt),
                 records: records.clone(),
                 ..Function::new(frf.meta.clone(), measured)
             }]);
@@ -201,7 +202,7 @@ impl Keys {
     /// # Errors
     /// If it cannot be searched for modes. A function without modes is shown, with the reason.
     pub fn modes(&self, name: &str, function: &Function) -> Result<Answer> {
-        let Function { meta, measured, records, findings } = function;
+        let Function { meta, measured, records, findings, in_doubt } = function;
         let options = ModalOptions {
             band: self.band,
             mass: self.mass,
@@ -210,12 +211,15 @@ impl Keys {
             clock: meta.clock,
         };
         // A function without modes is shown.
-        let (found, refused) = match modal(measured, &options) {
+        let (mut found, refused) = match modal(measured, &options) {
             Err(error) if error.exit_code() == 1 => {
                 (ModalResult { modes: Vec::new(), findings: Vec::new() }, Some(error))
             }
             found => (found?, None),
         };
+        if *in_doubt {
+            found.doubt();
+        }
         let (quantity, unit) = (meta.quantity.name(), meta.unit.symbol());
         let mut answer = Answer::of(&FunctionModes { quantity, unit, modal: &found })?;
         answer.result.insert("channel".to_owned(), meta.name.clone().into());

@@ -33,7 +33,7 @@ pub fn of_record<'a>(
     name: &str,
     findings: impl IntoIterator<Item = &'a Finding>,
 ) -> Table {
-    let doubtful = findings.into_iter().any(|finding| finding.severity == Severity::Doubt);
+    let doubtful = findings.into_iter().any(|finding| finding.severity() == Severity::Doubt);
     let column = Table::new("").column("record", "").columns;
     headline.columns.splice(0..0, column);
     for row in &mut headline.rows {

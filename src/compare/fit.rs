@@ -94,6 +94,8 @@ fn found(
     let agreeing = agreeing(&ends, &rigid)?;
     let answer = AssessedFit::new(soft.unwrap_or(rigid), corrected.as_ref().map(|soft| soft.lost))?;
     let mut fit = Fit { starts, agreeing, rungs, ..answer.fit(base) };
+    let doubts = answer.unidentified(&mut fit);
+    fit.findings.extend(doubts);
     fit.findings.extend(answer.cautions(&fit, entry));
     Ok(fit)
 }

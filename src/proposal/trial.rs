@@ -116,7 +116,7 @@ impl Trial<'_> {
     /// The first decay table whose only doubts are those of a friction-damped decay.
     fn friction_decay(&self, tables: &[Table]) -> Option<Table> {
         let only_friction_doubts = |answer: &Answer| {
-            let allowed = |f: &Finding| f.severity < Severity::Doubt || FRICTION_DOUBTS.contains(&&*f.code);
+            let allowed = |f: &Finding| f.severity() < Severity::Doubt || FRICTION_DOUBTS.contains(&&*f.code);
             answer.findings.iter().all(|(_, finding)| allowed(finding))
         };
         let is_friction_decay = |table: &&Table| {
@@ -131,7 +131,7 @@ impl Trial<'_> {
     /// The answers of the tables, if they are plausible and no finding has the severity [`Severity::Doubt`].
     fn plausible_answer(&self, tables: &[Table]) -> Option<Answer> {
         let is_plausible = |answer: &Answer| {
-            answer.findings.iter().all(|(_, f)| f.severity < Severity::Doubt) && fits_kind(tables, answer)
+            answer.findings.iter().all(|(_, f)| f.severity() < Severity::Doubt) && fits_kind(tables, answer)
         };
         self.answers(tables).ok().filter(is_plausible)
     }

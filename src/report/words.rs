@@ -100,7 +100,7 @@ pub fn graded(findings: &[About], voice: Voice) -> Vec<(Severity, String)> {
     let mut all = Vec::new();
     for severity in [Severity::Doubt, Severity::Caution, Severity::Note] {
         let mut joined: Vec<Sentence<'_>> = Vec::new();
-        for (finding, records) in groups.iter().filter(|g| g.0.severity == severity) {
+        for (finding, records) in groups.iter().filter(|g| g.0.severity() == severity) {
             let new = Sentence {
                 finding,
                 text: sentence(finding, voice),
@@ -149,7 +149,7 @@ impl Sentence<'_> {
         let is_name = |(_, fact): &&(Cow<'_, str>, Fact)| matches!(fact, Fact::Name(_));
         let same_names =
             a.subject == b.subject && a.facts.iter().filter(is_name).eq(b.facts.iter().filter(is_name));
-        let other_records = a.severity < Severity::Doubt
+        let other_records = a.severity() < Severity::Doubt
             && !self.records.contains(&"")
             && !other.records.iter().any(is_shared);
         a.code == b.code && (self.text == other.text || same_names && other_records)
@@ -338,19 +338,20 @@ mod tests {
 
     #[test]
     fn parts_and_lists_are_shown() {
-        let found = Finding::doubt("x").number("part", 0.0312).numbers("lines", [5.0, 10.5]).count("n", 3);
+        let found = Finding::caution("x").number("part", 0.0312).numbers("lines", [5.0, 10.5]).count("n", 3);
         assert_eq!(
             said("{part %} on {lines Hz}: {n:entry/entries}", &found),
             "3.12 % on 5 Hz, 10.5 Hz: 3 entries"
         );
-        let unknown = Finding::doubt("x").number("std", f64::NAN).numbers("parts", [0.5, f64::NAN]);
+        let unknown = Finding::caution("x").number("std", f64::NAN).numbers("parts", [0.5, f64::NAN]);
         assert_eq!(said("off by {std s}<, ± {std s}>: {parts %}", &unknown), "off by unknown: 50 %, unknown");
         assert_eq!(said("{gap s}", &Finding::note("x").number("gap", 8.88e-16)), "0 s");
     }
 
     #[test]
     fn doubts_come_first_and_each_sentence_once() {
-        let found = [Finding::note("a"), Finding::caution("b"), Finding::doubt("c"), Finding::doubt("c")];
+        let doubt = Finding::doubt("c").without_estimate();
+        let found = [Finding::note("a"), Finding::caution("b"), doubt.clone(), doubt];
         let found = found.map(|finding| (String::new(), finding));
         assert_eq!(sentences(&found, Voice::Command, true), ["c", "b", "a"]);
         assert_eq!(sentences(&found, Voice::Command, false), ["c", "b"]);
@@ -364,7 +365,7 @@ mod tests {
             Finding::caution("no-mass-named"),
             contact(0.02),
             Finding::caution("model-not-chosen").number("part", -1.48),
-            Finding::doubt("x-doubt"),
+            Finding::doubt("x-doubt").without_estimate(),
             Finding::caution("frf-one-blow"),
         ];
         let graded = graded(&found.map(|finding| (String::new(), finding)), Voice::Command);

@@ -19,7 +19,7 @@ mod parts;
 mod periodic;
 mod precision;
 mod ranges;
-mod rig;
+pub mod rig;
 mod safe;
 mod series;
 mod simulate;

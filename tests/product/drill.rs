@@ -5,7 +5,7 @@
 #[path = "../../crates/vibro-demo/src/noise.rs"]
 pub mod noise;
 #[path = "../../crates/vibro-demo/src/hammer_drill/record.rs"]
-mod record;
+pub mod record;
 #[allow(dead_code)]
 #[path = "../../crates/vibro-demo/src/hammer_drill/stroke.rs"]
 pub mod stroke;
@@ -54,12 +54,12 @@ fn finding<'a>(found: &'a Value, code: &str) -> &'a Value {
     all.find(|f| f["code"] == code).unwrap_or(&Value::Null)
 }
 
-fn volts(name: &str, values: Vec<f64>) -> Record {
+pub fn volts(name: &str, values: Vec<f64>) -> Record {
     let meta = Meta::new(name, Unit::parse_or_opaque("V"));
     Record::Trace(Trace { meta, axis: Axis::time(0.0, 1.0 / record::RATE, values.len()), values })
 }
 
-fn wav(folder: &Path, name: &str, channels: &[Record]) -> PathBuf {
+pub fn wav(folder: &Path, name: &str, channels: &[Record]) -> PathBuf {
     let path = folder.join(name);
     write(channels, Precision::Single, &mut std::fs::File::create(&path).unwrap()).unwrap();
     path

@@ -4,6 +4,7 @@ mod accuracy;
 mod cli;
 mod clocks;
 mod contributing;
+mod doubts;
 mod drill;
 mod drill_limits;
 mod example_campaign;

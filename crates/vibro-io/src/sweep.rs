@@ -140,7 +140,8 @@ impl SweepReader {
                 let words = format!("the file says that its values are decibels: {words:?}");
                 return Err(Error::usage(words, "linear amplitudes").hint(LINEAR));
             };
-            found(Finding::doubt("decibels-overruled").name("words", words).name("unit", unit.symbol()));
+            let overruled = Finding::doubt("decibels-overruled").name("words", words);
+            found(overruled.name("unit", unit.symbol()).without_estimate());
         }
         let scaling = self.scaling.unwrap_or(spectrum.scaling);
         let peak = to_peak(scaling, &mut found)?;

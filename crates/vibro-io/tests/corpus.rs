@@ -261,7 +261,7 @@ impl Drawn {
         let all = read.all_findings();
         let caution = |codes: &[&str]| {
             let said =
-                |found: &&Finding| found.severity >= Severity::Caution && codes.contains(&&*found.code);
+                |found: &&Finding| found.severity() >= Severity::Caution && codes.contains(&&*found.code);
             all.iter().any(|found| said(&found))
         };
         let traces: Vec<&Trace> = read

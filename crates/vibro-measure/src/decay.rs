@@ -19,7 +19,7 @@ use std::f64::consts::TAU;
 use std::ops::Range;
 use usable::{Usable, usable};
 use vibro_record::code;
-use vibro_record::{Error, Finding, Result, Trace};
+use vibro_record::{Doubt, Error, Finding, Result, Trace, Uncertain};
 
 /// Least amplitude of a steady line that is reported, over the strongest amplitude.
 const SEEN: f64 = 0.01;
@@ -89,16 +89,18 @@ impl Sines {
             findings.push(Finding::caution("decay-fewer").count("n", modes.len()).count("count", count));
         }
         let at = |i: usize| trace.axis.at(i);
-        let (levels, mut decrement) = self.levels(&trace.values[part.clone()], at(part.start), unit);
+        let (mut levels, mut decrement) = self.levels(&trace.values[part.clone()], at(part.start), unit);
         if let Some(strongest) = largest {
-            if let Some(found) = changed(&levels) {
-                modes[strongest] = modes[strongest].clone().without_uncertainty();
-                findings.push(found.number("frequency", modes[strongest].frequency.value));
+            let mode = &mut modes[strongest];
+            let changes = changed(&levels).map(|doubt| doubt.number("frequency", mode.frequency.value));
+            // Levels and decrement are of the strongest mode: without its uncertainty they have none.
+            if mode.zeta.std.is_none() {
+                levels.doubt();
+                decrement.doubt();
             }
-            // A mode without an uncertainty leaves its decrement without one.
-            if let (None, Some(decrement)) = (modes[strongest].zeta.std, &mut decrement) {
-                decrement.std = None;
-            }
+            // A mode that changes has its own damping at each level: only what is one number for all is wrong.
+            let of_all: &mut [&mut dyn Uncertain] = &mut [mode, &mut decrement];
+            findings.extend(changes.map(|doubt| doubt.of(of_all)));
         }
         modes.sort_by(|a, b| a.frequency.value.total_cmp(&b.frequency.value));
         let left = self.left(&trace.values[part.clone()]);
@@ -134,18 +136,13 @@ impl Sines {
             mode.amplitude = mode.amplitude.with_relative(trace.meta.lost(mode.frequency.value));
             mode.frequency = mode.frequency.with_relative(trace.meta.clock);
             if decays(group, m) {
-                let doubted = self
-                    .odd
-                    .iter()
-                    .any(|k| (group.sines[m].periods - *k as f64).abs() < group.sines[m].reach());
-                largest = largest.or(is_strongest(group, m).then_some(modes.len()));
-                modes.push(if doubted { mode.without_uncertainty() } else { mode });
-                if doubted {
-                    findings.push(
-                        Finding::doubt(code::DECAY_UNEXPLAINED)
-                            .number("frequency", modes[modes.len() - 1].frequency.value),
-                    );
+                let near = |k: &usize| (group.sines[m].periods - *k as f64).abs() < group.sines[m].reach();
+                if self.odd.iter().any(near) {
+                    let doubt = Finding::doubt(code::DECAY_UNEXPLAINED);
+                    findings.push(doubt.number("frequency", mode.frequency.value).of(&mut mode));
                 }
+                largest = largest.or(is_strongest(group, m).then_some(modes.len()));
+                modes.push(mode);
             } else if is_strongest(group, m) {
                 return Err(self.steady(group, m));
             } else if mode.amplitude.value > SEEN * size && group.sines[m].periods > 3.0 {
@@ -249,8 +246,8 @@ fn mode(group: &SineGroup, m: usize, n: usize, rate: f64, unit: &'static str) ->
     }
 }
 
-/// A finding if frequency or damping depend on the amplitude: χ² of both about their weighted means.
-fn changed(levels: &[Level]) -> Option<Finding> {
+/// A doubt if frequency or damping depend on the amplitude: χ² of both about their weighted means.
+fn changed(levels: &[Level]) -> Option<Doubt> {
     let spread = |of: &dyn Fn(&DecayMode) -> &Estimate| {
         let known =
             levels.iter().map(|level| of(&level.mode)).filter_map(|e| Some((e.value, e.std?.powi(-2))));

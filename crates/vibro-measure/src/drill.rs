@@ -138,10 +138,8 @@ pub fn drill_each(
     stroke.std = stroke.std.map(|std| std.hypot(lacking(&cycles.blunted, &groups, reach, rate)));
     let strongest = groups.first();
     let speeds: Vec<f64> = whole.iter().map(|t| rate / (t.end - t.start)).collect();
-    // Over-range biases velocities low, and so displacements: no uncertainty is stated.
     let metres = |mean: Mean, method| {
-        let known = mean.std.filter(|_| faults.clipped == 0);
-        Estimate::new(mean.value, known, "m", mean.n, method).with_relative(options.clock)
+        Estimate::new(mean.value, mean.std, "m", mean.n, method).with_relative(options.clock)
     };
     let noise_floor = still.and_then(|still| NoiseFloor::new(velocity, scaled(still), rate, options.margin));
     let slow = slow_changes([
@@ -187,7 +185,9 @@ pub fn drill_each(
         excerpt_reference,
         findings: Vec::new(),
     };
-    result.findings = result::findings(&result, options, marks.sharp, &survey, still.is_some());
+    let over_range = result.over_range(&survey);
+    result.findings = result::findings(&result, options, marks.sharp, still.is_some());
+    result.findings.extend(over_range);
     result.findings.extend(slow);
     Ok(result)
 }

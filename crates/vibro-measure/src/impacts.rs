@@ -29,7 +29,7 @@ use crate::swings::Swings;
 use echoes::echoes;
 use interval::{CountedImpacts, count, evened, pattern};
 use serde::Serialize;
-use vibro_record::{Error, Finding, Result, Severity, Trace, median};
+use vibro_record::{Doubt, Error, Finding, Result, Severity, Trace, median};
 
 /// Intervals that spread by less than this fraction of their median are regular.
 pub const REGULAR: f64 = 0.05;
@@ -126,7 +126,7 @@ fn rings(trace: &Trace) -> bool {
 /// Whether the impacts of a further search are regular, mostly complete and without a finding of doubt.
 fn repeats(found: &Impacts) -> bool {
     let steady = found.spread.is_some_and(|spread| spread < REGULAR * found.median_interval);
-    let sure = found.findings.iter().all(|f| f.severity < Severity::Doubt);
+    let sure = found.findings.iter().all(|f| f.severity() < Severity::Doubt);
     steady && sure && MISSING * found.missed < found.n
 }
 
@@ -161,8 +161,9 @@ fn impacts_so(trace: &Trace, options: &ImpactsOptions) -> Result<Impacts> {
 /// The mean interval of detected impacts, and the pattern that they repeat.
 fn of_detected(trace: &Trace, options: &ImpactsOptions, detected: Detected) -> Result<Impacts> {
     let Detected { mut times, mut heights, onset_std, hum, mut findings, method, resolution, .. } = detected;
+    let mut doubts = detected.doubts;
     if !options.complete && options.refractory.is_none() {
-        without_echoes(&mut times, &mut heights, &mut findings);
+        doubts.extend(without_echoes(&mut times, &mut heights, &mut findings));
     }
     let steps: Vec<f64> = times.windows(2).map(|w| w[1] - w[0]).collect();
     let pattern = pattern(&steps);
@@ -181,11 +182,12 @@ fn of_detected(trace: &Trace, options: &ImpactsOptions, detected: Detected) -> R
     findings.extend(fitted.wanders.then(|| Finding::caution("intervals-drift")));
     let mostly_missed = counted.missed > times.len();
     let missed = Finding::doubt("impacts-mostly-missed").count("n", times.len());
-    findings.extend(mostly_missed.then(|| missed.count("missed", counted.missed)));
-    let doubted = findings.iter().any(|f| f.severity == Severity::Doubt);
+    doubts.extend(mostly_missed.then(|| missed.count("missed", counted.missed)));
     let intervals = counted.index.last().copied().unwrap_or(0);
     let std = widened(fitted.std, even.len(), pattern).hypot(within_sample(resolution, intervals));
-    let std = Some(std).filter(|s| s.is_finite() && !doubted);
+    let mut std = Some(std).filter(|s| s.is_finite());
+    // Interval, frequency and beat follow from this uncertainty.
+    findings.extend(doubts.into_iter().map(|doubt| doubt.of(&mut std)));
     let interval_by = if kept.len() < 3 {
         "difference of two onsets"
     } else {
@@ -239,9 +241,13 @@ fn within_sample(resolution: Option<f64>, intervals: usize) -> f64 {
 }
 
 /// Removes bursts that follow impacts at fixed delays, as echoes do. Where that is not sure, they stay with a
-/// finding.
-fn without_echoes(times: &mut Vec<f64>, heights: &mut Vec<f64>, findings: &mut Vec<Finding>) {
-    let Some(echoes) = echoes(times, heights) else { return };
+/// doubt.
+fn without_echoes(
+    times: &mut Vec<f64>,
+    heights: &mut Vec<f64>,
+    findings: &mut Vec<Finding>,
+) -> Option<Doubt> {
+    let echoes = echoes(times, heights)?;
     let n = echoes.places.len();
     if echoes.sure {
         let impacts: Vec<usize> =
@@ -249,10 +255,10 @@ fn without_echoes(times: &mut Vec<f64>, heights: &mut Vec<f64>, findings: &mut V
         *times = impacts.iter().map(|i| times[*i]).collect();
         *heights = impacts.iter().map(|i| heights[*i]).collect();
         findings.push(Finding::caution("echoes-ignored").count("n", n).number("delay", echoes.delay));
-    } else {
-        let found = Finding::doubt("impacts-or-echoes").count("n", n).number("delay", echoes.delay);
-        findings.push(found.number("pause", PAUSE * echoes.delay));
+        return None;
     }
+    let doubt = Finding::doubt("impacts-or-echoes").count("n", n).number("delay", echoes.delay);
+    Some(doubt.number("pause", PAUSE * echoes.delay))
 }
 
 /// Error for bursts without a period; its hint leaves out what the options already set.

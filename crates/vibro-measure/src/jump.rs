@@ -2,7 +2,7 @@
 
 use num_complex::Complex64;
 use serde::Serialize;
-use vibro_record::Direction;
+use vibro_record::{Direction, uncertain};
 
 /// A sudden change of amplitude from one step of a sweep to the next.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -28,6 +28,9 @@ pub struct Jump {
     /// Direction of the sweep.
     pub direction: Direction,
 }
+
+// Its frequency lies between two steps, whatever their amplitudes.
+uncertain!(Jump: amplitude_before_std, amplitude_after_std);
 
 /// Least factor by which a jump changes the amplitude.
 const JUMP: f64 = 1.5;

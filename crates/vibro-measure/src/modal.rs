@@ -49,7 +49,9 @@ pub fn modal(measured: &Measured, options: &ModalOptions) -> Result<ModalResult>
     let mut findings: Vec<Finding> = options.decay.map(decayed).into_iter().collect();
     let mut lines = measured.clone().usable(least, &mut findings)?;
     findings.extend((!lines.kind.is_function()).then(|| Finding::caution("modal-unit-unknown")));
-    findings.extend(lines.magnitude_only.then(|| Finding::doubt("modal-magnitudes-only")));
+    // Without phases, errors by residual terms and other modes do not show in the residuals.
+    let without_phases = lines.magnitude_only.then(|| Finding::doubt("modal-magnitudes-only"));
+    let place = findings.len();
     let (mut fits, mut unsupported, mut failed) = (Vec::new(), Vec::new(), None);
     let groups = groups(&lines, options.band)?;
     // A coherence shows that the function was averaged, but not how.
@@ -84,6 +86,7 @@ pub fn modal(measured: &Measured, options: &ModalOptions) -> Result<ModalResult>
     if modes.is_empty() {
         return Err(without_modes(options));
     }
+    findings.splice(place..place, without_phases.map(|doubt| doubt.of(&mut modes)));
     gather_noise(&lines, &unsupported, &mut findings);
     modes.sort_by(|a, b| a.frequency.value.total_cmp(&b.frequency.value));
     Ok(ModalResult { modes, findings })

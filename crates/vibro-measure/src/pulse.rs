@@ -26,7 +26,7 @@ use normalised::{Located, Normalised, locate};
 use result::{UNKNOWN, contact_estimates, undamped};
 use vibro_record::units::Quantity;
 use vibro_record::units::notation::shortest;
-use vibro_record::{Error, Finding, Result, Trace};
+use vibro_record::{Doubt, Error, Finding, Result, Trace};
 
 /// Options: what is known of a pulse beside its record.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -74,7 +74,7 @@ impl Instrument {
     }
 
     /// Reasons why a pulse recorded by this instrument at `rate` in Hz does not determine the contact.
-    fn doubts(&self, rate: f64) -> Vec<Finding> {
+    fn doubts(&self, rate: f64) -> Vec<Doubt> {
         match self {
             Instrument::Unknown => vec![Finding::doubt("pulse-instrument-unknown")],
             // The rise of this low-pass falls between two samples.
@@ -112,8 +112,7 @@ pub fn pulse(trace: &Trace, options: &PulseOptions) -> Result<PulseResult> {
     let located = locate(&trace.values)?;
     let seen = samples_of(&located)?;
     let filter = options.instrument.low_pass();
-    let mut found = options.instrument.doubts(rate);
-    let known = found.is_empty();
+    let (mut doubts, mut found) = (options.instrument.doubts(rate), Vec::new());
     let unlike = |error: Error| {
         let lasts = 1.5e3 * seen / rate;
         Error::refused(format!("no contact of spring and damper fits the pulse, which lasts about {lasts:.3} ms ({error})"))
@@ -122,11 +121,14 @@ pub fn pulse(trace: &Trace, options: &PulseOptions) -> Result<PulseResult> {
     };
     let scale = Normalised::new(trace, rate, &located, filter)?;
     let (samples, level) = scale.window(&mut found, unlike)?;
-    let known = known && level;
+    doubts.extend(level);
+    // No model of a pulse in doubt has an uncertainty, also where it only decides on another finding.
+    let known = doubts.is_empty();
     let main = samples.fit(ContactModel::KelvinVoigt).map_err(unlike)?;
     let (widening, whiteness) = (main.widening, main.whiteness);
     let widened = widening.filter(|_| known).unwrap_or(f64::NAN);
     let mut result = spring_and_damper(&main, (&scale, samples.times.len()), widened, options)?;
+    found.splice(..0, doubts.into_iter().map(|doubt| doubt.of(&mut result)));
     // A contact cannot return more energy than it took: ξ may be below 0 only by its uncertainty.
     let gains = result.xi.value + 2.0 * result.xi.std.unwrap_or(UNKNOWN) < 0.0;
     let onset = if filter.is_none() { "pulse-low-pass-missing" } else { "pulse-onset-unlike" };
@@ -153,14 +155,13 @@ pub fn pulse(trace: &Trace, options: &PulseOptions) -> Result<PulseResult> {
     let also: Vec<_> = also.map(|f| scale.report(f, options.mass, known && !unexplained)).collect();
     let led = result.led_by_best(&also, best.map_or(1.0, |best| best.whiteness.inflation.max(1.0)));
     if led.is_none() || result.restitution.value.is_nan() {
-        found.extend(impossible.into_iter().flatten());
+        found.extend(impossible.into_iter().flatten().map(|doubt| doubt.of(&mut result)));
     }
     found.extend(led);
     let restitution = &result.restitution;
     let more = restitution.std.is_some_and(|std| restitution.value - 2.0 * std > 1.0);
-    found.extend(more.then(|| gained(&result)));
-    found.extend(unexplained.then(|| Finding::doubt("pulse-unexplained")));
-    result = if more || unexplained { result.doubted() } else { result };
+    found.extend(more.then(|| gained(&result).of(&mut result)));
+    found.extend(unexplained.then(|| Finding::doubt("pulse-unexplained").of(&mut result)));
     found.extend(undamped(&result.xi));
     result = result.by_clock(trace.meta.clock);
     result.findings = found;
@@ -239,7 +240,7 @@ fn rivals(samples: &Samples<'_>, main: FittedPulse) -> Vec<FittedPulse> {
     fits
 }
 
-fn gained(result: &PulseResult) -> Finding {
+fn gained(result: &PulseResult) -> Doubt {
     let gained = Finding::doubt("pulse-gains-energy").number("restitution", result.restitution.value);
     if result.xi.value.is_nan() { gained } else { gained.number("xi", result.xi.value) }
 }

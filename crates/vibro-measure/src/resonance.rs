@@ -6,7 +6,7 @@ use super::peaks::{Maximum, Vertex, apex, local_maxima};
 use num_complex::Complex64;
 use serde::Serialize;
 
-use vibro_record::Direction;
+use vibro_record::{Direction, uncertain};
 
 /// A maximum or minimum of a response curve.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -24,6 +24,8 @@ pub struct Resonance {
     /// Whether the curve ends in a jump there, so that the true maximum may lie between the points.
     pub at_jump: bool,
 }
+
+uncertain!(Resonance: frequency_std, amplitude_std);
 
 /// Kind of a maximum or minimum of a response curve.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]

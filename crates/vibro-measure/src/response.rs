@@ -14,7 +14,7 @@ use std::cmp::Ordering;
 use steady::SteadyLine;
 use taker::Taker;
 use vibro_record::units::Quantity;
-use vibro_record::{Direction, Error, Finding, Result, Step, Sweep, SweepPoint, Window, median};
+use vibro_record::{Direction, Doubt, Error, Finding, Result, Step, Sweep, SweepPoint, Window, median};
 
 /// Options of a response curve.
 #[derive(Debug, Clone, PartialEq)]
@@ -74,20 +74,10 @@ pub fn response(sweep: &Sweep, options: &ResponseOptions) -> Result<Response> {
     let excitations = excitations(sweep, options.fmin.unwrap_or(0.0))?;
     let df = sweep.line_width().unwrap_or(f64::NAN);
     let wrong = wrong_window(sweep, &excitations, df);
-    let (mut found, _) = read(sweep, options, &excitations)?;
-    found.findings.splice(0..0, wrong.iter().cloned());
+    let (found, _) = read(sweep, options, &excitations)?;
     let mut found = found.curve(sweep.direction);
-    if wrong.is_some() {
-        for point in &mut found.points {
-            (point.frequency_std, point.amplitude.std) = (None, None);
-        }
-        for jump in &mut found.jumps {
-            (jump.amplitude_before_std, jump.amplitude_after_std) = (None, None);
-        }
-        for resonance in &mut found.resonances {
-            (resonance.frequency_std, resonance.amplitude_std) = (None, None);
-        }
-    }
+    let wrong = wrong.map(|doubt| doubt.of(&mut found));
+    found.findings.splice(0..0, wrong);
     Ok(found)
 }
 
@@ -224,7 +214,7 @@ const WRONG_SHAPE: f64 = 0.02;
 
 /// Doubt where the force lines, which hold one strong sine, do not have the shape of the stated window.
 /// Names a window that fits better.
-pub(crate) fn wrong_window(sweep: &Sweep, excitations: &[Excitation], df: f64) -> Option<Finding> {
+pub(crate) fn wrong_window(sweep: &Sweep, excitations: &[Excitation], df: f64) -> Option<Doubt> {
     let window = sweep.points.first()?.response.window?;
     let typical = |window: Window| {
         median(sweep.points.iter().zip(excitations).filter_map(|(p, e)| {

@@ -21,7 +21,7 @@ use crate::mean::{average, scatter};
 use crate::residuals::widened;
 use pairs::SCATTER;
 use serde::Serialize;
-use vibro_record::{Error, Finding, Result};
+use vibro_record::{Doubt, Error, Finding, Result, Uncertain, uncertain};
 
 /// One method's answer.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -32,6 +32,8 @@ pub struct MethodAnswer {
     /// Its answer.
     pub restitution: Estimate,
 }
+
+uncertain!(MethodAnswer: restitution);
 
 /// The coefficient of restitution by every method that the data allow.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -52,6 +54,8 @@ pub struct Restitution {
     /// Assumptions and doubts.
     pub findings: Vec<Finding>,
 }
+
+uncertain!(Restitution: restitution, by, bootstrap_std);
 
 /// Measurements of the impacts. All are optional; those given decide which methods answer.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -88,6 +92,7 @@ pub fn restitution(measured: &Measured) -> Result<Restitution> {
     let (contact, contact_std) = contact(measured);
     let flights =
         |intervals: &[f64]| intervals.iter().map(|interval| interval - contact).collect::<Vec<f64>>();
+    let mut bootstrap_std = measured.drop.as_ref().and_then(Drop::bootstrap);
     // Relative change of R by 1 ms of contact time, one value a method.
     let mut bias = Vec::new();
     let trains: Vec<Train> =
@@ -121,7 +126,7 @@ pub fn restitution(measured: &Measured) -> Result<Restitution> {
         // The impacts after a drop may be no train of bounces; the drop still answers.
         Err(error) if measured.drop.is_some() && error.exit_code() == 1 => {
             let doubt = grown(&trains).or(drop.as_ref().and_then(|drop| drop.unlike(&trains)));
-            by.iter_mut().filter(|_| doubt.is_some()).for_each(|way| way.restitution.std = None);
+            let doubt = doubt.map(|doubt| doubt.of(&mut [&mut by as &mut dyn Uncertain, &mut bootstrap_std]));
             findings.push(doubt.unwrap_or_else(|| Finding::caution("flight-times-ignored")));
         }
         Err(error) => return Err(error),
@@ -136,17 +141,18 @@ pub fn restitution(measured: &Measured) -> Result<Restitution> {
     let Some(surest) = by.iter().min_by(|a, b| uncertainty(a).total_cmp(&uncertainty(b))) else {
         return Err(without_answer(measured));
     };
-    let agree = agreement(&by, &mut findings);
-    if agree == Some(false) {
-        findings.extend(first_unheard(&by));
-    }
+    let (agree, mut doubts) = agreement(&by);
     let restitution = if agree == Some(false) {
+        doubts.extend(first_unheard(&by));
         Estimate::new(f64::NAN, None, "1", by.len(), "methods disagree: see `by`")
     } else {
         surest.restitution.clone()
     };
-    let bootstrap_std = measured.drop.as_ref().and_then(Drop::bootstrap);
-    Ok(Restitution { restitution, by, agree, bootstrap_std, intervals, findings })
+    let mut found = Restitution { restitution, by, agree, bootstrap_std, intervals, findings };
+    // Which of the methods is wrong is not known.
+    let doubts: Vec<Finding> = doubts.into_iter().map(|doubt| doubt.of(&mut found)).collect();
+    found.findings.extend(doubts);
+    Ok(found)
 }
 
 /// Adds the uncertainty of the contact time in s to that of each method. `bias` is the relative change of R
@@ -191,7 +197,7 @@ fn without_answer(measured: &Measured) -> Error {
 const LONGEST: f64 = 1e-3;
 
 /// Doubt about a drop where too many flights of a train are longer than its first.
-fn grown(trains: &[Train]) -> Option<Finding> {
+fn grown(trains: &[Train]) -> Option<Doubt> {
     let first = |(i, train): (usize, &Train)| Some((i + 1, flights::longer(train)?));
     let (train, n) = trains.iter().enumerate().find_map(first)?;
     Some(Finding::doubt("drop-flights-grow").count("n", n).count("train", train))
@@ -220,11 +226,12 @@ fn contact(measured: &Measured) -> (f64, f64) {
 /// uncertainties of the other: R scatters by 2 % from bounce to bounce, and the ratio of two by √2 of that.
 const GROSS: f64 = 1.96 * std::f64::consts::SQRT_2 * SCATTER;
 
-/// Whether every pair of answers agrees at 95 %; `None` where one has no uncertainty and the others agree.
+/// Whether every pair of answers agrees at 95 %, and a doubt for each that does not; `None` where one has no
+/// uncertainty and the others agree.
 /// Methods may share data, as a drop and its train do, with unknown correlation: the uncertainties of two
 /// answers are added, which covers the worst case.
-fn agreement(by: &[MethodAnswer], findings: &mut Vec<Finding>) -> Option<bool> {
-    let mut agree = Some(true);
+fn agreement(by: &[MethodAnswer]) -> (Option<bool>, Vec<Doubt>) {
+    let (mut agree, mut doubts) = (Some(true), Vec::new());
     for (i, a) in by.iter().enumerate() {
         for b in &by[i + 1..] {
             let (first, second) = (a.restitution.value, b.restitution.value);
@@ -246,15 +253,15 @@ fn agreement(by: &[MethodAnswer], findings: &mut Vec<Finding>) -> Option<bool> {
             };
             agree = Some(false);
             let found = found.name("first", a.method).number("first_value", first);
-            findings.push(found.name("second", b.method).number("second_value", second));
+            doubts.push(found.name("second", b.method).number("second_value", second));
         }
     }
-    agree
+    (agree, doubts)
 }
 
 /// Doubt that a record begins with the second impact: its first interval is then the second one of the drop,
 /// and the drop gives the square of the R by flight times.
-fn first_unheard(by: &[MethodAnswer]) -> Option<Finding> {
+fn first_unheard(by: &[MethodAnswer]) -> Option<Doubt> {
     let of = |method: &str| by.iter().find(|way| way.method == method).map(|way| way.restitution.value);
     let (drop, flights) = (of("drop")?, of("flight times")?);
     let is_square = (drop / flights.powi(2) - 1.0).abs() < GROSS;

@@ -14,7 +14,7 @@ use skirt::above_skirts;
 use std::f64::consts::TAU;
 use vibro_record::code;
 use vibro_record::units::Unit;
-use vibro_record::{Axis, Error, Finding, Meta, Result, Scaling, Spectrum, Trace, Traces, Window};
+use vibro_record::{Axis, Doubt, Error, Finding, Meta, Result, Scaling, Spectrum, Trace, Traces, Window};
 use vibro_signal::impact::{BlowTransfer, Blows, from_blows, spacing};
 use vibro_signal::integrate::in_frequency;
 use vibro_signal::rails::Rails;
@@ -155,9 +155,7 @@ fn lines(
     found.clear = clear(&found, &powers, left_out, independent, shown);
     found.false_alarms = Some(FALSE_ALARMS);
     found.value_std = found.value.iter().zip(scatter).map(|(v, part)| v * part).collect();
-    if !cut.is_empty() {
-        found.value_std.fill(f64::NAN);
-    }
+    let cut: Vec<Finding> = cut.into_iter().map(|doubt| doubt.of(&mut found)).collect();
     found.findings.extend(cut);
     if let Some(tones) = tones {
         found.findings.extend(tones.findings);
@@ -166,17 +164,17 @@ fn lines(
     Ok(found)
 }
 
-/// Findings on channels that are clipped at ends of their range. A channel at one end for half of the time
+/// Doubts about channels that are clipped at ends of their range. A channel at one end for half of the time
 /// or more is not clipped: it has two levels, or rests between pulses.
-fn clipped(ranges: &[Rails], traces: &Traces) -> Vec<Finding> {
+fn clipped(ranges: &[Rails], traces: &Traces) -> Vec<Doubt> {
     let of = |(range, meta): (&Rails, &Meta)| {
         let ends: Vec<(f64, usize)> = range.clipped(f64::INFINITY).collect();
         let levels = ends.iter().any(|(_, n)| 2 * n >= traces.frames());
-        let found = |(level, n)| {
-            let found = Finding::doubt("spectrum-clipped").count("n", n).number("level", level);
-            found.name("unit", meta.unit.symbol()).about(&meta.name)
+        let doubt = |(level, n)| {
+            let doubt = Finding::doubt("spectrum-clipped").count("n", n).number("level", level);
+            doubt.name("unit", meta.unit.symbol()).about(&meta.name)
         };
-        ends.into_iter().filter(|_| !levels).map(found).collect::<Vec<Finding>>()
+        ends.into_iter().filter(|_| !levels).map(doubt).collect::<Vec<Doubt>>()
     };
     ranges.iter().zip(traces.channels()).flat_map(of).collect()
 }
@@ -257,7 +255,6 @@ fn response(
         }
         let mut found = transfer(&averages, 1, traces.channels(), estimator)?;
         cut = clipped(&averages.ranges, traces);
-        found.findings.extend(cut.iter().cloned());
         found.frf.meta.step("segments", &[("window", &options.window().name())]);
         (found, averages.step(), None)
     };
@@ -271,9 +268,8 @@ fn response(
         found.frf.meta.step("delay", &[("seconds", &delay)]);
     }
     let mut result = SpectralResult::of(Lines::Transfer(found), options, fmin, traces.findings());
-    if !cut.is_empty() {
-        result.value_std.fill(f64::NAN);
-    }
+    let cut: Vec<Finding> = cut.into_iter().map(|doubt| doubt.of(&mut result)).collect();
+    result.findings.extend(cut);
     if let Some((window, enbw, blows)) = blows {
         (result.window, result.enbw, result.detrend) = (window, enbw, "level before the blow");
         result.response.iter_mut().for_each(|r| r.blows.clone_from(&blows));

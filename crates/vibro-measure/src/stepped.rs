@@ -21,7 +21,8 @@ use std::f64::consts::TAU;
 use std::path::PathBuf;
 use vibro_record::units::Quantity;
 use vibro_record::{
-    Axis, Error, Finding, Place, Result, Scaling, Spectrum, StepTraces, Sweep, SweepPoint, Trace, Window,
+    Axis, Doubt, Error, Finding, Place, Result, Scaling, Spectrum, StepTraces, Sweep, SweepPoint, Trace,
+    Uncertain, Window, uncertain,
 };
 use vibro_signal::spectrum;
 
@@ -86,7 +87,7 @@ pub fn stepped(
         step.response.allow(beside);
         step.ratio.allow(beside / step.force.0);
         step.overrule(point, options.times(&sweep), found.unit);
-        found.findings.extend(step.findings.iter().cloned());
+        found.findings.extend(step.doubts.drain(..).map(|doubt| doubt.of(&mut point.of_response())));
     }
     let restless = taken
         .iter()
@@ -125,7 +126,8 @@ struct StepReading {
     /// Test of whether the response varies from block to block as independent noise does; `None` without an
     /// uncertainty of the response.
     whiteness: Option<Whiteness>,
-    findings: Vec<Finding>,
+    /// Doubts about the response.
+    doubts: Vec<Doubt>,
 }
 
 /// Sampling rate in Hz of a force and its response.
@@ -173,8 +175,8 @@ impl StepReading {
         let rate = rate_of(force, response)?;
         let samples = force.values.len();
         let (frequency, periods) = excitation(force, rate)?;
-        let about = |code: fn(&'static str) -> Finding, name| code(name).number("frequency", frequency.value);
-        let mut findings = Vec::new();
+        let about = |code| Finding::doubt(code).number("frequency", frequency.value);
+        let mut doubts = Vec::new();
         let cut = clipped(&response.values, rate / frequency.value).len();
         let cut_force = clipped(&force.values, rate / frequency.value).len();
         let blocks = Blocks::of(periods, rate / frequency.value, samples);
@@ -200,13 +202,13 @@ impl StepReading {
         response.allow(of_response * response.value.norm());
         if !stays {
             let part = left / ratio.value.norm();
-            findings.push(about(Finding::doubt, "step-not-settled").number("left", part));
-            (response, ratio) = (response.doubted(), ratio.doubted());
+            doubts.push(about("step-not-settled").number("left", part));
+            [&mut response, &mut ratio].doubt();
         }
         let whiteness = response.std.map(|_| response.whiteness);
         if cut + cut_force > 0 {
-            findings.push(about(Finding::doubt, "step-clipped").count("n", cut + cut_force));
-            (response, ratio) = (response.doubted(), ratio.doubted());
+            doubts.push(about("step-clipped").count("n", cut + cut_force));
+            [&mut response, &mut ratio].doubt();
             force.1 = force.1.filter(|_| cut_force == 0);
         }
         let growth = growth * rate;
@@ -221,7 +223,7 @@ impl StepReading {
             response,
             ratio,
             whiteness,
-            findings,
+            doubts,
         })
     }
 
@@ -292,6 +294,8 @@ struct Phasor {
     whiteness: Whiteness,
 }
 
+uncertain!(Phasor: std, across);
+
 impl Phasor {
     fn of(all: &[Complex64]) -> Phasor {
         let n = all.len();
@@ -302,10 +306,6 @@ impl Phasor {
         let whiteness = Whiteness::of(&[&along, &across]);
         let std = |values: &[f64]| scatter_of_mean(values).map(|std| std * whiteness.inflation);
         Phasor { value, std: std(&along), across: std(&across), n, whiteness }
-    }
-
-    fn doubted(self) -> Phasor {
-        Phasor { std: None, across: None, ..self }
     }
 
     /// Adds the change that a transient, a drift or a steady line may make, in the unit of the phasor, to

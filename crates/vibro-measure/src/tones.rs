@@ -19,7 +19,7 @@ use nalgebra::{DMatrix, DVector, RowVector3};
 use serde::Serialize;
 use std::f64::consts::{PI, TAU};
 use vibro_record::units::notation::quantity;
-use vibro_record::{Error, Finding, Result, Scaling, Trace, Window};
+use vibro_record::{Error, Finding, Result, Scaling, Trace, Window, uncertain};
 use vibro_signal::spectrum;
 
 /// Most sines of one record.
@@ -66,6 +66,8 @@ pub struct Tone {
     /// Phase φ in rad at the first sample.
     pub phase: Estimate,
 }
+
+uncertain!(Tone: frequency, amplitude, phase);
 
 /// Sines of a record, and the residual noise.
 #[derive(Debug, Clone, PartialEq)]
@@ -464,12 +466,12 @@ impl Tone {
         let moved = [0.42 * part * left.spacing, part * self.amplitude.value, 2.4 * part];
         let own = [&mut self.frequency, &mut self.amplitude, &mut self.phase];
         for (estimate, moved) in own.into_iter().zip(moved) {
-            estimate.std = estimate.std.filter(|_| small).map(|s| s.hypot(moved));
+            estimate.std = estimate.std.map(|s| s.hypot(moved));
         }
-        let code =
-            if small { Finding::caution("sine-line-beside") } else { Finding::doubt("sine-not-alone") };
         let apart = (other - at).abs() / left.spacing;
-        let found = code.number("frequency", at).number("line", other);
+        let beside = || Finding::caution("sine-line-beside");
+        let found = if small { beside() } else { Finding::doubt("sine-not-alone").of(self) };
+        let found = found.number("frequency", at).number("line", other);
         Some(found.number("apart", apart).number("part", 0.5 * part))
     }
 }

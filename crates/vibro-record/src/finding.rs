@@ -1,6 +1,7 @@
 //! What an analysis, a model or a reader reports, as data: numbers with their uncertainty, and findings about
 //! them.
 
+use crate::Doubt;
 use crate::units::notation::estimate;
 use serde::de::{MapAccess, Visitor};
 use serde::ser::SerializeMap;
@@ -16,7 +17,7 @@ pub enum Severity {
     Note,
     /// A number is less certain than it looks, or was corrected; its uncertainty allows for it.
     Caution,
-    /// A number may be wrong by more than its uncertainty says.
+    /// A number may be wrong by more than any uncertainty would say: it has none.
     Doubt,
 }
 
@@ -46,15 +47,15 @@ pub enum Fact {
 /// use vibro_record::{Finding, Severity};
 /// let hum = Finding::note("mains-hum-removed").number("frequency", 50.0).number("amplitude", 0.3);
 /// let hum = hum.name("unit", "V");
-/// assert_eq!((&*hum.code, hum.severity), ("mains-hum-removed", Severity::Note));
+/// assert_eq!((&*hum.code, hum.severity()), ("mains-hum-removed", Severity::Note));
 /// assert_eq!(hum.get("frequency"), Some(50.0));
 /// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Finding {
     /// Stable code in kebab-case, listed in the documentation.
     pub code: Cow<'static, str>,
-    /// Severity.
-    pub severity: Severity,
+    /// Private, since a doubt is made with its numbers alone.
+    severity: Severity,
     /// Its subject: a channel, a file, a sweep; `None` for the whole answer.
     pub subject: Option<String>,
     /// Numbers in SI units and names, in the order in which they were added.
@@ -105,9 +106,15 @@ impl Finding {
         Finding::new(code, Severity::Caution)
     }
 
-    /// A finding that a number may be wrong.
-    pub fn doubt(code: &'static str) -> Finding {
-        Finding::new(code, Severity::Doubt)
+    /// A doubt that a number may be wrong: a finding once it names the number, which then loses its
+    /// uncertainty.
+    pub fn doubt(code: &'static str) -> Doubt {
+        Doubt(Finding::new(code, Severity::Doubt))
+    }
+
+    /// Severity.
+    pub fn severity(&self) -> Severity {
+        self.severity
     }
 
     /// Adds a number in SI units, or a count.

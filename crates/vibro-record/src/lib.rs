@@ -17,6 +17,7 @@
 mod axis;
 mod clock;
 pub mod code;
+mod doubt;
 mod error;
 mod finding;
 pub mod kind;
@@ -39,6 +40,7 @@ use num_complex::Complex64;
 
 pub use axis::{Axis, AxisKind, Grid};
 pub use clock::{Clock, RATE_OVER_BASE_BAND, Stretch, is_fine, stretches, uniform_std};
+pub use doubt::{Doubt, Uncertain};
 pub use error::{Error, Hint, Place, Result};
 pub use finding::{Estimate, Fact, Finding, Severity};
 pub use kind::{Kind, without_unit};

@@ -20,11 +20,13 @@ pub struct Function {
     pub(super) records: Vec<Record>,
     /// Cautions on points left out.
     pub(super) findings: Vec<Finding>,
+    /// Whether a doubt is about its lines, and so about modes fitted to them.
+    pub(super) in_doubt: bool,
 }
 
 impl Function {
     pub(super) fn new(meta: Meta, measured: Measured) -> Function {
-        Function { meta, measured, records: Vec::new(), findings: Vec::new() }
+        Function { meta, measured, records: Vec::new(), findings: Vec::new(), in_doubt: false }
     }
 
     /// The receptance of a sweep of a campaign; of its only sweep where `name` is `None`.

@@ -131,7 +131,7 @@ fn over_range(survey: &Survey, question: &Question, answer: &mut Answer) -> Resu
     // Each code once: with its first frequency and its number of frequencies.
     let all = || survey.points.iter().flat_map(|c| c.findings.iter().map(move |f| (c.frequency, f)));
     let mut seen: Vec<&str> = Vec::new();
-    for (first, finding) in all().filter(|(_, f)| f.severity != Severity::Note) {
+    for (first, finding) in all().filter(|(_, f)| f.severity() != Severity::Note) {
         if !seen.contains(&finding.code.as_ref()) {
             seen.push(finding.code.as_ref());
             let n = all().filter(|(_, f)| f.code == finding.code).count();

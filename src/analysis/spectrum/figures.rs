@@ -135,7 +135,8 @@ fn transfer(title: &str, transfer: &Transfer, conditions: &str) -> Figure {
     // At least 5 % of the magnitude, since a logarithmic axis has no place for zero or less.
     let edge = |by: f64| -> Vec<f64> {
         let lines = magnitude.iter().zip(&transfer.magnitude_std);
-        lines.map(|(m, std)| (m + by * std).max(0.05 * m)).collect()
+        let of = |edge: f64, least: f64| if edge < least { least } else { edge };
+        lines.map(|(m, std)| of(m + by * std, 0.05 * m)).collect()
     };
     let y = AxisSpec::new(capital(frf.meta.quantity.name()), frf.meta.unit.symbol()).log();
     let above = Plot::new(AxisSpec::frequency(), y)

@@ -9,7 +9,7 @@ use crate::error::Result;
 use crate::measure::Estimate;
 use crate::measure::residuals::student;
 use crate::model::{Parameter, Rig};
-use crate::record::{Direction, Finding};
+use crate::record::{Direction, Doubt, Finding, Uncertain};
 use serde::Serialize;
 use std::borrow::Cow;
 
@@ -33,6 +33,13 @@ pub struct FittedParameter {
     /// Whether the prior determines the parameter more than the points do: the variance of the estimate is
     /// above half of the prior's.
     pub rests_on_prior: bool,
+}
+
+impl Uncertain for FittedParameter {
+    fn doubt(&mut self) {
+        self.estimate.doubt();
+        (self.interval, self.identifiable) = (None, false);
+    }
 }
 
 /// A point of the fit.
@@ -164,10 +171,14 @@ impl AssessedFit<'_> {
                     residual: *residual * stated,
                 })
             });
-        let (far, wavering, findings) = (self.found.far, self.found.wavering, self.doubts());
-        let doubt = findings.first().map(|doubt| doubt.code.clone());
+        let (far, wavering, doubts) = (self.found.far, self.found.wavering, self.doubts());
+        let in_doubt = !doubts.is_empty();
+        let mut parameters: Vec<FittedParameter> = (0..n).map(|i| self.fitted(base, i, in_doubt)).collect();
+        let mut profile = self.profile.clone();
+        let all: &mut [&mut dyn Uncertain] = &mut [&mut parameters, &mut profile];
+        let findings: Vec<Finding> = doubts.into_iter().map(|doubt| doubt.of(all)).collect();
         Fit {
-            parameters: (0..n).map(|i| self.fitted(base, i, doubt.is_some())).collect(),
+            parameters,
             correlations: (0..n).map(row).collect(),
             rig: setting.rig,
             force: setting.force,
@@ -184,10 +195,10 @@ impl AssessedFit<'_> {
             whiteness: least.whiteness.p_value,
             starts: 0,
             agreeing: 0,
-            profile: self.profile.clone(),
+            profile,
             rungs: Vec::new(),
             points: points.collect(),
-            doubt,
+            doubt: findings.first().map(|doubt| doubt.code.clone()),
             findings,
         }
     }
@@ -249,10 +260,10 @@ const FORCE_DIFFERENCE: f64 = 0.05;
 
 impl AssessedFit<'_> {
     /// Doubts about the whole answer: its uncertainties are then invalid.
-    pub fn doubts(&self) -> Vec<Finding> {
+    pub fn doubts(&self) -> Vec<Doubt> {
         let (least, found, problem) = (&self.found.least, &self.found, &self.found.least.problem);
         let (n, freedom, guessed) = (problem.rows().0, problem.freedom(), problem.data.guessed);
-        let many = |doubt: Finding, key, part: usize| {
+        let many = |doubt: Doubt, key, part: usize| {
             let many = part as f64 > MOST_LEFT_OUT * (n + part) as f64;
             many.then(|| doubt.count(key, part).count("n", n + part))
         };
@@ -271,12 +282,12 @@ impl AssessedFit<'_> {
     }
 
     /// Priors and bounds that the points contradict, and a profile that falls below the minimum found.
-    fn contradictions(&self) -> Vec<Finding> {
+    fn contradictions(&self) -> Vec<Doubt> {
         let (problem, setting) = (&self.found.least.problem, self.found.setting());
         let mut found = Vec::new();
         for (i, unknown) in problem.unknowns.iter().enumerate() {
             let (name, unit) = (unknown.parameter.name(), unknown.parameter.unit());
-            let pulled = |doubt: Finding, deviations| doubt.about(name).number("deviations", deviations);
+            let pulled = |doubt: Doubt, deviations| doubt.about(name).number("deviations", deviations);
             if let Some([known, std]) = unknown.prior {
                 // With the uncertainties s of the prior and p of the answer, the answer is (s² − p²)/s² of
                 // the way from the prior to the value by the points alone. So |answer − prior|/√(s² − p²) is
@@ -301,7 +312,19 @@ impl AssessedFit<'_> {
         found
     }
 
-    /// All findings except the doubts about the whole answer.
+    /// Doubts about parameters, which are not identifiable.
+    pub fn unidentified(&self, fit: &mut Fit) -> Vec<Finding> {
+        let Fit { parameters, profile, .. } = fit;
+        let doubts: Vec<Option<Doubt>> = (0..parameters.len()).map(|i| self.doubt(parameters, i)).collect();
+        let found = doubts.into_iter().zip(parameters).filter_map(|(doubt, parameter)| {
+            let mut profile = profile.as_mut().filter(|profile| profile.parameter == parameter.parameter);
+            let numbers: &mut [&mut dyn Uncertain] = &mut [parameter, &mut profile];
+            Some(doubt?.of(numbers))
+        });
+        found.collect()
+    }
+
+    /// All findings except the doubts.
     pub fn cautions(&self, fit: &Fit, entry: &FitEntry) -> Vec<Finding> {
         let (least, data) = (&self.found.least, self.found.least.problem.data);
         let (whiteness, ratio, sound) =
@@ -310,9 +333,8 @@ impl AssessedFit<'_> {
         if entry.calibration.is_none() {
             found.push(Finding::caution("calibration-assumed").number("part", data.calibration));
         }
-        for (i, parameter) in fit.parameters.iter().enumerate() {
+        for parameter in &fit.parameters {
             let name = parameter.parameter.name();
-            found.extend(parameter.reason.and_then(|reason| self.unidentified(fit, i, reason)));
             if parameter.rests_on_prior {
                 found.push(Finding::caution("rests-on-prior").about(name));
             }
@@ -356,10 +378,10 @@ impl AssessedFit<'_> {
         found
     }
 
-    /// Doubt about parameter number `i`, not identifiable; `None` where the whole answer is in doubt.
-    fn unidentified(&self, fit: &Fit, i: usize, reason: Unidentified) -> Option<Finding> {
-        let parameter = fit.parameters[i].parameter;
-        let finding = match reason {
+    /// Doubt about parameter number `i`; `None` where it is identifiable, or the whole answer is in doubt.
+    fn doubt(&self, parameters: &[FittedParameter], i: usize) -> Option<Doubt> {
+        let parameter = parameters[i].parameter;
+        let doubt = match parameters[i].reason? {
             Unidentified::InDoubt => return None,
             Unidentified::NeedsImpacts => Finding::doubt("parameter-needs-impacts"),
             Unidentified::AtLimit => {
@@ -367,12 +389,12 @@ impl AssessedFit<'_> {
                 Finding::doubt("parameter-at-limit").number("limit", limit).name("unit", parameter.unit())
             }
             Unidentified::Combination => {
-                let tied = (0..fit.parameters.len()).filter(|j| *j != i && self.uncertainty.is_tied(i, *j));
-                let others: Vec<&str> = tied.map(|j| fit.parameters[j].parameter.name()).collect();
+                let tied = (0..parameters.len()).filter(|j| *j != i && self.uncertainty.is_tied(i, *j));
+                let others: Vec<&str> = tied.map(|j| parameters[j].parameter.name()).collect();
                 Finding::doubt("parameter-in-combination").name("others", others.join(", "))
             }
             Unidentified::TooUncertain => Finding::doubt("parameter-too-uncertain"),
         };
-        Some(finding.about(parameter.name()))
+        Some(doubt.about(parameter.name()))
     }
 }

@@ -7,6 +7,7 @@
 use super::{LeastSquares, MotionKind, Problem};
 use crate::error::{Error, Result};
 use crate::model::Parameter;
+use crate::record::uncertain;
 use nalgebra::{DMatrix, DVector, SVD};
 use rayon::prelude::*;
 use serde::Serialize;
@@ -220,6 +221,8 @@ pub struct Profile {
     /// at all values.
     pub interval: [Option<f64>; 2],
 }
+
+uncertain!(Profile: interval);
 
 impl Profile {
     /// Depth of the lowest value of the profile below the minimum of the fit; 0 if none is lower.

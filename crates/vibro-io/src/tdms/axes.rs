@@ -199,7 +199,7 @@ fn changes(object: &Object, step: f64) -> Vec<Finding> {
     let mut found = Vec::new();
     if let (Some((before, at)), Some(now)) = (of("wf_increment").first(), object.number("wf_increment")) {
         let changed = Finding::doubt("step-changed").number("before", *before).number("step", now);
-        found.push(changed.number("n", *at as f64));
+        found.push(changed.number("n", *at as f64).without_estimate());
     }
     let starts = of("wf_start_time");
     let behind = starts.iter().skip(1).map(|(time, _)| *time).chain(object.number("wf_start_time"));

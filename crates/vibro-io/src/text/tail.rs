@@ -53,8 +53,8 @@ pub(crate) fn cut_off(text: &[u8], separator: Separator, decimal: u8) -> Option<
     let usual = *above.first()?;
     let agree = above.len() >= ROWS && above.iter().all(|d| *d == usual);
     let short = found.0 < usual.0 || found.1 < usual.1;
-    (short && agree)
-        .then(|| Finding::doubt("last-number-cut-off").name("found", String::from_utf8_lossy(last).as_ref()))
+    let cut = Finding::doubt("last-number-cut-off").name("found", String::from_utf8_lossy(last).as_ref());
+    (short && agree).then(|| cut.without_estimate())
 }
 
 /// Number of digits after the decimal mark and in the exponent; `None` for text that is not a number.

@@ -2,7 +2,7 @@
 
 use crate::Estimate;
 use serde::Serialize;
-use vibro_record::Finding;
+use vibro_record::{Finding, uncertain};
 
 /// Options of the analysis of a free decay.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -59,11 +59,5 @@ pub struct DecayResult {
     pub curves: [Vec<f64>; 3],
 }
 
-impl DecayMode {
-    pub(super) fn without_uncertainty(mut self) -> DecayMode {
-        for estimate in [&mut self.frequency, &mut self.zeta, &mut self.amplitude, &mut self.phase] {
-            estimate.std = None;
-        }
-        self
-    }
-}
+uncertain!(DecayMode: frequency, zeta, amplitude, phase);
+uncertain!(Level: mode);

@@ -6,8 +6,8 @@ use crate::Estimate;
 use crate::mean::Mean;
 use serde::Serialize;
 use std::f64::consts::TAU;
-use vibro_record::Finding;
 use vibro_record::code;
+use vibro_record::{Finding, Uncertain, uncertain};
 
 /// Largest bias of a mean, in standard uncertainties, that is ignored: ±1.96 of them then still cover 94 %.
 const BIAS: f64 = 0.3;
@@ -127,6 +127,8 @@ pub struct Group {
     pub(super) wanders: bool,
 }
 
+uncertain!(Group: phase, first_contact, before, after, energy, energy_given, restitution);
+
 /// Groups of impacts found in `turns` turns, the strongest first; sets the group of each impact. The
 /// `offset` is already subtracted from the velocities. `residuals` are those of the fits before and after
 /// each impact, which end `gap` samples from the middle of the contact.
@@ -207,10 +209,15 @@ impl Group {
     /// instrument ([`LARGEST`]), no uncertainty is stated.
     fn allowing(mut self, offset: &Offset) -> Group {
         let (before, after) = (self.before.value, self.after.value);
-        let doubted = offset.value.abs() > LARGEST * before.abs().max(after.abs());
-        let Some(unknown) = offset.std.or(doubted.then_some(f64::INFINITY)) else { return self };
+        if offset.value.abs() > LARGEST * before.abs().max(after.abs()) {
+            let doubt = Finding::doubt(code::DRILL_MEAN_VELOCITY).number("mean", offset.value);
+            let found = doubt.of(&mut self.velocities());
+            self.findings.push(found);
+            return self;
+        }
+        let Some(unknown) = offset.std else { return self };
         let add = |estimate: &mut Estimate, by: f64| {
-            estimate.std = estimate.std.filter(|_| !doubted).map(|std| std.hypot(by));
+            estimate.std = estimate.std.map(|std| std.hypot(by));
         };
         // Derivative m v of the energy ½ m v².
         let momentum = self.energy.as_ref().map_or(0.0, |e| 2.0 * e.value / before);
@@ -220,9 +227,19 @@ impl Group {
         add(&mut self.first_contact, unknown);
         add(&mut self.before, unknown);
         add(&mut self.after, unknown);
-        let found = Finding::doubt(code::DRILL_MEAN_VELOCITY).number("mean", offset.value);
-        self.findings.extend(doubted.then_some(found));
         self
+    }
+
+    /// The velocities, and what is computed from them.
+    fn velocities(&mut self) -> [&mut dyn Uncertain; 6] {
+        [
+            &mut self.first_contact,
+            &mut self.before,
+            &mut self.after,
+            &mut self.energy,
+            &mut self.energy_given,
+            &mut self.restitution,
+        ]
     }
 
     /// Drops the velocities of the group if those of the fits exceed the largest of the record, `reach` in
@@ -235,13 +252,14 @@ impl Group {
         let energies = [self.energy.as_mut(), self.energy_given.as_mut()].into_iter().flatten();
         let velocities = [&mut self.first_contact, &mut self.before, &mut self.after];
         for estimate in velocities.into_iter().chain(energies) {
-            (estimate.value, estimate.std) = (f64::NAN, None);
+            estimate.value = f64::NAN;
         }
-        (self.restitution, self.phase.std) = (None, None);
+        self.restitution = None;
         // Findings about the dropped velocities go with them.
         self.findings.retain(|found| !OF_VELOCITIES.contains(&found.code.as_ref()));
-        let found = Finding::doubt("drill-velocity-impossible").number("velocity", largest);
-        self.findings.push(found.number("reach", reach));
+        let doubt = Finding::doubt("drill-velocity-impossible").number("velocity", largest);
+        let found = doubt.number("reach", reach).of(&mut self);
+        self.findings.push(found);
         self
     }
 
@@ -258,47 +276,31 @@ impl Group {
         // The uncertainty of the contact's length is the same for all impacts and does not average out.
         let shared = |i: &Impact| (i.first_contact_std.powi(2) - i.before_std.powi(2)).max(0.0).sqrt();
         let first = Mean { std: first.std.map(|std| std.hypot(mean(&shared).value)), ..first };
-        let mut findings = Vec::new();
-        if clipped > 0 {
-            let found = Finding::doubt("drill-impacts-over-range");
-            findings.push(found.count("n", clipped).count("all", members.len()));
-        }
-        let sides = [("before", &before), ("after", &after)];
-        let lacks = [0, 1].map(|side| lack_of_fit(&residuals, side, sides[side].1, gap));
-        for (lack, (name, _)) in lacks.iter().zip(sides) {
-            findings.extend(lack.map(|LackOfFit { residual, bias }| {
-                let found = Finding::doubt("drill-lack-of-fit").name("side", name);
-                found.number("residual", residual).number("bias", bias)
-            }));
-        }
+        let sides = [&before, &after];
+        let lacks = [0, 1].map(|side| lack_of_fit(&residuals, side, sides[side], gap));
         let bias = lacks.map(|lack| lack.map_or(0.0, |lack| lack.bias));
-        let rings = followed(&own);
-        let open = clipped > 0 || rings > 0;
-        if rings > 0 {
-            findings.push(Finding::doubt("drill-ringing").count("n", rings).count("all", own.len()));
-        }
         // Bias of a quantity whose derivatives by the velocities before and after are `parts`.
         let moved = |parts: [f64; 2]| (parts[0] * bias[0]).hypot(parts[1] * bias[1]);
         let estimate = |mean: Mean, parts, unit, method| {
-            let std = mean.std.filter(|_| !open).map(|std| std.hypot(moved(parts)));
+            let std = mean.std.map(|std| std.hypot(moved(parts)));
             Estimate::new(mean.value, std, unit, mean.n, method)
         };
         let energy = |squares: &dyn Fn(&Impact) -> f64, parts: [f64; 2], method| {
             options.mass.map(|m| estimate(mean(&|i| 0.5 * m * squares(i)), parts.map(|v| m * v), "J", method))
         };
         let (phase, directed) = mean_phase(&own);
-        findings.extend((!directed).then(|| Finding::doubt("drill-phase-undirected")));
         let wanders = before.wanders || after.wanders || phase.wanders;
-        let certain = directed && bias == [0.0; 2] && rings == 0;
-        let std = phase.std.filter(|_| certain);
         let phase = if options.turns_from == TurnsFrom::Impacts && own.iter().all(|i| i.phase < ROUNDING) {
             Estimate::new(0.0, None, "1", own.len(), "turns begin at these impacts")
         } else {
-            Estimate::new(phase.value, std, "1", phase.n, "part of the turn, mean over impacts on the circle")
+            let method = "part of the turn, mean over impacts on the circle";
+            Estimate::new(phase.value, phase.std, "1", phase.n, method)
         };
-        let restitution =
-            restitution(&own, front, options, &moved).map_err(|found| findings.push(found)).ok();
-        Group {
+        let (restitution, without) = match restitution(&own, front, options, &moved) {
+            Ok(restitution) => (Some(restitution), None),
+            Err(found) => (None, Some(found)),
+        };
+        let mut group = Group {
             n: members.len(),
             clipped,
             share: f64::NAN,
@@ -327,10 +329,41 @@ impl Group {
                 [before.value, after.value],
                 "½ m (v² before − v² after), mean over impacts",
             ),
-            restitution: restitution.map(|r| Estimate { std: r.std.filter(|_| !open), ..r }),
-            findings,
+            restitution,
+            findings: Vec::new(),
             wanders,
+        };
+        group.findings = group.doubts(&lacks, followed(&own), own.len(), directed);
+        group.findings.extend(without);
+        group
+    }
+
+    /// Doubts about the means, by the impacts over-range, the `lacks` of fit before and after, the number of
+    /// impacts that ring among those `used`, and a phase without a direction.
+    fn doubts(
+        &mut self,
+        lacks: &[Option<LackOfFit>; 2],
+        rings: usize,
+        used: usize,
+        directed: bool,
+    ) -> Vec<Finding> {
+        let mut found = Vec::new();
+        if self.clipped > 0 {
+            let doubt = Finding::doubt("drill-impacts-over-range").count("n", self.clipped);
+            found.push(doubt.count("all", self.n).of(&mut self.velocities()));
         }
+        for (lack, side) in lacks.iter().zip(["before", "after"]) {
+            // The uncertainty of the velocity includes the bias. How far the phase is off is not known.
+            found.extend(lack.map(|LackOfFit { residual, bias }| {
+                let doubt = Finding::doubt("drill-lack-of-fit").name("side", side);
+                doubt.number("residual", residual).number("bias", bias).of(&mut self.phase)
+            }));
+        }
+        if rings > 0 {
+            found.push(Finding::doubt("drill-ringing").count("n", rings).count("all", used).of(self));
+        }
+        found.extend((!directed).then(|| Finding::doubt("drill-phase-undirected").of(&mut self.phase)));
+        found
     }
 }
 
@@ -400,11 +433,11 @@ fn restitution(
     let off: Vec<f64> = impacts.iter().map(|i| (separation(i) - value * i.before) / approach).collect();
     let biased = moved([(ratio - value) / approach, (1.0 + ratio) / approach]);
     let std = Mean::of(&off).std.map(|std| std.hypot(biased));
-    let estimate = Estimate::new(value, std, "1", impacts.len(), method);
+    let mut estimate = Estimate::new(value, std, "1", impacts.len(), method);
     match estimate.std {
         Some(std) if value - BEYOND * std > 1.0 || value + BEYOND * std < 0.0 => {
-            let found = Finding::doubt("drill-restitution-impossible");
-            Err(found.number("value", value).number("std", std))
+            let doubt = Finding::doubt("drill-restitution-impossible").number("value", value);
+            Err(doubt.number("std", std).of(&mut estimate))
         }
         _ => Ok(estimate),
     }

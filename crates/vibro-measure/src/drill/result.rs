@@ -8,8 +8,8 @@ use crate::Estimate;
 use crate::exposure::Exposure;
 use serde::Serialize;
 use std::collections::BTreeSet;
-use vibro_record::Finding;
 use vibro_record::code;
+use vibro_record::{Finding, uncertain};
 
 /// Result of a drill's record.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -87,6 +87,18 @@ pub struct Drill {
     pub findings: Vec<Finding>,
 }
 
+// Speed and exposure do not depend on the velocity.
+uncertain!(Drill: groups, before, after, phase, energy, energy_given, restitution, displacement);
+
+impl Drill {
+    /// Doubt where the velocity, of this range, has clipped samples: they bias the displacement low.
+    pub(super) fn over_range(&mut self, velocity: &ChannelStatistics) -> Option<Finding> {
+        let doubt = Finding::doubt("drill-over-range").count("n", self.faults.clipped);
+        let doubt = doubt.number("low", velocity.low).number("high", velocity.high);
+        (self.faults.clipped > 0).then(|| doubt.of(&mut self.displacement))
+    }
+}
+
 /// Numbers of edges of the reference, or of impacts in its place.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Pulses {
@@ -113,6 +125,8 @@ pub struct Displacement {
     pub drift: Estimate,
 }
 
+uncertain!(Displacement: stroke, drift);
+
 /// Largest drift in a turn over the stroke; above it the velocity has an offset, or the machine moves.
 const DRIFTING: f64 = 0.1;
 /// Relative change of velocities for one degree of error in the beam angle, above which a finding is added.
@@ -124,15 +138,9 @@ const SMALL: f64 = 0.01;
 /// One turn in this many may lack an impact without a finding.
 const FEW: usize = 10;
 
-/// Findings on a result and its velocity. `sharp`: edges of the reference rise within one sample; `still`: a
+/// Findings on a result. `sharp`: edges of the reference rise within one sample; `still`: a
 /// noise floor was requested.
-pub(super) fn findings(
-    d: &Drill,
-    options: &DrillOptions,
-    sharp: bool,
-    velocity: &ChannelStatistics,
-    still: bool,
-) -> Vec<Finding> {
+pub(super) fn findings(d: &Drill, options: &DrillOptions, sharp: bool, still: bool) -> Vec<Finding> {
     let (r, f, bandwidth, pulses) = (&d.reference, &d.faults, &d.bandwidth, options.pulses_per_turn);
     let limit = options.instrument.unwrap_or(f64::INFINITY);
     let means =
@@ -146,10 +154,10 @@ pub(super) fn findings(
         .count("dropouts", f.dropouts)
         .count("spikes", f.spikes)
         .count("bridged", f.bridged);
-    let over_range = Finding::doubt("drill-over-range").count("n", f.clipped);
     let lost = Finding::caution("drill-samples-lost").count("n", f.lost);
     let several = Finding::caution("drill-groups").count("n", phases.len()).number("phase", phase);
-    let limited = Finding::doubt("drill-instrument-limited").number("f2", bandwidth.f2);
+    // A bandwidth has no uncertainty.
+    let limited = Finding::doubt("drill-instrument-limited").number("f2", bandwidth.f2).without_estimate();
     let [stroke, drift] = [d.displacement.stroke.value, d.displacement.drift.value];
     let drifts = Finding::caution("drill-drift").number("drift", drift).number("stroke", stroke);
     let mean = drift * d.speed.value;
@@ -173,7 +181,6 @@ pub(super) fn findings(
         (pulses > 1, Finding::caution("drill-first-pulse-unknown").count("pulses", pulses)),
         (f.dropouts + f.spikes > 0, bridged),
         (f.lost > 0, lost.count("turns", d.cycles - d.averaged)),
-        (f.clipped > 0, over_range.number("low", velocity.low).number("high", velocity.high)),
         (d.hidden > 0, Finding::caution("drill-impacts-hidden").count("n", d.hidden)),
         (drift.abs() > DRIFTING * stroke, drifts),
         (d.groups.iter().any(moved), removed),

@@ -13,7 +13,7 @@ use std::f64::consts::FRAC_PI_2;
 use std::ops::Range;
 use vibro_record::units::Quantity;
 use vibro_record::units::notation::{counted, quantity, shortest};
-use vibro_record::{Error, Finding, Result, Trace, median};
+use vibro_record::{Doubt, Error, Finding, Result, Trace, median};
 use vibro_signal::envelope::envelope;
 
 /// Least height of an impact divided by the median height of all bursts.
@@ -42,8 +42,10 @@ pub struct Detected {
     /// Duration of a contact in s; only of a trace that returns from each impact without swinging to the
     /// other side, as a force does.
     pub contact: Option<Estimate>,
-    /// Changes made to the trace, and doubts.
+    /// Changes made to the trace.
     pub findings: Vec<Finding>,
+    /// Doubts that all impacts were found, about every number computed from them.
+    pub doubts: Vec<Doubt>,
     /// How the impacts were timed.
     pub(super) method: &'static str,
     /// Timing resolution in s: one sampling interval if the flanks are shorter than that; `None` if samples
@@ -118,7 +120,8 @@ pub(crate) fn detect_among(
         bursts = chosen.into_iter().map(|i| bursts[i].clone()).collect();
         findings.extend(said);
     }
-    findings.extend(in_doubt(&values, &bursts, &quiet, stable));
+    findings.extend(ringing(&bursts, stable));
+    let doubts = lost(&values, &bursts, &quiet).into_iter().collect();
     let shape = options.shape.as_ref().map(|pulse| recorded(pulse, rate)).transpose()?;
     let Onsets { each, method, sharp } = onsets(&values, &bursts, quiet.sigma, shape.as_ref());
     if each.len() < 2 {
@@ -147,6 +150,7 @@ pub(crate) fn detect_among(
         hum,
         contact: if is_force { contact(&values, &bursts, &quiet, rate) } else { None },
         findings,
+        doubts,
         method,
         resolution: sharp.then_some(1.0 / rate),
     })
@@ -163,19 +167,17 @@ fn turned_upright(values: &mut [f64], bursts: &[Range<usize>]) -> Option<Finding
     Some(Finding::note("pulses-inverted"))
 }
 
-/// Findings on bursts whose number depends on their ringing, or that noise may hide. `stable` is the factor
-/// by which the assumed decay may change without another number of bursts.
-fn in_doubt(
-    values: &[f64],
-    bursts: &[Range<usize>],
-    quiet: &Background,
-    stable: Option<f64>,
-) -> impl Iterator<Item = Finding> {
-    let ringing = stable.filter(|s| *s < STABLE && bursts.len() > 1);
-    let ringing = ringing.map(|s| Finding::caution("count-depends-on-ringing").number("factor", s));
+/// Caution on bursts whose number depends on their ringing. `stable` is the factor by which the assumed decay
+/// may change without another number of bursts.
+fn ringing(bursts: &[Range<usize>], stable: Option<f64>) -> Option<Finding> {
+    let factor = stable.filter(|s| *s < STABLE && bursts.len() > 1)?;
+    Some(Finding::caution("count-depends-on-ringing").number("factor", factor))
+}
+
+/// Doubt where noise may hide impacts.
+fn lost(values: &[f64], bursts: &[Range<usize>], quiet: &Background) -> Option<Doubt> {
     let above = (median(heights(values, bursts, 1.0)) - quiet.reach) / quiet.sigma;
-    let lost = Finding::doubt("impacts-lost-in-noise").number("sigmas", above);
-    ringing.into_iter().chain((above < LOST).then_some(lost))
+    (above < LOST).then(|| Finding::doubt("impacts-lost-in-noise").number("sigmas", above))
 }
 
 /// The values, filtered to their band and without mains hum and background level, or the envelope of these;

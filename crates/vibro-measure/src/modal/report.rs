@@ -86,19 +86,17 @@ impl Candidate<'_> {
         // A further mode matters within two bandwidths on either side.
         let around = |other: f64| (other - pole.frequency).abs() < 4.0 * pole.zeta * pole.frequency;
         let ahead = group.ahead.filter(|(_, other)| around(*other)).map(|(ahead, _)| ahead);
-        let two = Finding::doubt("modal-two-modes").number("ahead", ahead.unwrap_or(f64::NAN));
-        find(ahead.is_some(), two);
-        let pattern = group.pattern.unwrap_or(f64::NAN);
-        find(group.pattern.is_some(), Finding::doubt("modal-more-modes").number("ahead", pattern));
-        // Without phases, errors by residual terms and other modes do not show in the residuals: no
-        // uncertainty is stated.
-        let known = ahead.is_none() && group.pattern.is_none() && !measured.magnitude_only;
-        Some(self.estimates(&own, std.map(|s| known.then_some(s))))
+        let two = ahead.map(|ahead| Finding::doubt("modal-two-modes").number("ahead", ahead));
+        let more = group.pattern.map(|ahead| Finding::doubt("modal-more-modes").number("ahead", ahead));
+        let mut mode = self.estimates(&own, std);
+        let doubts = two.into_iter().chain(more);
+        findings.extend(doubts.map(|doubt| doubt.number("frequency", at).of(&mut mode)));
+        Some(mode)
     }
 
     /// The estimates of a mode by all methods. `own` is its pole without the decay of a window; `std` are
     /// the standard uncertainties of frequency in Hz, ζ, modal constant, and phase in rad.
-    fn estimates(&self, own: &Pole, std: [Option<f64>; 4]) -> Mode {
+    fn estimates(&self, own: &Pole, std: [f64; 4]) -> Mode {
         let Candidate { measured, options, group, fit, m, .. } = *self;
         let f = &measured.frequency[group.lines.clone()];
         let n = f.len();
@@ -108,13 +106,13 @@ impl Candidate<'_> {
         };
         let method = format!("rational fit{together}, {}", fit.noise);
         let phases = !measured.magnitude_only;
-        let estimate = |value, std: Option<f64>, unit| Estimate::new(value, std, unit, n, method.clone());
+        let estimate = |value, std, unit| Estimate::new(value, Some(std), unit, n, method.clone());
         let frequency = estimate(own.frequency, std[0], "Hz").with_relative(options.clock);
         let zeta = estimate(own.zeta, std[1], "1");
         let constant = if phases { signed(own.constant) } else { own.constant.norm() };
         let modal_constant = estimate(constant, std[2], measured.unit_of_constants());
         let angle = own.constant.arg().to_degrees();
-        let phase = phases.then(|| estimate(angle, std[3].map(f64::to_degrees), "°"));
+        let phase = phases.then(|| estimate(angle, std[3].to_degrees(), "°"));
         let stiffness = options.mass.map(|mass| {
             let k = mass * (TAU * own.frequency).powi(2);
             let std = frequency.std.map(|u| 2.0 * k * u / own.frequency);

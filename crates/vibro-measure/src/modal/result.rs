@@ -4,7 +4,7 @@ use crate::Estimate;
 use num_complex::Complex64;
 use serde::{Serialize, Serializer};
 use std::f64::consts::TAU;
-use vibro_record::Finding;
+use vibro_record::{Finding, uncertain};
 
 /// Options of a modal analysis.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -55,6 +55,10 @@ pub struct Mode {
     #[serde(skip)]
     pub fitted: Vec<(f64, f64, f64)>,
 }
+
+uncertain!(ModalResult: modes);
+uncertain!(Mode: frequency, zeta, modal_constant, phase, stiffness, by);
+uncertain!(ByMethod: frequency, zeta, modal_constant);
 
 /// Result of one method.
 #[derive(Debug, Clone, PartialEq, Serialize)]

@@ -83,6 +83,7 @@ fn unfiltered(times: &[f64; 2], std: Option<f64>, mass: Option<f64>) -> Result<P
     let mut found = estimated(times, variance, contact, mass, "closed form from two times")
         .ok_or_else(|| Error::refused("the two times belong to no contact"))?;
     // Insert this finding before the one on ξ.
+    let near_zero = near_zero.map(|doubt| doubt.of(&mut found));
     found.findings.splice(1..1, near_zero);
     Ok(found)
 }
@@ -103,7 +104,7 @@ fn behind(filter: &LowPass, times: &[f64; 2], std: Option<f64>, mass: Option<f64
             .ok_or_else(|| Error::refused("the two times belong to no contact"))?
             .refused();
         let alone = Finding::doubt("pulse-low-pass-alone").number("corner", filter.corner);
-        found.findings = vec![alone.number("peak", peak).number("end", end)];
+        found.findings = vec![alone.number("peak", peak).number("end", end).of(&mut found)];
         return Ok(found);
     }
     let variance = std.map_or(f64::NAN, |std| std * std);

@@ -12,7 +12,7 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 use vibro_record::code;
 use vibro_record::units::Quantity;
-use vibro_record::{Error, Finding, Result, Trace, median};
+use vibro_record::{Doubt, Error, Finding, Result, Trace, median};
 
 /// A record scaled to its pulse: time over the length of the pulse, from half height of the rising flank,
 /// and values over the height of the pulse.
@@ -86,7 +86,7 @@ impl<'a> Normalised<'a> {
     }
 
     /// The samples to be fitted: the pulse with a baseline on both sides, or only before it where the record
-    /// does not rest after it; and whether the record comes back to the level before the pulse.
+    /// does not rest after it; and a doubt where it does not come back to the level before the pulse.
     ///
     /// # Errors
     /// If there are too few samples, or no contact of spring and damper fits the pulse, for which `unlike`
@@ -95,7 +95,7 @@ impl<'a> Normalised<'a> {
         &self,
         findings: &mut Vec<Finding>,
         unlike: impl Fn(Error) -> Error,
-    ) -> Result<(Samples<'_>, bool)> {
+    ) -> Result<(Samples<'_>, Option<Doubt>)> {
         let delay = self.filter.as_ref().map_or(0.0, LowPass::delay);
         let from = self.index(-BESIDE - delay);
         let first = self.samples(from..self.found.low);
@@ -119,13 +119,11 @@ impl<'a> Normalised<'a> {
         let inside = (fitted.fit.sum_of_squares() / n as f64).sqrt().max(rounding(first.quantum)).max(1e-6);
         let restless = left.len() >= 4 && rms > RESTLESS * inside;
         let level = !restless || mean.abs() <= LEVEL * rms;
-        if restless {
-            let caution = Finding::caution("pulse-no-rest-after");
-            findings.push(if level { caution } else { Finding::doubt("pulse-level-changes") });
-        }
+        findings.extend((restless && level).then(|| Finding::caution("pulse-no-rest-after")));
+        let changes = (!level).then(|| Finding::doubt("pulse-level-changes"));
         let end = if restless { self.index(fitted.end()).max(self.found.low) } else { far };
         let rings = restless.then(|| Ringing::of(&left, mean, rms));
-        Ok((Samples { rings, ..self.samples(from..end) }, level))
+        Ok((Samples { rings, ..self.samples(from..end) }, changes))
     }
 
     /// Adds findings on clipped samples, on missing ones, and on another pulse in the record.

@@ -8,7 +8,7 @@ use serde::Serialize;
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 use std::sync::LazyLock;
-use vibro_record::Finding;
+use vibro_record::{Finding, Uncertain, uncertain};
 
 /// A model of a contact.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -79,11 +79,28 @@ pub struct PulseResult {
     pub picture: Option<PulsePicture>,
 }
 
+uncertain!(PulseResult: xi, frequency, restitution, stiffness, damping, initial_velocity, duration, fits);
+uncertain!(PulseFit: parameters);
+
 impl PulseResult {
     fn estimates(&mut self) -> impl Iterator<Item = &mut Estimate> {
         let contact = [&mut self.xi, &mut self.frequency, &mut self.restitution, &mut self.duration];
         let more = [&mut self.stiffness, &mut self.damping, &mut self.initial_velocity];
         contact.into_iter().chain(more.into_iter().flatten())
+    }
+
+    /// The numbers by the model of spring and damper.
+    fn by_spring_and_damper(&mut self) -> [&mut dyn Uncertain; 8] {
+        [
+            &mut self.xi,
+            &mut self.frequency,
+            &mut self.restitution,
+            &mut self.duration,
+            &mut self.stiffness,
+            &mut self.damping,
+            &mut self.initial_velocity,
+            &mut self.fits[0],
+        ]
     }
 
     /// The result with all values null: the record is no contact of spring and damper.
@@ -109,12 +126,6 @@ impl PulseResult {
         for (estimate, power) in all.filter_map(|(of, power)| Some((of?, power))) {
             *estimate = estimate.clone().with_relative(power * clock);
         }
-        self
-    }
-
-    /// The result without uncertainties.
-    pub(super) fn doubted(mut self) -> PulseResult {
-        self.estimates().for_each(|estimate| estimate.std = None);
         self
     }
 
@@ -149,13 +160,12 @@ impl PulseResult {
         let duration = stated("duration", Some(&self.duration));
         let velocity = stated("initial_velocity", self.initial_velocity.as_ref());
         let model = lead.model.name();
-        if other {
-            self.estimates().for_each(|estimate| estimate.std = None);
-        }
+        let doubt = Finding::doubt("pulse-other-model").name("model", model).number("ahead", lower);
+        let found = other.then(|| doubt.of(&mut self.by_spring_and_damper()));
         self.restitution = restitution.unwrap_or_else(|| self.restitution.clone());
         self.duration = duration.unwrap_or_else(|| self.duration.clone());
         self.initial_velocity = velocity.or(self.initial_velocity.take());
-        other.then(|| Finding::doubt("pulse-other-model").name("model", model).number("ahead", lower))
+        found
     }
 }
 

@@ -267,7 +267,7 @@ fn contacts_of_a_yielding_spring_and_of_other_exponents_keep_their_restitution()
         let doubts: Vec<&str> = result
             .findings
             .iter()
-            .filter(|f| f.severity == Severity::Doubt)
+            .filter(|f| f.severity() == Severity::Doubt)
             .map(|f| f.code.as_ref())
             .collect();
         assert_eq!(doubts, ["pulse-other-model"]);

@@ -4,7 +4,7 @@ use crate::Estimate;
 use crate::jump::Jump;
 use crate::resonance::Resonance;
 use serde::Serialize;
-use vibro_record::{Direction, Finding, Step};
+use vibro_record::{Direction, Finding, Step, Uncertain, uncertain};
 
 /// A line at a whole multiple or a fraction of the excitation frequency.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -63,6 +63,20 @@ pub struct Receptance {
     pub im: f64,
     /// Standard uncertainty of each part.
     pub std: Option<f64>,
+}
+
+uncertain!(Harmonic: amplitude);
+uncertain!(Receptance: std);
+uncertain!(Response: points, resonances, jumps);
+// Phase and receptance are ratios of two lines of one window, on which they do not depend.
+uncertain!(ResponsePoint: excitation_std, force_std, frequency_std, amplitude, harmonics, subharmonics);
+
+impl ResponsePoint {
+    /// The numbers of the response: all but its frequency and the force.
+    pub(crate) fn of_response(&mut self) -> [&mut dyn Uncertain; 5] {
+        let ResponsePoint { amplitude, harmonics, subharmonics, phase, receptance, .. } = self;
+        [amplitude, harmonics, subharmonics, phase, receptance]
+    }
 }
 
 /// A response curve.

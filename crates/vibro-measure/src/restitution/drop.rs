@@ -7,7 +7,7 @@ use crate::Estimate;
 use crate::mean::{average, scatter};
 use vibro_math::Noise;
 use vibro_record::units::notation::quantity;
-use vibro_record::{Error, Finding, Result};
+use vibro_record::{Doubt, Error, Finding, Result};
 
 /// Standard acceleration of free fall in m/s² (CGPM 1901).
 pub const GRAVITY: f64 = 9.806_65;
@@ -74,7 +74,7 @@ impl Drop {
 
     /// Doubt where the ratio of the second flight to the first is not the R of the drop, by more than
     /// [`GROSS`].
-    pub(super) fn unlike(&self, trains: &[Train]) -> Option<Finding> {
+    pub(super) fn unlike(&self, trains: &[Train]) -> Option<Doubt> {
         let unlike = |train: &Train| {
             let [first, second, ..] = train.intervals[..] else { return None };
             let (by_fall, by_flights) = (self.restitution(first), second / first);

@@ -20,7 +20,7 @@ fn answer(drops: &Drops) -> Option<Restitution> {
     let trains: Vec<Train> = drops.records.iter().filter_map(train).collect();
     let drop = Some(drop.beginning(&trains)).filter(|_| !trains.is_empty());
     let measured = Measured { drop, trains, velocities: None, contact_time: drops.contact };
-    let sure = |found: &Restitution| found.findings.iter().all(|f| f.severity < Severity::Doubt);
+    let sure = |found: &Restitution| found.findings.iter().all(|f| f.severity() < Severity::Doubt);
     restitution(&measured).ok().filter(sure)
 }
 

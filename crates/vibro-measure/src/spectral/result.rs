@@ -5,7 +5,7 @@ use crate::tones::Tone;
 use serde::Serialize;
 use vibro_record::units::Unit;
 use vibro_record::units::notation;
-use vibro_record::{Axis, Finding, Frf, Grid, Meta, Record, Scaling, Spectrum, Values};
+use vibro_record::{Axis, Finding, Frf, Grid, Meta, Record, Scaling, Spectrum, Uncertain, Values};
 use vibro_signal::impact::Blow;
 use vibro_signal::transfer::{Estimator, Transfer};
 
@@ -54,6 +54,18 @@ pub struct SpectralResult {
     /// The lines as a spectrum or function.
     #[serde(skip)]
     pub found: Lines,
+}
+
+impl Uncertain for SpectralResult {
+    fn doubt(&mut self) {
+        self.value_std.fill(f64::NAN);
+        self.response.iter_mut().for_each(|response| response.phase_std.fill(f64::NAN));
+        if let Lines::Transfer(function) = &mut self.found {
+            function.magnitude_std.fill(f64::NAN);
+            function.phase_std.fill(f64::NAN);
+        }
+        self.tones.doubt();
+    }
 }
 
 /// Lines of one channel or of two.

@@ -1,4 +1,5 @@
-//! Findings on a choice, beside the reasons of its rungs.
+//! Findings on a choice, beside the reasons of its rungs. A choice has no numbers with an uncertainty: its
+//! doubts name none.
 
 use super::motions::MOST_CYCLES;
 use super::{Change, Choice, Followed, KnownMotion, Need, Question};
@@ -10,7 +11,7 @@ pub fn findings(choice: &Choice, question: &Question) -> Vec<Finding> {
         choice.motions.iter().filter(|m| of(m)).map(|m| m.pattern.to_string()).collect::<Vec<_>>().join(", ")
     };
     if choice.needs.contains(&Need::History) {
-        let found = Finding::doubt("several-motions").count("n", choice.motions.len());
+        let found = Finding::doubt("several-motions").count("n", choice.motions.len()).without_estimate();
         let (found, unstable) = (found.name("motions", names(&|_| true)), names(&|m| !m.stable));
         return vec![if unstable.is_empty() { found } else { found.name("unstable", unstable) }];
     }
@@ -23,7 +24,8 @@ pub fn findings(choice: &Choice, question: &Question) -> Vec<Finding> {
     found.extend(choice.followed.map(searched));
     found.extend(stiffness(choice));
     if let (Some(law), Some(chosen)) = (choice.law.filter(|law| !law.enough), choice.chosen) {
-        found.push(Finding::doubt("law-matters").name("rung", chosen.name()).number("change", law.change));
+        let matters = Finding::doubt("law-matters").name("rung", chosen.name()).without_estimate();
+        found.push(matters.number("change", law.change));
     }
     if choice.gap.iter().any(|change| change.is_none_or(|change| !change.enough)) {
         let matters = Finding::caution("gap-matters").number("std", question.gap_std);
@@ -56,10 +58,10 @@ fn stiffness(choice: &Choice) -> Option<Finding> {
         return (!rows.is_empty()).then(|| range(Finding::note("stiffness-not-needed")));
     }
     if choice.needs.is_empty() {
-        return Some(Finding::doubt("no-rung"));
+        return Some(Finding::doubt("no-rung").without_estimate());
     }
     let needs = choice.needs.iter().map(|need| need.name()).collect::<Vec<_>>().join(" and ");
-    let found = range(Finding::doubt("stiffness-needed").name("needs", needs));
+    let found = range(Finding::doubt("stiffness-needed").name("needs", needs).without_estimate());
     let Some(worst) = rows.iter().map(|r| r.change.abs()).reduce(f64::max) else { return Some(found) };
     let found = found.number("change", worst);
     Some(match rows.iter().rposition(|r| !r.enough) {

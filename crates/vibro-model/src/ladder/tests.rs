@@ -470,7 +470,7 @@ fn chatter_is_not_told_as_masses_that_stay_in_contact() {
 fn a_law_that_matters_is_a_doubt() {
     let choice = scene_b(Some(1e6));
     let doubt = finding(&choice, "law-matters");
-    assert_eq!(doubt.severity, Severity::Doubt);
+    assert_eq!(doubt.severity(), Severity::Doubt);
     assert_eq!(doubt.fact("rung"), Some(&Fact::Name("soft-corrected".to_owned())));
     assert!(scene_b(Some(1e8)).findings.iter().all(|f| f.code != "law-matters"));
 }

@@ -22,7 +22,7 @@ pub struct EstimatorAnswer {
 impl EstimatorAnswer {
     /// An estimate with its findings.
     pub fn found(estimate: &Estimate, findings: &[Finding]) -> EstimatorAnswer {
-        let doubt = findings.iter().find(|f| f.severity == Severity::Doubt).map(|f| f.code.clone());
+        let doubt = findings.iter().find(|f| f.severity() == Severity::Doubt).map(|f| f.code.clone());
         EstimatorAnswer { value: estimate.value, std: estimate.std, doubt }
     }
 }

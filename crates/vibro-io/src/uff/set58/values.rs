@@ -175,7 +175,8 @@ pub fn binary(
             let ends = |at: &usize| closes(&rest[*at..]) && rest[*at..].trim_ascii() == b"-1";
             bytes = (tail..rest.len()).find(ends).unwrap_or(rest.len());
         } else {
-            findings.push(Finding::doubt("no-closing-line").number("bytes", bytes as f64));
+            let open = Finding::doubt("no-closing-line").number("bytes", bytes as f64);
+            findings.push(open.without_estimate());
         }
     }
     let point = layout.point_size(wide);
