@@ -179,9 +179,9 @@ fn chosen(scene: &Scene, frequency: f64, question: &Question, bend: bool) -> Res
         choice.gap = gaps(&choice, &stage);
     }
     choice.findings = findings::findings(&choice, question);
-    if let Some(springs) = &scene.springs {
+    if scene.springs.is_some() {
         choice.springs = curvature::effects(&choice, &stage, settled)?;
-        choice.findings.push(curvature::finding(&choice, springs, question));
+        choice.findings.push(curvature::finding(&choice, question));
     }
     Ok(choice)
 }

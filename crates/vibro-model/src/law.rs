@@ -16,6 +16,9 @@ use vibro_record::{Error, Result};
 /// All forms of contact laws.
 pub const FORMS: &[LawForm] = &[kelvin_voigt::FORM, hertz::FORM, hunt_crossley::FORM];
 
+/// Exponent of curved elastic bodies, whose radii and elastic constants give a stiffness (Hertz 1882).
+pub(crate) const HERTZ: f64 = 1.5;
+
 /// Contact law: force from the indentation δ in m and its rate δ̇ in m/s; it never pulls.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Law {
@@ -33,14 +36,21 @@ impl Law {
     /// Checks that the numbers are possible.
     ///
     /// # Errors
-    /// If a stiffness is not above 0, a damping is negative, an exponent is outside 1 to 10, or a value is
-    /// not finite.
+    /// If a stiffness is not above 0, a damping is negative, an exponent is outside 1 to 10, a value is not
+    /// finite, or the form has another exponent or no damping.
     pub fn check(&self) -> Result<()> {
         let Law { form, stiffness, exponent, damping } = *self;
         number("contact stiffness", stiffness, form.stiffness_unit(), NumberRange::AboveZero)?;
         number("contact damping", damping, form.damping_unit, NumberRange::Zero)?;
         if !(1.0..=10.0).contains(&exponent) {
             return Err(Error::usage(format!("contact exponent is {exponent}"), "a value from 1 to 10"));
+        }
+        if exponent != form.exponent && !form.any_exponent {
+            let found = format!("contact exponent is {exponent} for {}", form.name);
+            return Err(Error::usage(found, form.exponent.to_string()));
+        }
+        if damping != 0.0 && matches!(form.damping, LawDamping::Lossless) {
+            return Err(Error::usage(format!("contact damping is {damping} for {}", form.name), "none"));
         }
         Ok(())
     }

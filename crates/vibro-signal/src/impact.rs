@@ -177,9 +177,14 @@ pub fn from_blows(
     transfer.frf.meta.step("blows", &[("length", &how.length), ("before", &how.before)]);
     let left = left::widen(&mut transfer, &response.values, &kept, how, &weights[1]);
     let force = &averages.auto[0];
-    let unseen = left.map_or(0.0, |[_, mode]| mode.unseen(force[mode.line + 1]));
     let noise = noise * weights[0].iter().map(|w| w * w).sum::<f64>();
-    transfer.silence(force, (AUDIBLE * noise).max(unseen));
+    transfer.silence(|k| force[k + 1] <= AUDIBLE * noise, Finding::caution("frf-not-excited"));
+    if let Some([_, mode]) = left.filter(|[_, mode]| mode.part > 0.0) {
+        let after = (how.length - how.before) as f64 / rate;
+        let hidden = mode.hidden(&transfer.frf, force, after);
+        let found = Finding::caution("frf-end-hides").number("mode", transfer.frf.axis.at(mode.line));
+        transfer.silence(|k| hidden[k], found);
+    }
     transfer.findings.extend(left_out(&blows));
     transfer.findings.extend((kept.len() == 1).then(|| Finding::caution("frf-one-blow")));
     let cut_off = left.and_then(|[left, _]| left.finding(&transfer));

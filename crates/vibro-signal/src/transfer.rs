@@ -63,13 +63,13 @@ pub struct Transfer {
 }
 
 impl Transfer {
-    /// Removes the function at lines where the power of the excitation, given from 0 Hz on, is not above
-    /// `floor`.
-    pub(super) fn silence(&mut self, excitation: &[f64], floor: f64) {
-        let (mut silent, mut lowest) = (0, f64::INFINITY);
-        for (k, _) in excitation.iter().skip(1).enumerate().filter(|(_, power)| **power <= floor) {
+    /// Removes the function at the lines that are `silent`, by their index from the first above 0 Hz, and adds
+    /// the number of lines and the lowest frequency to the finding.
+    pub(super) fn silence(&mut self, silent: impl Fn(usize) -> bool, found: Finding) {
+        let (mut removed, mut lowest) = (0, f64::INFINITY);
+        for k in (0..self.frf.values.len()).filter(|k| silent(*k)) {
             if self.frf.values[k].is_finite() {
-                silent += 1;
+                removed += 1;
                 lowest = lowest.min(self.frf.axis.at(k));
             }
             self.frf.values[k] = NOWHERE;
@@ -77,14 +77,14 @@ impl Transfer {
             beside.into_iter().filter_map(|of| of.get_mut(k)).for_each(|v| *v = f64::NAN);
         }
         let lines = self.frf.values.len();
-        if silent > 0 {
+        if removed > 0 {
             // Lines without a function have no coherence to be low.
+            let left = self.frf.values.iter().filter(|v| v.is_finite()).count();
             self.findings.retain(|found| found.code != LOW);
-            self.findings.extend(low(&self.coherence, lines - silent));
+            self.findings.extend(low(&self.coherence, left));
+            let found = found.count("n", removed).count("lines", lines);
+            self.findings.push(found.number("from", lowest));
         }
-        let found = Finding::caution("frf-not-excited").count("n", silent).count("lines", lines);
-        let found = found.number("from", lowest);
-        self.findings.extend((silent > 0).then_some(found));
     }
 
     /// The function of the response integrated `times` times (mobility becomes receptance with 1, accelerance

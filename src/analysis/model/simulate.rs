@@ -92,7 +92,7 @@ impl Keys {
         answer.add("", findings);
         answer.add("", contact::buffer(&scene, self.model));
         answer.add("", self.doubts(&observed, &scene.rig));
-        answer.add("", rebound.as_ref().and_then(|rebound| beyond_elastic(rebound, &scene)));
+        answer.add("", unusual(&scene, rebound.as_ref()));
         answer.tables.push(summary(&observed));
         answer.tables.extend(rebound.as_ref().map(rebounding));
         answer.figure("traces", figures::traces("Traces of both masses", portrait, scene.rig.gap));
@@ -197,12 +197,26 @@ fn summary(observed: &ObservedMotion) -> Table {
     .note("Phase: of the excitation at the last impact, after the crest of a sine force, the impulse or the onset of the pulse.")
 }
 
-/// Caution where the bodies of a Hertz contact yield, or a modulus or a radius has another unit than was
-/// meant.
-fn beyond_elastic(rebound: &HertzRebound, scene: &Scene) -> Option<Finding> {
-    let radius = scene.contact?.relative_radius()?;
-    let found = Finding::caution("hertz-yields").number("pressure", rebound.pressure?);
-    rebound.yields(radius).then(|| found.number("speed", rebound.speed))
+/// Largest pressure over E* that metals bear: see [`HertzRebound::strain`].
+const BORNE: f64 = 0.03;
+/// Largest radius in m, and smallest Young's modulus in Pa, of bodies that strike each other: those beyond are
+/// more likely stated in mm or in 10⁹ Pa.
+const USUAL: (f64, f64) = (1.0, 1e6);
+
+/// Cautions where the bodies of a Hertz contact yield, or a radius or a modulus looks as if it had another
+/// unit.
+fn unusual(scene: &Scene, rebound: Option<&HertzRebound>) -> Vec<Finding> {
+    let Some(contact) = scene.contact else { return Vec::new() };
+    let radius = contact.radius.into_iter().flatten().filter(|r| r.is_finite() && *r > USUAL.0);
+    let odd = radius.map(|r| Finding::caution("hertz-radius").number("radius", r));
+    let modulus = contact.modulus.into_iter().flatten().filter(|e| *e < USUAL.1);
+    let odd = odd.chain(modulus.map(|e| Finding::caution("hertz-modulus").number("modulus", e)));
+    let yields = rebound.zip(contact.relative_radius()).and_then(|(rebound, radius)| {
+        let strain = rebound.strain(radius).filter(|strain| *strain > BORNE)?;
+        let found = Finding::caution("hertz-yields").number("pressure", rebound.pressure?);
+        Some(found.number("part", strain).number("speed", rebound.speed))
+    });
+    odd.chain(yields).collect()
 }
 
 /// Stiffness, duration, largest force and pressure of a Hertz contact.

@@ -7,7 +7,6 @@ use super::{Change, Choice, Model, Question, elsewhere};
 use crate::duffing::limit;
 use crate::motion::Motion;
 use crate::rig::Rig;
-use crate::scene::Springs;
 use crate::simulate::Simulation;
 use serde::Serialize;
 use vibro_record::{Finding, Result};
@@ -17,6 +16,10 @@ const CYCLES: usize = 60;
 /// Samples in a cycle, or in a swing of the faster mass if that is shorter: a peak is up to 0.03 % too
 /// low.
 const SAMPLES: f64 = 128.0;
+
+/// Largest square of the mean displacement over its mean square. The force at rest is then off by up to
+/// 2√0.01, a fifth of what the curvature changes.
+const CENTRED: f64 = 0.01;
 
 /// Effect of the curvature of a spring.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -28,7 +31,8 @@ pub struct Curvature {
     /// Relative shift of its natural frequency by harmonic balance, to first order 3k₃A²/8k for a sine
     /// of amplitude A. `None` where a softening spring goes beyond its largest force.
     pub shift: Option<f64>,
-    /// Change of the answer with the equivalent straight spring; `None` where there is no answer.
+    /// Change of the answer with the equivalent straight spring, of the mass that it changes most; `None`
+    /// where there is no answer, or the spring is deflected at rest.
     pub change: Option<Change>,
 }
 
@@ -52,6 +56,13 @@ impl Displacement {
             power *= x;
             *sum += power * time;
         }
+    }
+
+    /// Whether the motion is about the rest of a straight spring: beside a mean deflection the straight
+    /// spring that takes the place of the curved one has another force at rest.
+    fn is_centred(&self) -> bool {
+        let [x, xx, ..] = self.sums.map(|sum| sum / self.time);
+        x * x < CENTRED * xx
     }
 
     /// Slope of the line that fits x³ best over the motion, cov(x³, x)/var(x): ¾A² for a sine of
@@ -102,7 +113,7 @@ pub fn effects(
             spring: i as u8 + 1,
             amplitude: (x.high - x.low) / 2.0,
             shift: within.then(|| (1.0 + added / stiffness).sqrt() - 1.0),
-            change: within.then(|| elsewhere(choice, model, stage, changed)).flatten(),
+            change: (within && x.is_centred()).then(|| elsewhere(choice, model, stage, changed)).flatten(),
         }
     };
     let counts = |i: &usize| springs.cubic()[*i] != 0.0 && (*i == 0 || !rig.has_wall());
@@ -110,19 +121,19 @@ pub fn effects(
 }
 
 /// The finding on the spring with the largest effect.
-pub fn finding(choice: &Choice, springs: &Springs, question: &Question) -> Finding {
+pub fn finding(choice: &Choice, question: &Question) -> Finding {
     let size = |c: &Curvature| c.change.map_or(f64::INFINITY, |change| change.change.abs());
     let Some(worst) = choice.springs.iter().max_by(|a, b| size(a).total_cmp(&size(b))) else {
-        return springs.unused();
+        return Finding::caution("springs-unchecked");
     };
     let Curvature { spring, amplitude, shift, change } = *worst;
     let told = |found: Finding| found.count("spring", spring.into()).number("amplitude", amplitude);
-    let Some(shift) = shift else { return told(Finding::doubt("spring-beyond-force")) };
-    let enough = change.is_some_and(|c| c.enough || c.change.abs() <= question.tolerance);
+    let Some(shift) = shift else { return told(Finding::doubt("spring-beyond-force").without_estimate()) };
+    let enough = change.is_some_and(|c| c.enough);
     let found = if enough {
         Finding::note("spring-curvature-holds")
     } else {
-        Finding::doubt("spring-curvature-matters")
+        Finding::doubt("spring-curvature-matters").without_estimate()
     };
     let found = told(found).number("shift", shift).number("tolerance", question.tolerance);
     let found = change.into_iter().fold(found, |found, change| found.number("change", change.change));

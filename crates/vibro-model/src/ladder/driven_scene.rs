@@ -2,13 +2,10 @@
 
 use super::question::Question;
 use crate::excitation::Excitation;
-use crate::law::Law;
+use crate::law::{HERTZ, Law};
 use crate::scene::{ContactKeys, Scene};
 use std::time::Instant;
 use vibro_record::{Error, Result};
-
-/// Exponent of the force over the indentation of two curved bodies (Hertz).
-pub const HERTZ: f64 = 1.5;
 
 /// Result of `work` and its computing time in ns; NaN on WebAssembly, which has no clock.
 pub fn timed<T>(work: impl FnOnce() -> T) -> (T, f64) {

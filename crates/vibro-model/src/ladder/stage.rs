@@ -1,13 +1,12 @@
 //! The answer of each rung at one excitation of a scene, and whether the rung's own checks pass.
 
-use super::driven_scene::{DrivenScene, HERTZ, curved, is_curved, keys, timed};
+use super::driven_scene::{DrivenScene, curved, is_curved, keys, timed};
 use super::motions::{CurrentMotion, Motions};
 use super::question::Answer;
 use super::reading::{BRIEF, MotionReader, Reading, Settling};
 use super::rung::{Found, Model, Rung};
 use crate::contact::Compliant;
-use crate::law::Law;
-use crate::law::conversion;
+use crate::law::{HERTZ, Law, conversion};
 use crate::motion::Motion;
 use crate::observable::Observable;
 use crate::orbit::{Compliance, Orbit, Softened, no_impact, orbits_of, softened};

@@ -511,7 +511,7 @@ fn a_curved_spring_counts_by_its_equivalent_stiffness() {
     let open = Scene { springs, ..scene(0.1, Some(1e6)) };
     let choice = choose(&open, 7.85, &Question { history: None, ..question }).unwrap();
     assert!(choice.needs == [Need::History] && choice.springs.is_empty());
-    finding(&choice, "springs-unused");
+    finding(&choice, "springs-unchecked");
 }
 
 /// Pressed together by a negative gap both springs are deflected: their tangent k + 3k₃x² counts.

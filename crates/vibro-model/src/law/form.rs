@@ -1,6 +1,6 @@
 //! Form of a contact law: what it is called, the numbers that it takes, and its force.
 
-use super::Law;
+use super::{HERTZ, Law};
 use vibro_record::Result;
 
 /// Form of a contact law.
@@ -21,9 +21,6 @@ pub struct LawForm {
     /// Force in N of a law of this form at an indentation (m) above 0 and its rate (m/s); it may pull.
     pub force: fn(&Law, f64, f64) -> f64,
 }
-
-/// Exponent of curved elastic bodies, whose radii and elastic constants give a stiffness (Hertz 1882).
-const HERTZ: f64 = 1.5;
 
 /// Where the damping of a contact law comes from.
 #[derive(Debug, Clone, Copy)]

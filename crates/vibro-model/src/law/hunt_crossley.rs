@@ -1,13 +1,13 @@
 //! F = kδⁿ(1 + αδ̇): damping grows with the indentation (Hunt & Crossley 1975).
 
-use super::{Law, LawDamping, LawForm, conversion};
+use super::{HERTZ, Law, LawDamping, LawForm, conversion};
 use crate::least::{NumberRange, number};
 use vibro_record::Result;
 
 pub(super) const FORM: LawForm = LawForm {
     name: "hunt-crossley",
     linear: false,
-    exponent: 1.5,
+    exponent: HERTZ,
     any_exponent: true,
     damping: LawDamping::Stated,
     damping_unit: "s/m",
@@ -17,7 +17,7 @@ pub(super) const FORM: LawForm = LawForm {
 /// The root is faster than the power, and 1.5 is the exponent of nearly all contacts.
 fn force(law: &Law, indentation: f64, rate: f64) -> f64 {
     let loss = 1.0 + law.damping * rate;
-    if law.exponent == 1.5 {
+    if law.exponent == HERTZ {
         return law.stiffness * (indentation * indentation.sqrt()) * loss;
     }
     law.stiffness * indentation.powf(law.exponent) * loss

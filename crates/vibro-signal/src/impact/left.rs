@@ -3,9 +3,11 @@
 use super::{AUDIBLE, Blows};
 use crate::fft::Transform;
 use crate::transfer::Transfer;
+use num_complex::Complex64;
 use std::f64::consts::TAU;
-use vibro_record::Finding;
 use vibro_record::code;
+use vibro_record::units::Quantity;
+use vibro_record::{Finding, Frf};
 
 /// Parts of a record after the blow; the powers of the first and the last are compared.
 const PARTS: usize = 4;
@@ -29,14 +31,34 @@ pub(super) struct Left {
 }
 
 impl Left {
-    /// Power of the force below which a line shows the end of the record and no function; `own` is the power
-    /// at the line of this mode.
+    /// The lines, by their index, that show the end of the record and no function; `force` is the power of
+    /// the force from 0 Hz on, and `length` the time in s from the blow to the end.
     ///
     /// A mode that still rings at an end of the record responds to one more blow, of which nothing was
-    /// recorded. Its spectrum is flat, and at the line of the mode it is `part` of that of the blow. Lines
-    /// within [`AUDIBLE`] of the force at the mode are kept, however early its record ends.
-    pub fn unseen(&self, own: f64) -> f64 {
-        (AUDIBLE * self.part * self.part).min(AUDIBLE.recip()) * own
+    /// recorded. That blow's spectrum is flat, `part` of the force at the mode, and the response to it is
+    /// that of the mode alone, |Hₘ(ω)|, whose decay is that of `part`. A line shows the end where this
+    /// response is within [`AUDIBLE`] of its own, |H(ω)F(ω)|. Lines within [`AUDIBLE`] of the force at the
+    /// mode are kept, however early its record ends.
+    pub fn hidden(&self, frf: &Frf, force: &[f64], length: f64) -> Vec<bool> {
+        let own = force[self.line + 1];
+        let power = AUDIBLE * self.part * self.part * own;
+        let decay = -self.part.ln() / length;
+        let mode = TAU * frf.axis.at(self.line);
+        let peak = frf.values[self.line].norm() * 2.0 * decay * mode;
+        // An unknown kind is taken as that which falls least above the mode.
+        let slope = match frf.meta.quantity {
+            Quantity::Receptance => 0,
+            Quantity::Mobility => 1,
+            _ => 2,
+        };
+        let hides = |(k, h): (usize, &Complex64)| {
+            let omega = TAU * frf.axis.at(k);
+            let apart = Complex64::new(mode * mode - omega * omega, 2.0 * decay * omega);
+            let alone = peak / apart.norm() * (omega / mode).powi(slope);
+            let [seen, hidden] = [h.norm_sqr() * force[k + 1], power * alone * alone];
+            hidden > seen && AUDIBLE * force[k + 1] < own
+        };
+        frf.values.iter().enumerate().map(hides).collect()
     }
 
     /// Finding for a function, where the part is large enough.
@@ -119,7 +141,7 @@ pub(super) fn widen(
         let Some((part, strong)) = parts.get(place).or(parts.last()).copied() else { continue };
         transfer.magnitude_std[line] = transfer.magnitude_std[line].hypot(part * h.norm());
         transfer.phase_std[line] = transfer.phase_std[line].hypot(part);
-        if strong && part * h.norm() > most {
+        if strong && part > LEAST && part * h.norm() > most {
             most = part * h.norm();
             left = Left { line, part };
         }

@@ -16,7 +16,10 @@ fn trace(unit: &str, values: Vec<f64>) -> Trace {
 /// Half-sine blows of five samples (1.2 ms), and the displacement of the mode by the exact impulse response,
 /// sample by sample.
 fn bench(blows: &[(usize, f64)], n: usize) -> [Trace; 2] {
-    let (m, f, zeta) = MODE;
+    bench_of(MODE, blows, n)
+}
+
+fn bench_of((m, f, zeta): (f64, f64, f64), blows: &[(usize, f64)], n: usize) -> [Trace; 2] {
     let (omega, width) = (2.0 * PI * f, 5);
     let damped = omega * (1.0 - zeta * zeta).sqrt();
     let mut force = vec![0.0; n];
@@ -111,6 +114,29 @@ fn one_clean_blow_is_enough_and_has_no_coherence() {
     assert!(has(&found, "frf-one-blow") && found.transfer.coherence.is_empty());
     assert!(found.transfer.magnitude_std.iter().all(|std| std.is_nan()));
     near(&found, 0.01);
+}
+
+/// A mode at 60 Hz rings on with 55 % at the end of its records of a second: e^(−0.6) for ζω = 0.6. The force
+/// at the mode of 1000 Hz is 0.15 of that at 60 Hz, but the low mode alone responds there by 1/m/ω², a
+/// hundredth of the high mode's own 1/(2ζmω²).
+#[test]
+fn a_low_mode_that_rings_on_hides_no_high_one() {
+    let blows: Vec<(usize, f64)> = (1..=4).map(|k| (k * 16_000, 100.0)).collect();
+    let [force, mut response] = bench_of((2.0, 60.0, 0.6 / (2.0 * PI * 60.0)), &blows, 80_000);
+    let [_, high] = bench_of((2.0, 1000.0, 0.005), &blows, 80_000);
+    response.values.iter_mut().zip(&high.values).for_each(|(to, v)| *to += v);
+    let how = Blows { length: 4180, before: 84, force_window: None, left_at_end: None };
+    let found = from_blows(&force, &response, &how, Estimator::H1).unwrap();
+    let frf = &found.transfer.frf;
+    let peak = (0..frf.values.len())
+        .filter(|k| (990.0..1010.0).contains(&frf.axis.at(*k)))
+        .map(|k| frf.values[k].norm())
+        .fold(0.0, f64::max);
+    // One line in 5 Hz of half-width, and four samples a period: within a factor of two.
+    let omega = 2.0 * PI * 1000.0;
+    let expected = 1.0 / (2.0 * 0.005 * 2.0 * omega * omega);
+    assert!((0.5..2.0).contains(&(peak / expected)), "{peak:e} {expected:e}");
+    assert!(has(&found, "response-cut-off") && !has(&found, "frf-not-excited"));
 }
 
 /// A half-sine of 1.2 ms excites little beyond 1 kHz, so lines there, where the force is noise, have no
