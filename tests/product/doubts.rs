@@ -44,8 +44,7 @@ fn answer<S: AsRef<std::ffi::OsStr>>(arguments: &[S]) -> Value {
     serde_json::from_slice(&output.stdout).unwrap_or(Value::Null)
 }
 
-/// The doubts of an answer and of the answers inside it, by their codes, and the uncertainties that they leave
-/// standing.
+/// The doubts of an answer and of the answers inside it, by their codes, and the uncertainties beside them.
 #[derive(Default)]
 struct Doubts {
     codes: BTreeSet<String>,

@@ -98,7 +98,7 @@ impl Sines {
                 levels.doubt();
                 decrement.doubt();
             }
-            // A mode that changes has its own damping at each level: only what is one number for all is wrong.
+            // A mode that changes has its own damping at each level: what is one number for all is wrong.
             let of_all: &mut [&mut dyn Uncertain] = &mut [mode, &mut decrement];
             findings.extend(changes.map(|doubt| doubt.of(of_all)));
         }
