@@ -63,8 +63,8 @@ pub struct Transfer {
 }
 
 impl Transfer {
-    /// Removes the function at the lines that are `silent`, by their index from the first above 0 Hz, and adds
-    /// the number of lines and the lowest frequency to the finding.
+    /// Removes the function at the lines that are `silent`, by their index from the first above 0 Hz, and
+    /// adds the number of lines and the lowest frequency to the finding.
     pub(super) fn silence(&mut self, silent: impl Fn(usize) -> bool, found: Finding) {
         let (mut removed, mut lowest) = (0, f64::INFINITY);
         for k in (0..self.frf.values.len()).filter(|k| silent(*k)) {

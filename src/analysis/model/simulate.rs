@@ -199,8 +199,8 @@ fn summary(observed: &ObservedMotion) -> Table {
 
 /// Largest pressure over E* that metals bear: see [`HertzRebound::strain`].
 const BORNE: f64 = 0.03;
-/// Largest radius in m, and smallest Young's modulus in Pa, of bodies that strike each other: those beyond are
-/// more likely stated in mm or in 10⁹ Pa.
+/// Largest radius in m, and smallest Young's modulus in Pa, of bodies that strike each other: those beyond
+/// are more likely stated in mm or in 10⁹ Pa.
 const USUAL: (f64, f64) = (1.0, 1e6);
 
 /// Cautions where the bodies of a Hertz contact yield, or a radius or a modulus looks as if it had another

@@ -31,7 +31,7 @@ const VELOCITIES: Concern =
     Group(&["first_contact", "before", "after", "energy", "energy_given", "restitution"]);
 
 /// Every code of a doubt.
-pub const CONCERNS: [(&str, Concern); 59] = [
+pub const CONCERNS: [(&str, Concern); 61] = [
     ("rig-left-out", Nothing(MODEL)),
     ("decay-unexplained", MODE),
     ("decay-changes", MODE),
@@ -77,6 +77,8 @@ pub const CONCERNS: [(&str, Concern); 59] = [
     ("stiffness-needed", Nothing(MODEL)),
     ("no-rung", Nothing(MODEL)),
     ("law-matters", Nothing(MODEL)),
+    ("spring-beyond-force", Nothing(MODEL)),
+    ("spring-curvature-matters", Nothing(MODEL)),
     ("pulse-instrument-unknown", Whole),
     ("pulse-corner-above-half-rate", Whole),
     ("pulse-low-pass-missing", Whole),
