@@ -62,7 +62,7 @@ impl Displacement {
     /// spring that takes the place of the curved one has another force at rest.
     fn is_centred(&self) -> bool {
         let [x, xx, ..] = self.sums.map(|sum| sum / self.time);
-        x * x < CENTRED * xx
+        x * x <= CENTRED * xx
     }
 
     /// Slope of the line that fits x³ best over the motion, cov(x³, x)/var(x): ¾A² for a sine of
