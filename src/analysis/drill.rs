@@ -300,12 +300,12 @@ impl Analysis for Keys {
         KeyRange::above_zero("s", &["smoothing"]).times(),
         KeyRange::from_zero("s", &["longest_dropout"]).times(),
         // Checked against the duration of a turn when that is known.
-        KeyRange::above_zero("s", &["contact", "fit_duration"]).within(1e-12, f64::MAX),
+        KeyRange::above_zero("s", &["contact", "fit_duration"]).times().at_most(f64::MAX),
         KeyRange::above_zero("kg", &["struck_mass"]),
         KeyRange::any("", &["sensitivity", "handle_sensitivity", "level"]),
-        KeyRange::any("°", &["beam_angle"]).within(1e-50, 360.0),
-        KeyRange::any("dB", &["margin"]).within(1e-50, 1e3),
-        KeyRange::from_zero("h", &["exposure"]).within(1e-50, 24.0),
+        KeyRange::any("°", &["beam_angle"]).at_most(360.0),
+        KeyRange::any("dB", &["margin"]).at_most(1e3),
+        KeyRange::from_zero("h", &["exposure"]).at_most(24.0),
         KeyRange::count(1e9, &["pulses_per_turn"]),
     ];
 

@@ -52,14 +52,19 @@ impl KeyRange {
         KeyRange::from_zero("", keys).within(1.0, most)
     }
 
-    /// Times in s.
+    /// Of times in s.
     pub(crate) const fn times(self) -> KeyRange {
-        KeyRange { unit: "s", ..self.within(SHORTEST, LONGEST) }
+        self.within(SHORTEST, LONGEST)
     }
 
     /// With a smallest magnitude that is not 0, and a largest magnitude.
     pub(crate) const fn within(self, least: f64, most: f64) -> KeyRange {
         KeyRange { magnitude: (least, most), ..self }
+    }
+
+    /// With another largest magnitude.
+    pub(crate) const fn at_most(self, most: f64) -> KeyRange {
+        KeyRange { magnitude: (self.magnitude.0, most), ..self }
     }
 
     /// Range of a key, among those of kinds of records and those of all.
@@ -112,7 +117,7 @@ pub(crate) const SHARED: &[KeyRange] = &[
     KeyRange::from_zero("s", &["refractory"]).times(),
     KeyRange::any("s", &["delay"]).times(),
     // Times since 1970, even if written in ns.
-    KeyRange::any("s", &["span"]).within(SHORTEST, 4e18),
+    KeyRange::any("s", &["span"]).times().at_most(4e18),
     KeyRange::above_zero("kg", &["mass"]),
     KeyRange::above_zero("", &["grazing"]),
     KeyRange::any("", &["calibration", "initial", "phase"]),

@@ -84,7 +84,7 @@ pub struct ExactMotion {
 
 /// A jump of the amplitude where two motions meet and vanish, by harmonic balance.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Jump {
+pub struct CurveJump {
     /// Frequency in Hz.
     pub frequency: f64,
     /// Whether it occurs with rising frequency.
@@ -99,7 +99,7 @@ pub struct CurvedResponse {
     /// Motions, by frequency and amplitude.
     pub points: Vec<CurvePoint>,
     /// Jumps, by frequency.
-    pub jumps: Vec<Jump>,
+    pub jumps: Vec<CurveJump>,
     /// Number of motions beyond the largest force of a softening spring, which are left out.
     pub beyond: usize,
     /// Free motion without damper up to the largest amplitude: amplitude in m, frequency in Hz by
@@ -273,10 +273,9 @@ impl Duffing {
         let balanced = |frequency: f64| self.balanced(&Sine { force, frequency });
         let mut frequencies: Vec<f64> = (0..points).map(at).collect();
         // Folds lie closer together than the points of a figure, and the balance costs nothing.
-        let fine = axis(from, to, points.max(FOLDS), MOST_POINTS.max(FOLDS))?;
-        let fine: Vec<f64> = (0..points.max(FOLDS)).map(fine).collect();
+        let fine: Vec<f64> = (0..FOLDS).map(axis(from, to, FOLDS, MOST_POINTS)?).collect();
         let limit = self.limit();
-        let mut jumps: Vec<Jump> = fine.windows(2).filter_map(|pair| jump(pair, &balanced)).collect();
+        let mut jumps: Vec<CurveJump> = fine.windows(2).filter_map(|pair| jump(pair, &balanced)).collect();
         jumps.retain(|jump| jump.amplitude.iter().all(|amplitude| *amplitude <= limit));
         frequencies.extend(jumps.iter().map(|jump| jump.frequency));
         frequencies.sort_by(f64::total_cmp);
@@ -327,7 +326,7 @@ fn agm(mut a: f64, mut b: f64) -> f64 {
 }
 
 /// The jump between two frequencies, if there are three motions at one of them.
-fn jump(pair: &[f64], balanced: &dyn Fn(f64) -> Vec<(Complex64, bool)>) -> Option<Jump> {
+fn jump(pair: &[f64], balanced: &dyn Fn(f64) -> Vec<(Complex64, bool)>) -> Option<CurveJump> {
     let several = |frequency: f64| balanced(frequency).len() == 3;
     let (inside, outside) = match (several(pair[0]), several(pair[1])) {
         (true, false) => (pair[0], pair[1]),
@@ -338,7 +337,7 @@ fn jump(pair: &[f64], balanced: &dyn Fn(f64) -> Vec<(Complex64, bool)>) -> Optio
     let [low, middle, high]: [f64; 3] =
         balanced(frequency).iter().map(|(x, _)| x.norm()).collect::<Vec<_>>().try_into().ok()?;
     let amplitude = if high - middle < middle - low { [high, low] } else { [low, high] };
-    Some(Jump { frequency, rising: inside < outside, amplitude })
+    Some(CurveJump { frequency, rising: inside < outside, amplitude })
 }
 
 #[cfg(test)]

@@ -56,7 +56,7 @@ mod waves;
 pub use chirp::Chirp;
 pub use contact::Compliant;
 pub use continuation::{Branch, follow};
-pub use duffing::{CurvePoint, CurvedResponse, Duffing, ExactMotion, Jump};
+pub use duffing::{CurveJump, CurvePoint, CurvedResponse, Duffing, ExactMotion};
 pub use excitation::{Excitation, Impulses, Part, Pulses, Sine, Sines};
 pub use flow::{Flight, State};
 pub use green::Green;

@@ -65,7 +65,7 @@ impl Keys {
             "points": found.points, "jumps": found.jumps, "backbone": found.backbone,
         }))?;
         answer.add("", findings);
-        answer.add("", self.doubts(&found, limit));
+        answer.add("", self.findings(&found, limit));
         let columns: Vec<&[CurvePoint]> = found.points.chunk_by(|a, b| a.frequency == b.frequency).collect();
         let shown = columns.iter().step_by(columns.len().div_ceil(SHOWN));
         let shown: Vec<&CurvePoint> = shown.copied().flatten().collect();
@@ -89,17 +89,17 @@ impl Keys {
     }
 
     /// Findings on the domain of the spring and the error of harmonic balance.
-    fn doubts(&self, found: &CurvedResponse, limit: Option<f64>) -> Vec<Finding> {
+    fn findings(&self, found: &CurvedResponse, limit: Option<f64>) -> Vec<Finding> {
         let all = found.points.len();
-        let mut doubts = Vec::new();
+        let mut findings = Vec::new();
         if let Some(limit) = limit.filter(|_| found.beyond > 0) {
             let beyond = Finding::caution("backbone-beyond-force").count("n", found.beyond);
-            doubts.push(beyond.number("limit", limit));
+            findings.push(beyond.number("limit", limit));
         }
         let errors = || found.points.iter().filter_map(|p| Some((p.error()?, p.frequency)));
         let missing = all - errors().count();
         if missing > 0 {
-            doubts.push(Finding::caution("backbone-not-exact").count("n", missing).count("all", all));
+            findings.push(Finding::caution("backbone-not-exact").count("n", missing).count("all", all));
         }
         if let Some((error, frequency)) = errors().max_by(|a, b| a.0.abs().total_cmp(&b.0.abs())) {
             let beyond = errors().filter(|(error, _)| error.abs() > self.tolerance).count();
@@ -107,9 +107,9 @@ impl Keys {
                 0 => Finding::note("balance-holds"),
                 n => Finding::caution("balance-differs").count("n", n).count("all", all),
             };
-            doubts.push(found.number("error", error.abs()).number("frequency", frequency));
+            findings.push(found.number("error", error.abs()).number("frequency", frequency));
         }
-        doubts
+        findings
     }
 }
 

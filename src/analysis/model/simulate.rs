@@ -211,8 +211,8 @@ fn unusual(scene: &Scene, rebound: Option<&HertzRebound>) -> Vec<Finding> {
     let odd = radius.map(|r| Finding::caution("hertz-radius").number("radius", r));
     let modulus = contact.modulus.into_iter().flatten().filter(|e| *e < USUAL.1);
     let odd = odd.chain(modulus.map(|e| Finding::caution("hertz-modulus").number("modulus", e)));
-    let yields = rebound.zip(contact.relative_radius()).and_then(|(rebound, radius)| {
-        let strain = rebound.strain(radius).filter(|strain| *strain > BORNE)?;
+    let yields = rebound.and_then(|rebound| {
+        let strain = rebound.strain().filter(|strain| *strain > BORNE)?;
         let found = Finding::caution("hertz-yields").number("pressure", rebound.pressure?);
         Some(found.number("part", strain).number("speed", rebound.speed))
     });

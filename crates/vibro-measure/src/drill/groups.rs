@@ -7,7 +7,7 @@ use crate::mean::Mean;
 use serde::Serialize;
 use std::f64::consts::TAU;
 use vibro_record::code;
-use vibro_record::{Finding, Uncertain, uncertain};
+use vibro_record::{Finding, Uncertain};
 
 /// Largest bias of a mean, in standard uncertainties, that is ignored: ±1.96 of them then still cover 94 %.
 const BIAS: f64 = 0.3;
@@ -127,7 +127,12 @@ pub struct Group {
     pub(super) wanders: bool,
 }
 
-uncertain!(Group: phase, first_contact, before, after, energy, energy_given, restitution);
+impl Uncertain for Group {
+    fn doubt(&mut self) {
+        self.phase.doubt();
+        self.velocities().doubt();
+    }
+}
 
 /// Groups of impacts found in `turns` turns, the strongest first; sets the group of each impact. The
 /// `offset` is already subtracted from the velocities. `residuals` are those of the fits before and after

@@ -79,28 +79,20 @@ pub struct PulseResult {
     pub picture: Option<PulsePicture>,
 }
 
-uncertain!(PulseResult: xi, frequency, restitution, stiffness, damping, initial_velocity, duration, fits);
 uncertain!(PulseFit: parameters);
+
+impl Uncertain for PulseResult {
+    fn doubt(&mut self) {
+        self.estimates().for_each(Uncertain::doubt);
+        self.fits.doubt();
+    }
+}
 
 impl PulseResult {
     fn estimates(&mut self) -> impl Iterator<Item = &mut Estimate> {
         let contact = [&mut self.xi, &mut self.frequency, &mut self.restitution, &mut self.duration];
         let more = [&mut self.stiffness, &mut self.damping, &mut self.initial_velocity];
         contact.into_iter().chain(more.into_iter().flatten())
-    }
-
-    /// The numbers by the model of spring and damper.
-    fn by_spring_and_damper(&mut self) -> [&mut dyn Uncertain; 8] {
-        [
-            &mut self.xi,
-            &mut self.frequency,
-            &mut self.restitution,
-            &mut self.duration,
-            &mut self.stiffness,
-            &mut self.damping,
-            &mut self.initial_velocity,
-            &mut self.fits[0],
-        ]
     }
 
     /// The result with all values null: the record is no contact of spring and damper.
@@ -161,7 +153,11 @@ impl PulseResult {
         let velocity = stated("initial_velocity", self.initial_velocity.as_ref());
         let model = lead.model.name();
         let doubt = Finding::doubt("pulse-other-model").name("model", model).number("ahead", lower);
-        let found = other.then(|| doubt.of(&mut self.by_spring_and_damper()));
+        // The numbers by spring and damper, and its fit, which is the first.
+        let found = other.then(|| {
+            self.estimates().for_each(Uncertain::doubt);
+            doubt.of(&mut self.fits[0])
+        });
         self.restitution = restitution.unwrap_or_else(|| self.restitution.clone());
         self.duration = duration.unwrap_or_else(|| self.duration.clone());
         self.initial_velocity = velocity.or(self.initial_velocity.take());

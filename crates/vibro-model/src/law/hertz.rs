@@ -38,6 +38,9 @@ pub struct HertzRebound {
     pub duration: f64,
     /// Largest pressure between the bodies in Pa; `None` where their radii are not known.
     pub pressure: Option<f64>,
+    /// Radius R in m, 1/R = 1/R₁ + 1/R₂.
+    #[serde(skip)]
+    radius: Option<f64>,
 }
 
 impl HertzRebound {
@@ -51,15 +54,15 @@ impl HertzRebound {
         let force = Law::hertz(stiffness).force(indentation, 0.0);
         let duration = conversion::hertz_duration(stiffness, mass, speed);
         let pressure = radius.map(|radius| 1.5 * force / (PI * radius * indentation));
-        HertzRebound { stiffness, mass, speed, indentation, force, duration, pressure }
+        HertzRebound { stiffness, mass, speed, indentation, force, duration, pressure, radius }
     }
 
-    /// Largest pressure over E*, which is 3k/(4√R), for the radius R (m).
+    /// Largest pressure over E*, which is 3k/(4√R); `None` where the radii are not known.
     ///
     /// A ball yields at 1.6 times the yield stress (Johnson 1985, 6.1), and the hardest steels yield at a
     /// fiftieth of E*: metals bear 3 % at most.
-    pub fn strain(&self, radius: f64) -> Option<f64> {
-        self.pressure.map(|pressure| pressure * radius.sqrt() / (0.75 * self.stiffness))
+    pub fn strain(&self) -> Option<f64> {
+        Some(self.pressure? * self.radius?.sqrt() / (0.75 * self.stiffness))
     }
 }
 
@@ -97,6 +100,6 @@ mod tests {
         let expected = (6.0 * found.force * modulus.powi(2) / (PI.powi(3) * radius.powi(2))).cbrt();
         assert!((found.pressure.unwrap() / expected - 1.0).abs() < 1e-13, "{found:?} {expected}");
         let strain = found.pressure.unwrap() / modulus;
-        assert!((found.strain(radius).unwrap() / strain - 1.0).abs() < 1e-13);
+        assert!((found.strain().unwrap() / strain - 1.0).abs() < 1e-13);
     }
 }
