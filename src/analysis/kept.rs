@@ -4,9 +4,9 @@
 use crate::error::Result;
 use crate::read::{Digest, Folder};
 use crate::report::Output;
-use rmp_serde::config::BytesMode;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
+use serde_bytes::ByteBuf;
 use sha2::{Digest as _, Sha256};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -22,9 +22,9 @@ pub struct AnswerCache {
     /// Folder through which the files are read.
     folder: Folder,
     /// Answers of the last run.
-    old: BTreeMap<Digest, Vec<u8>>,
+    old: BTreeMap<Digest, ByteBuf>,
     /// Answers of this run.
-    now: Mutex<BTreeMap<Digest, Vec<u8>>>,
+    now: Mutex<BTreeMap<Digest, ByteBuf>>,
     /// Digests of files, with the size and modification time of each before it was hashed. A different stamp
     /// later shows that the file changed.
     files: Mutex<BTreeMap<PathBuf, (Digest, Stamp)>>,
@@ -45,7 +45,7 @@ impl AnswerCache {
         let cache = AnswerCache::none(folder);
         let old = folder.own_file(AnswerCache::FILE).and_then(|bytes| {
             let (sum, rest) = bytes.split_at_checked(size_of::<Digest>())?;
-            let (program, old): (Digest, BTreeMap<Digest, Vec<u8>>) =
+            let (program, old): (Digest, BTreeMap<Digest, ByteBuf>) =
                 rmp_serde::from_slice(rest).ok().filter(|_| digest([rest]) == *sum)?;
             (Some(program) == cache.program()).then_some(old)
         });
@@ -77,7 +77,7 @@ impl AnswerCache {
         let made = make()?;
         let hashed_stamp = |path: &PathBuf| locked(&self.files).get(path).map(|(_, stamp)| *stamp);
         if files.iter().all(|path| hashed_stamp(path) == Some(self.folder.stamp(path))) {
-            locked(&self.now).extend(packed(&made).map(|bytes| (inputs, bytes)));
+            locked(&self.now).extend(packed(&made).map(|bytes| (inputs, ByteBuf::from(bytes))));
         }
         Ok(made)
     }
@@ -123,9 +123,7 @@ pub fn digest<T: AsRef<[u8]>>(parts: impl IntoIterator<Item = T>) -> Digest {
 
 /// A value as `MessagePack`, which can represent NaN.
 pub fn packed(value: &impl Serialize) -> Option<Vec<u8>> {
-    let mut bytes = Vec::new();
-    let mut packer = rmp_serde::Serializer::new(&mut bytes).with_bytes(BytesMode::ForceIterables);
-    value.serialize(&mut packer).ok().map(|()| bytes)
+    rmp_serde::to_vec(value).ok()
 }
 
 /// The content of a mutex; also of one that is poisoned by the panic of another thread.

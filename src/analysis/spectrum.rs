@@ -19,6 +19,7 @@ use crate::signal::transfer::Estimator;
 use serde::Deserialize;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
+use vibro_math::sort_by_number;
 
 /// How a spectrum is taken, or the function of two channels.
 #[derive(Debug, Clone, Default, Deserialize)]
@@ -296,7 +297,7 @@ fn common_peaks(found: &[(String, SpectralResult)]) -> Table {
         let others = peaks.iter().enumerate().skip(i + 1);
         pairs.extend(others.map(|(j, b)| ((a.0 - b.0).abs(), i, j)).filter(|pair| pair.0 <= near));
     }
-    pairs.sort_by(|a, b| a.0.total_cmp(&b.0));
+    sort_by_number(&mut pairs, |a| a.0);
     // Each peak is a row of its own until it joins another; `rows` holds indices of peaks.
     let mut rows: Vec<Vec<usize>> = (0..peaks.len()).map(|i| vec![i]).collect();
     for (_, i, j) in pairs {
@@ -310,7 +311,7 @@ fn common_peaks(found: &[(String, SpectralResult)]) -> Table {
     }
     rows.retain(|row| !row.is_empty());
     let lowest = |row: &[usize]| row.iter().map(|k| peaks[*k].0).fold(f64::INFINITY, f64::min);
-    rows.sort_by(|a, b| lowest(a).total_cmp(&lowest(b)));
+    sort_by_number(&mut rows, |row| lowest(row));
     let columns: Vec<(String, &str)> = found
         .iter()
         .flat_map(|(name, result)| [(name.clone(), "Hz"), (format!("{name}, value"), result.unit.as_str())])

@@ -4,6 +4,7 @@ use crate::error::{Error, Result};
 use crate::measure::response::{Response, ResponsePoint};
 use crate::record::{Finding, median};
 use crate::units::notation::significant;
+use vibro_math::sort_by_number;
 
 /// Force amplitude over excitation frequency.
 #[derive(Debug, Clone, PartialEq)]
@@ -32,7 +33,7 @@ impl Forcing {
     pub fn measured(response: &Response) -> Option<Forcing> {
         let points = response.points.iter().filter_map(|p| Some((p.excitation, p.force?)));
         let mut points: Vec<(f64, f64)> = points.collect();
-        points.sort_by(|a, b| a.0.total_cmp(&b.0));
+        sort_by_number(&mut points, |a| a.0);
         (!points.is_empty()).then_some(Forcing { points, measured: true })
     }
 
@@ -81,7 +82,7 @@ impl Forcing {
         let mean = |f: f64| of.iter().map(|o| o.at(f)).sum::<f64>() / of.len() as f64;
         let points = of.iter().filter(|o| o.measured).flat_map(|o| &o.points);
         let mut points: Vec<(f64, f64)> = points.map(|p| (p.0, mean(p.0))).collect();
-        points.sort_by(|a, b| a.0.total_cmp(&b.0));
+        sort_by_number(&mut points, |a| a.0);
         if points.is_empty() {
             return Some(Forcing::constant(mean(0.0)));
         }
@@ -126,7 +127,7 @@ pub(super) fn range(values: impl Iterator<Item = f64>) -> (f64, f64) {
 pub fn levels(forces: &[Option<f64>]) -> Vec<Vec<usize>> {
     let mut known: Vec<(f64, usize)> =
         forces.iter().enumerate().filter_map(|(i, force)| Some(((*force)?, i))).collect();
-    known.sort_by(|a, b| a.0.total_cmp(&b.0));
+    sort_by_number(&mut known, |a| a.0);
     let split = known.chunk_by(|a, b| b.0 <= LEVEL * a.0);
     let mut levels: Vec<Vec<usize>> = split.map(|level| level.iter().map(|(_, i)| *i).collect()).collect();
     for level in &mut levels {

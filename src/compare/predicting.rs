@@ -10,6 +10,7 @@ use crate::model::ladder::{self, Choice, Model, Need, Question, Stretch, choose_
 use crate::model::{ContactKeys, Excitation, Law, Observable, Rig, Scene, Sine};
 use crate::record::{Direction, Finding};
 use serde::Serialize;
+use vibro_math::sort_by_number;
 
 /// One sweep to be compared with the model.
 pub(super) struct Swept<'a> {
@@ -44,7 +45,7 @@ impl<'a> Swept<'a> {
     /// Points in the order of their measurement.
     pub fn points(&self) -> Vec<&'a ResponsePoint> {
         let mut points: Vec<&ResponsePoint> = self.response.points.iter().collect();
-        points.sort_by(|a, b| a.excitation.total_cmp(&b.excitation));
+        sort_by_number(&mut points, |a| a.excitation);
         in_order(self.direction, points)
     }
 }

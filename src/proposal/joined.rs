@@ -13,6 +13,7 @@ use crate::record::{Finding, Record};
 use rayon::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
+use vibro_math::sort_by_number;
 
 /// Largest relative difference in number of samples between records of one sweep. A person or a timer stops
 /// each of them.
@@ -100,7 +101,7 @@ fn sweeps(trial: &Trial<'_>, members: &[&FileSeries], force: usize) -> Vec<(Vec<
     let merged = |sweep: Vec<usize>| {
         let mut series = FileSeries::merged(&sweep.iter().map(|k| members[*k]).collect::<Vec<_>>());
         let frequency = |file: &String| frequency.get(file).copied().unwrap_or(f64::INFINITY);
-        series.files.sort_by(|a, b| frequency(a).total_cmp(&frequency(b)));
+        sort_by_number(&mut series.files, |a| frequency(a));
         if series.direction().as_deref() == Some("down") {
             series.files.reverse();
         }

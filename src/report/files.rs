@@ -20,6 +20,7 @@ pub struct Picture {
     /// As SVG.
     pub svg: String,
     /// As PNG.
+    #[serde(with = "serde_bytes")]
     pub png: Vec<u8>,
 }
 

@@ -23,6 +23,7 @@ use serde_json::{Map, Value, json};
 use std::borrow::Cow;
 use std::collections::HashMap;
 use std::sync::LazyLock;
+use vibro_math::sort_by_number;
 
 /// The sentence of each code, as `docs/findings.md` lists them.
 static SENTENCES: LazyLock<HashMap<&str, &str>> = LazyLock::new(|| {
@@ -113,7 +114,7 @@ pub fn graded(findings: &[About], voice: Voice) -> Vec<(Severity, String)> {
                 None => joined.push(new),
             }
         }
-        joined.sort_by(|a, b| b.share().total_cmp(&a.share()));
+        sort_by_number(&mut joined, |a| -a.share());
         all.extend(joined.iter().map(|sentence| (severity, sentence.in_full())));
     }
     all

@@ -2,6 +2,7 @@
 
 use super::jump::{Jump, Point, known};
 use std::collections::BTreeMap;
+use vibro_math::sort_by_number;
 
 /// Two points of a curve, and their weights in its interpolated logarithm.
 type Between = [(usize, f64); 2];
@@ -41,8 +42,8 @@ pub struct Crossing {
 /// jump of one of them, the crossing is that jump: it lies anywhere between the two points of the jump with
 /// equal probability.
 pub fn crossings(mut first: Vec<Point>, mut second: Vec<Point>, jumps: &[Jump]) -> Vec<Crossing> {
-    first.sort_by(|a, b| a.0.total_cmp(&b.0));
-    second.sort_by(|a, b| a.0.total_cmp(&b.0));
+    sort_by_number(&mut first, |a| a.0);
+    sort_by_number(&mut second, |a| a.0);
     let curves = [&first, &second];
     let mut frequencies: Vec<f64> = curves.iter().flat_map(|c| c.iter().map(|p| p.0)).collect();
     frequencies.sort_by(f64::total_cmp);

@@ -18,6 +18,7 @@ use sines::{ENOUGH, MOST, STEADY, SURE, Sines, decays};
 use std::f64::consts::TAU;
 use std::ops::Range;
 use usable::{Usable, usable};
+use vibro_math::sort_by_number;
 use vibro_record::code;
 use vibro_record::{Doubt, Error, Finding, Result, Trace, Uncertain};
 
@@ -102,7 +103,7 @@ impl Sines {
             let of_all: &mut [&mut dyn Uncertain] = &mut [mode, &mut decrement];
             findings.extend(changes.map(|doubt| doubt.of(of_all)));
         }
-        modes.sort_by(|a, b| a.frequency.value.total_cmp(&b.frequency.value));
+        sort_by_number(&mut modes, |a| a.frequency.value);
         let left = self.left(&trace.values[part.clone()]);
         let record = trace.values[part.clone()].to_vec();
         let curve = record.iter().zip(&left).map(|(v, left)| v - left).collect();

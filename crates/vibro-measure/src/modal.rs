@@ -26,6 +26,7 @@ use peak::Peak;
 use rational::{Rational, rational};
 use report::Candidate;
 use selection::{PeakGroup, averaging, chosen, complete, groups, together};
+use vibro_math::sort_by_number;
 use vibro_record::{Error, Finding, Result};
 
 /// Peaks and the modes that were fitted to them.
@@ -88,7 +89,7 @@ pub fn modal(measured: &Measured, options: &ModalOptions) -> Result<ModalResult>
     }
     findings.splice(place..place, without_phases.map(|doubt| doubt.of(&mut modes)));
     gather_noise(&lines, &unsupported, &mut findings);
-    modes.sort_by(|a, b| a.frequency.value.total_cmp(&b.frequency.value));
+    sort_by_number(&mut modes, |a| a.frequency.value);
     Ok(ModalResult { modes, findings })
 }
 
@@ -110,7 +111,7 @@ fn gather_noise(lines: &Measured, unsupported: &[Peak], findings: &mut Vec<Findi
     let odd = |found: &Finding| found.get("frequency").filter(|_| found.code == "modal-peak-unsupported");
     let height = |f: &f64| lines.values[lines.frequency.partition_point(|line| line < f)].norm();
     let mut at: Vec<f64> = findings.iter().filter_map(odd).collect();
-    at.sort_by(|a, b| height(b).total_cmp(&height(a)));
+    sort_by_number(&mut at, |a| -height(a));
     let mut at = at.split_off(at.len().min(NAMED));
     findings.retain(|found| odd(found).is_none_or(|f| !at.contains(&f)));
     if !unsupported.is_empty() || !at.is_empty() {

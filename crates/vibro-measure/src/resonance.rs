@@ -5,6 +5,7 @@ use super::jump::{Jump, Point, SIGMA, differ, echo, jumps, known};
 use super::peaks::{Maximum, Vertex, apex, local_maxima};
 use num_complex::Complex64;
 use serde::Serialize;
+use vibro_math::sort_by_number;
 
 use vibro_record::{Direction, uncertain};
 
@@ -79,7 +80,7 @@ pub(crate) fn resonances(points: &[Point], jumps: &[Jump], mass: Option<u8>) -> 
         let kind = if antiresonance { ResonanceKind::Antiresonance } else { ResonanceKind::Minimum };
         curve.minimum(m.at, kind)
     }));
-    found.sort_by(|a, b| a.frequency.total_cmp(&b.frequency));
+    sort_by_number(&mut found, |a| a.frequency);
     found
 }
 
@@ -276,7 +277,7 @@ impl NamedCurve {
         mass: Option<u8>,
     ) -> NamedCurve {
         let jumps = jumps(&curve, receptances, direction);
-        curve.sort_by(|a, b| a.0.total_cmp(&b.0));
+        sort_by_number(&mut curve, |a| a.0);
         let resonances = resonances(&curve, &jumps, mass);
         NamedCurve { mass, direction, curve, jumps, resonances }
     }

@@ -18,6 +18,7 @@ use left::Left;
 use nalgebra::{DMatrix, DVector, RowVector3};
 use serde::Serialize;
 use std::f64::consts::{PI, TAU};
+use vibro_math::sort_by_number;
 use vibro_record::units::notation::quantity;
 use vibro_record::{Error, Finding, Result, Scaling, Trace, Window, uncertain};
 use vibro_signal::spectrum;
@@ -123,7 +124,7 @@ pub fn tones(trace: &Trace, count: usize) -> Result<Tones> {
     let known = fitted.omega.len();
     let mut found = fitted.estimates(trace);
     found.findings.extend(fewer.map(|f| f.count("known", known).count("count", count)));
-    found.tones.sort_by(|a, b| b.amplitude.value.total_cmp(&a.amplitude.value));
+    sort_by_number(&mut found.tones, |a| -a.amplitude.value);
     Ok(found)
 }
 
@@ -166,7 +167,7 @@ impl HannLines {
         let HannLines { magnitudes, powers, spacing } = self;
         let within = |k: &usize| near.is_none_or(|f| (*k as f64 - f / spacing).abs() <= NEAR);
         let mut lines: Vec<usize> = (1..magnitudes.len().saturating_sub(1)).filter(within).collect();
-        lines.sort_by(|a, b| magnitudes[*b].total_cmp(&magnitudes[*a]));
+        sort_by_number(&mut lines, |a| -magnitudes[*a]);
         let first = *lines.first().ok_or_else(|| Error::refused("no line of the spectrum lies there"))?;
         let noise = |k: usize| floor(powers, k, stands_out::REACH, 1.0, Some(Window::Hann));
         let visible = |k: &usize| noise(*k).is_none_or(|n| n.is_below(powers[*k], 1.0, lines.len()));

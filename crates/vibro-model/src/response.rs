@@ -8,7 +8,7 @@ use super::rig::Rig;
 use super::scales;
 use super::steady::NoImpact;
 use serde::Serialize;
-use vibro_math::try_bisected;
+use vibro_math::{sort_by_number, try_bisected};
 use vibro_record::{Error, Result};
 
 /// The most frequencies of a response.
@@ -107,7 +107,7 @@ pub fn response(
     let pairs = points.windows(2).filter(known);
     let mut changes: Vec<Change> =
         pairs.flat_map(|pair| changes_between(&pair[0], &pair[1], &solve)).collect();
-    changes.sort_by(|a, b| a.frequency.total_cmp(&b.frequency));
+    sort_by_number(&mut changes, |a| a.frequency);
     Ok(Response { points, changes })
 }
 

@@ -6,6 +6,7 @@ use crate::report::layout::{capital, lettered};
 use crate::report::{AxisSpec, Figure, Ink, Marker, Plot, Series, Stroke};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
+use vibro_math::sort_by_number;
 
 /// Most spectral lines that are drawn as dots; more are drawn as a curve.
 const DOTS: usize = 150;
@@ -129,9 +130,9 @@ pub fn argand(title: &str, meta: &Meta, measured: &Measured, modes: &[Mode]) -> 
     let mut circles: Vec<_> =
         groups.iter().map(|group| (*group, curve(measured, group, windowed, SMOOTH_CIRCLE))).collect();
     let size = |curve: &[(f64, Complex64)]| curve.iter().map(|(_, value)| value.norm()).fold(0.0, f64::max);
-    circles.sort_by(|a, b| size(&b.1).total_cmp(&size(&a.1)));
+    sort_by_number(&mut circles, |a| -size(&a.1));
     circles.truncate(MOST_CIRCLES);
-    circles.sort_by(|a, b| a.0[0].lines.0.total_cmp(&b.0[0].lines.0));
+    sort_by_number(&mut circles, |a| a.0[0].lines.0);
     let columns = circles.len().min(3);
     let rows = circles.len().div_ceil(columns);
     let figure = if columns == 1 { Figure::single("") } else { Figure::double("").columns(columns) };

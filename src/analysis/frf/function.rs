@@ -8,6 +8,7 @@ use crate::measure::response::{Response, ResponseOptions};
 use crate::record::{Finding, Meta, Record, upper_median};
 use crate::units::{Quantity, Unit};
 use num_complex::Complex64;
+use vibro_math::sort_by_number;
 
 /// A frequency response function, ready for the search for modes.
 #[derive(Debug, Clone)]
@@ -70,7 +71,7 @@ impl Function {
             return Err(Error::refused(why)
                 .hint("a receptance needs the force of each step, and a displacement as response"));
         }
-        points.sort_by(|a, b| a.0.total_cmp(&b.0));
+        sort_by_number(&mut points, |a| a.0);
         points.dedup_by(|a, b| a.0 == b.0);
         let frequency = points.iter().map(|p| p.0).collect();
         let values = points.iter().map(|p| p.1).collect();

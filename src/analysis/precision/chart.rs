@@ -5,6 +5,7 @@ use crate::precision::{BenchmarkScene, Family, MeasuredMethod};
 use crate::report::layout::capital;
 use crate::report::{AxisSpec, Figure, Ink, Legend, Marker, Plot, Series, Stroke};
 use crate::units::notation::typeset;
+use vibro_math::sort_by_number;
 
 /// Markers of methods, in turn.
 const MARKERS: [Marker; 6] = {
@@ -265,7 +266,7 @@ fn error(m: &MeasuredMethod) -> Option<f64> {
 fn stairs(scene: &BenchmarkScene, edge: f64, last: f64) -> (Vec<f64>, Vec<f64>) {
     let members = scene.methods.iter().filter(|m| m.front);
     let mut front: Vec<(f64, f64)> = members.filter_map(|m| Some((seconds(m), error(m)?))).collect();
-    front.sort_by(|a, b| a.0.total_cmp(&b.0));
+    sort_by_number(&mut front, |a| a.0);
     let (mut x, mut y, mut above) = (Vec::new(), Vec::new(), edge);
     for (time, error) in front {
         x.extend([time, time]);

@@ -7,6 +7,7 @@ use crate::record::{Direction, Finding, Sweep};
 use crate::units::notation::significant;
 use std::collections::BTreeSet;
 use std::path::PathBuf;
+use vibro_math::sort_by_number;
 
 /// Relative difference in frequency up to which two steps have the same setting of the generator: twice the
 /// 50 ppm of a quartz.
@@ -33,7 +34,7 @@ pub(super) fn sorted(sweep: &Sweep, response: &Response, files: &[PathBuf]) -> O
     if reversals < 2 || LEAST_STEPS_PER_REVERSAL * reversals <= rises.len() {
         return None;
     }
-    order.sort_by(|a, b| frequency(*a).total_cmp(&frequency(*b)));
+    sort_by_number(&mut order, |a| frequency(*a));
     if sweep.direction == Some(Direction::Down) {
         order.reverse();
     }

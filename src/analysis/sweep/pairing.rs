@@ -8,6 +8,7 @@ use crate::record::{Direction, Finding};
 use crate::report::words::About;
 use serde::Serialize;
 use std::mem::take;
+use vibro_math::sort_by_number;
 
 /// A crossing of the curves of both masses.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -48,7 +49,7 @@ pub(super) fn name(responses: &mut [&mut Response]) {
             members.map(|(_, r)| &mut **r).filter(|r| r.mass.is_some() && r.direction.is_some()).collect();
         let curves = members.iter_mut().filter_map(|r| {
             let mut curve = curve(r);
-            curve.sort_by(|a, b| a.0.total_cmp(&b.0));
+            sort_by_number(&mut curve, |a| a.0);
             let (jumps, resonances) = (take(&mut r.jumps), take(&mut r.resonances));
             Some(NamedCurve { mass: r.mass, direction: r.direction?, curve, jumps, resonances })
         });

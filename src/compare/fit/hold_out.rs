@@ -8,6 +8,7 @@ use crate::model::Parameter;
 use rayon::prelude::*;
 use serde::Serialize;
 use std::ops::RangeInclusive;
+use vibro_math::sort_by_number;
 
 /// Number of steps on each side of a feature that are held out with it, since they would reveal its height.
 const STEPS_BESIDE: usize = 2;
@@ -177,7 +178,7 @@ struct HeldOut {
 fn blocks(data: &Data, responses: &[Response]) -> Vec<HeldOut> {
     let at = |i: &usize| data.steps[*i].frequency;
     let mut used: Vec<usize> = (0..data.steps.len()).filter(|i| data.steps[*i].clear().count() > 0).collect();
-    used.sort_by(|a, b| at(a).total_cmp(&at(b)));
+    sort_by_number(&mut used, |a| at(a));
     let (mut blocks, mut ranges) = (Vec::<HeldOut>::new(), Vec::<(String, RangeInclusive<f64>)>::new());
     for sequence in &data.sequences {
         let own: Vec<usize> = used.iter().copied().filter(|i| sequence.contains(i)).collect();

@@ -13,6 +13,7 @@ use super::{Data, MotionKind, Problem, Setting, SweepStep, Unknown};
 use crate::math::minimise;
 use crate::model::Parameter;
 use rayon::prelude::*;
+use vibro_math::sort_by_number;
 
 /// Widths κ of the search, one after another: at first as large as the relative errors of the starts, up to a
 /// half.
@@ -58,7 +59,7 @@ impl Problem<'_> {
     pub fn search(&self, starts: usize) -> Vec<LocalMinimum> {
         let ranked = |places: Vec<Vec<f64>>| {
             let mut costs: Vec<_> = places.into_par_iter().map(|u| (self.cost(&u), u)).collect();
-            costs.sort_by(|a, b| a.0.total_cmp(&b.0));
+            sort_by_number(&mut costs, |a| a.0);
             costs
         };
         let screened = ranked((1..=SCREENED_PER_START * (starts - 1)).map(|i| self.spread(i)).collect());

@@ -7,6 +7,7 @@ use crate::mean::average;
 use crate::noise;
 use num_complex::Complex64;
 use std::ops::Range;
+use vibro_math::sort_by_number;
 use vibro_record::median;
 
 /// Most sines of one part, steady ones included.
@@ -184,7 +185,7 @@ impl Sines {
         let sizes: Vec<f64> = rest.iter().map(|line| line.norm()).collect();
         let mut tops: Vec<usize> =
             band.clone().filter(|k| sizes[*k] >= sizes[k - 1] && sizes[*k] >= sizes[k + 1]).collect();
-        tops.sort_by(|a, b| sizes[*b].total_cmp(&sizes[*a]));
+        sort_by_number(&mut tops, |a| -sizes[*a]);
         // Rayleigh: the largest of n lines of noise exceeds t standard deviations with a probability of n
         // e^(−t²/2).
         let visible = (2.0 * (band.len().max(1) as f64 / BY_CHANCE).ln()).sqrt();

@@ -4,6 +4,7 @@ use crate::clipping::clipped;
 use crate::mean::average;
 use num_complex::Complex64;
 use std::ops::Range;
+use vibro_math::sort_by_number;
 use vibro_record::{Error, Finding, Result, Scaling, Trace, Window, code, upper_median};
 use vibro_signal::fft::Transform;
 use vibro_signal::spectrum;
@@ -124,7 +125,7 @@ fn strongest(lines: &[f64], among: Range<usize>) -> Result<usize> {
     let tops = (among.start.max(1)..among.end.min(lines.len().saturating_sub(1)))
         .filter(|k| lines[*k] >= lines[k - 1] && lines[*k] >= lines[k + 1]);
     let mut tops: Vec<usize> = tops.collect();
-    tops.sort_by(|a, b| lines[*b].total_cmp(&lines[*a]));
+    sort_by_number(&mut tops, |a| -lines[*a]);
     tops.truncate(MOST);
     let strongest = tops.into_iter().max_by(|a, b| over(a).total_cmp(&over(b)));
     strongest.ok_or_else(|| {

@@ -6,6 +6,7 @@ use crate::Estimate;
 use crate::mean::Mean;
 use serde::Serialize;
 use std::f64::consts::TAU;
+use vibro_math::sort_by_number;
 use vibro_record::code;
 use vibro_record::{Finding, Uncertain};
 
@@ -150,11 +151,11 @@ pub(super) fn groups(
     let mut sides = [true, false].map(|up| {
         (0..impacts.len()).filter(|i| (impacts[*i].after > impacts[*i].before) == up).collect::<Vec<_>>()
     });
-    sides.sort_by(|a, b| strength(b).total_cmp(&strength(a)));
+    sort_by_number(&mut sides, |a| -strength(a));
     let mut members: Vec<(bool, Vec<usize>)> = Vec::new();
     for (front, side) in [true, false].into_iter().zip(sides).filter(|(_, side)| !side.is_empty()) {
         let mut parts = by_phase(impacts, side, turns);
-        parts.sort_by(|a, b| strength(b).total_cmp(&strength(a)));
+        sort_by_number(&mut parts, |a| -strength(a));
         members.extend(parts.into_iter().map(|part| (front, part)));
     }
     for (number, (_, own)) in members.iter().enumerate() {
@@ -183,10 +184,10 @@ fn by_phase(impacts: &[Impact], own: Vec<usize>, turns: usize) -> Vec<Vec<usize>
         return vec![own];
     }
     let mut round = own.clone();
-    round.sort_by(|a, b| impacts[*a].phase.total_cmp(&impacts[*b].phase));
+    sort_by_number(&mut round, |a| impacts[*a].phase);
     let phase = |k: usize| impacts[round[k % round.len()]].phase + (k / round.len()) as f64;
     let mut gaps: Vec<(f64, usize)> = (0..round.len()).map(|k| (phase(k + 1) - phase(k), k + 1)).collect();
-    gaps.sort_by(|a, b| b.0.total_cmp(&a.0));
+    sort_by_number(&mut gaps, |a| -a.0);
     let inner = gaps.get(a_turn).map_or(0.0, |gap| gap.0);
     if gaps[a_turn - 1].0 < PARTED * inner {
         return vec![own];

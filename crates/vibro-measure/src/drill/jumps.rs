@@ -10,6 +10,7 @@ use super::parabola::{FEWEST, Parabola};
 use super::turns::Turn;
 use super::{Impact, TurnsFrom, turns};
 use crate::residuals::Whiteness;
+use vibro_math::sort_by_number;
 use vibro_record::median;
 
 /// Most impacts in a turn: one at the front and one at the rear, and as many again where a turn holds two
@@ -101,7 +102,7 @@ impl<'a> Jumps<'a> {
         let top = steps.iter().fold(0.0f64, |a, b| a.max(b.abs()));
         let (mut largest, mut disturbed) = (None, false);
         let mut high: Vec<usize> = (0..steps.len()).filter(|k| steps[*k].abs() > PART * top).collect();
-        high.sort_by(|a, b| steps[*a].abs().total_cmp(&steps[*b].abs()));
+        sort_by_number(&mut high, |a| steps[*a].abs());
         let mut tried = 0;
         while let Some(k) = high.pop().filter(|_| tried < most) {
             if !open[k] {
@@ -185,7 +186,7 @@ impl<'a> Jumps<'a> {
     pub fn finish(mut self, rate: f64, edge: f64) -> (Vec<Impact>, Vec<[Vec<f64>; 2]>) {
         let typical = median(&self.largest);
         self.found.retain(|j| j.height() >= PART * typical);
-        self.found.sort_by(|a, b| a.at.total_cmp(&b.at));
+        sort_by_number(&mut self.found, |a| a.at);
         let noise = [0, 1].map(|k| {
             let sides = || self.found.iter().map(|j| &j.sides[k]);
             let variance = sides().map(|s| s.squares).sum::<f64>() / sides().map(|s| s.freedom).sum::<f64>();

@@ -142,11 +142,11 @@ fn chain(events: &[(f64, f64)], period: f64) -> Vec<usize> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use vibro_math::Noise;
+    use vibro_math::{Noise, sort_by_number};
 
     /// Impacts from (instant, jump) at one sample a second.
     fn train(mut of: Vec<(f64, f64)>) -> Result<TurnImpacts> {
-        of.sort_by(|a, b| a.0.total_cmp(&b.0));
+        sort_by_number(&mut of, |a| a.0);
         let impact = |(time, after): (f64, f64)| Impact {
             cycle: 0,
             group: 0,

@@ -2,6 +2,7 @@
 
 use crate::mean::scatter;
 use std::collections::BTreeSet;
+use vibro_math::sort_by_number;
 use vibro_record::median;
 
 /// Longest delay of an echo of a room in s: a path of 14 m.
@@ -71,7 +72,7 @@ fn pairs(times: &[f64], heights: &[f64]) -> Option<Vec<(usize, usize, f64)>> {
             return None;
         }
     }
-    all.sort_by(|a, b| a.2.total_cmp(&b.2));
+    sort_by_number(&mut all, |a| a.2);
     Some(all)
 }
 

@@ -9,6 +9,7 @@ use crate::drill::{Edge, Edges, Numbered, levels};
 use num_complex::Complex64;
 use serde::Serialize;
 use std::f64::consts::TAU;
+use vibro_math::sort_by_number;
 use vibro_record::{Error, Finding, Result, median};
 
 /// Impacts per excitation cycles; 2/2 where impacts come once a cycle, but every second one alike (period
@@ -231,7 +232,7 @@ fn phases(cycles: &[f64], index: &[usize], pattern: PerCycle) -> Vec<Phase> {
         Phase { mean, spread, n }
     };
     let mut phases: Vec<Phase> = (0..pattern.impacts).map(phase).collect();
-    phases.sort_by(|a, b| a.mean.total_cmp(&b.mean));
+    sort_by_number(&mut phases, |a| a.mean);
     phases
 }
 

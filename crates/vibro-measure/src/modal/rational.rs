@@ -9,7 +9,7 @@ use nalgebra::{DMatrix, DVector};
 use num_complex::Complex64;
 use std::cell::RefCell;
 use std::f64::consts::TAU;
-use vibro_math::{Fit, least_squares, minimise};
+use vibro_math::{Fit, least_squares, minimise, sort_by_number};
 use vibro_record::{Error, Result, Window};
 
 /// Modes fitted together.
@@ -325,7 +325,7 @@ pub(super) fn rational(
             Err(error) => failed = error,
         }
     }
-    near.sort_by(|a, b| a.0.total_cmp(&b.0));
+    sort_by_number(&mut near, |a| a.0);
     for (_, p, noise, named) in near {
         match scaled.fit(&p, &noise) {
             Ok(fit) => {
@@ -444,7 +444,7 @@ impl Scaled<'_> {
             (pole, std.map(|s| s * widened))
         };
         let mut found: Vec<(Pole, [f64; 4])> = self.starts.iter().enumerate().map(mode).collect();
-        found.sort_by(|a, b| a.0.frequency.total_cmp(&b.0.frequency));
+        sort_by_number(&mut found, |a| a.0.frequency);
         let (modes, std) = found.into_iter().unzip();
         // Without weights, so that fits with different weights can be compared.
         let sum: f64 = (0..n).map(|i| self.left(p, i).norm_sqr()).sum();

@@ -6,6 +6,7 @@ use super::{Measured, Pole};
 use crate::peaks::local_maxima;
 use crate::residuals::NO_SUPPORT;
 use std::ops::Range;
+use vibro_math::sort_by_number;
 use vibro_record::units::notation::shortest;
 use vibro_record::{Error, Result, Window, median};
 
@@ -45,7 +46,7 @@ pub(super) fn chosen(
     unsupported: &mut Vec<Peak>,
 ) -> Result<Rational> {
     let mut highest = group.peaks.clone();
-    highest.sort_by(|a, b| b.rise.total_cmp(&a.rise));
+    sort_by_number(&mut highest, |a| -a.rise);
     unsupported.extend(highest.split_off(highest.len().min(TOGETHER)));
     let fit = loop {
         group.peaks.clone_from(&highest);
@@ -189,7 +190,7 @@ fn one_more(lines: &Measured, group: &PeakGroup, fit: &Rational, others: &[Pole]
     };
     let places = (0..starts.len()).flat_map(|m| BESIDE_A_MODE.map(|bandwidths| (m, bandwidths)));
     let mut guesses: Vec<(f64, Vec<(f64, f64)>)> = places.filter_map(guess).collect();
-    guesses.sort_by(|a, b| a.0.total_cmp(&b.0));
+    sort_by_number(&mut guesses, |a| a.0);
     let fitted = |(_, starts): (f64, Vec<(f64, f64)>)| {
         let known = starts.len() - 1;
         let more = rational(lines, group.lines.clone(), (&starts, known), others).ok()?;

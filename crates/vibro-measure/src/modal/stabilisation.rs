@@ -5,6 +5,7 @@ use super::Measured;
 use nalgebra::DMatrix;
 use num_complex::Complex64;
 use std::f64::consts::TAU;
+use vibro_math::sort_by_number;
 
 /// Highest order. Each mode takes one pole; modes beyond the band and the noise take the others.
 const MOST: usize = 40;
@@ -75,7 +76,7 @@ pub fn stabilisation(measured: &Measured, band: Option<(f64, f64)>) -> Vec<Order
             let (frequency_stays, damping_stays) = (before().next().is_some(), before().any(same));
             poles.push(OrderedPole { order, frequency: own, zeta, frequency_stays, damping_stays });
         }
-        poles[same_order..].sort_by(|a, b| a.frequency.total_cmp(&b.frequency));
+        sort_by_number(&mut poles[same_order..], |a| a.frequency);
         below = same_order;
     }
     poles

@@ -6,7 +6,7 @@ use crate::converter::{concealed, hidden, rounding};
 use crate::mean::{average, scatter};
 use crate::residuals::{Whiteness, aicc, student};
 use nalgebra::{DMatrix, DVector};
-use vibro_math::{Fit, least_squares};
+use vibro_math::{Fit, least_squares, sort_by_number};
 use vibro_record::{Error, Result};
 
 /// Samples scaled to the pulse: time from its rising flank over its length, value over its height.
@@ -387,7 +387,7 @@ impl Samples<'_> {
             all.min_by(|a, b| a.0.total_cmp(&b.0))
         };
         let mut found: Vec<(f64, Vec<f64>)> = shapes.iter().filter_map(nearest).collect();
-        found.sort_by(|a, b| a.0.total_cmp(&b.0));
+        sort_by_number(&mut found, |a| a.0);
         if found.is_empty() {
             return Err(Error::refused("no first guess of a fit resembles the pulse"));
         }

@@ -3,6 +3,7 @@
 
 use crate::line::interpolate;
 use crate::noise;
+use vibro_math::sort_by_number;
 use vibro_record::{Window, median};
 use vibro_signal::window::line_shape;
 
@@ -47,7 +48,7 @@ impl SteadyLine {
                 seen.extend(clear.map(|(line, _)| (line.position, line.amplitude)));
             }
         }
-        seen.sort_by(|a, b| a.0.total_cmp(&b.0));
+        sort_by_number(&mut seen, |a| a.0);
         let elsewhere =
             |position: f64| excitations.iter().filter(|at| (*at - position).abs() > OWN + 1.0).count();
         let mut found = Vec::new();

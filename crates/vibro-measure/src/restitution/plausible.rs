@@ -2,6 +2,7 @@
 
 use super::pairs::{BestTrain, FallRecord, LARGEST, ODDS, Pairs, Rival, SHADOW};
 use crate::impacts::{QUIETER, Sound};
+use vibro_math::sort_by_number;
 
 /// Most sounds that are used, the loudest: the effort for trains grows as the square of their number.
 const MOST: usize = 128;
@@ -31,7 +32,7 @@ pub struct Plausible {
 /// The most plausible train of two impacts or more; `None` for fewer than two sounds.
 pub fn plausible(sounds: &[Sound], heard: FallRecord) -> Option<Plausible> {
     let mut order: Vec<usize> = (0..sounds.len()).collect();
-    order.sort_by(|a, b| sounds[*b].height.total_cmp(&sounds[*a].height));
+    sort_by_number(&mut order, |a| -sounds[*a].height);
     order.truncate(MOST);
     order.sort_unstable();
     // Sounds at even intervals are a voice, a machine or ringing: bounces are sought among the rest.

@@ -3,6 +3,7 @@
 use super::SpectralOptions;
 use crate::tones::Tone;
 use serde::Serialize;
+use vibro_math::sort_by_number;
 use vibro_record::units::Unit;
 use vibro_record::units::notation;
 use vibro_record::{Axis, Finding, Frf, Grid, Meta, Record, Scaling, Spectrum, Uncertain, Values};
@@ -202,7 +203,7 @@ impl SpectralResult {
     pub fn peaks(&self, most: usize) -> Vec<usize> {
         let listed = |k: &usize| self.clear.get(*k).copied().unwrap_or_else(|| self.is_peak(*k));
         let mut largest: Vec<usize> = (0..self.value.len()).filter(listed).collect();
-        largest.sort_by(|a, b| self.height(*b).total_cmp(&self.height(*a)));
+        sort_by_number(&mut largest, |a| -self.height(*a));
         largest.truncate(most);
         largest.sort_unstable();
         largest

@@ -2,6 +2,7 @@
 //! that are no sines of their own.
 
 use crate::line::interpolate;
+use vibro_math::sort_by_number;
 use vibro_record::Window;
 use vibro_signal::window::line_shape;
 
@@ -17,7 +18,7 @@ pub(super) fn above_skirts(
     window: Window,
     stands_out: impl Fn(usize, f64) -> bool,
 ) -> Vec<usize> {
-    peaks.sort_by(|a, b| powers[*b].total_cmp(&powers[*a]));
+    sort_by_number(&mut peaks, |a| -powers[*a]);
     let mut sines = Vec::new();
     peaks.retain(|k| {
         let skirts = sines

@@ -7,6 +7,7 @@ use super::{Phasor, StepReading};
 use crate::residuals::widened;
 use num_complex::Complex64;
 use std::f64::consts::TAU;
+use vibro_math::sort_by_number;
 
 /// Least growth over its standard uncertainty that counts as seen.
 const SEEN: f64 = 4.0;
@@ -39,7 +40,7 @@ pub(super) fn growth(phasors: &[Complex64], length: f64) -> f64 {
 pub(super) fn without_growth(steps: &mut [StepReading]) {
     let mut all: Vec<(f64, Complex64)> =
         steps.iter().map(|step| (TAU * step.frequency.value, step.ratio.value)).collect();
-    all.sort_by(|a, b| a.0.total_cmp(&b.0));
+    sort_by_number(&mut all, |a| a.0);
     for step in steps.iter_mut().filter(|step| step.growth != 0.0) {
         let own = (TAU * step.frequency.value, step.ratio.value);
         let below = all.iter().rev().find(|(w, _)| *w < own.0 * (1.0 - APART));

@@ -9,6 +9,7 @@ use crate::orbit::check_not_zero;
 use crate::rig::Rig;
 use crate::simulate::Simulation;
 use std::f64::consts::TAU;
+use vibro_math::sort_by_number;
 use vibro_record::{Error, Result};
 
 /// Cycles simulated from each start state.
@@ -58,7 +59,7 @@ pub fn search(rig: &Rig, sine: &Sine, impacts: u32, cycles: u32) -> Result<Vec<P
         let p = impacts as usize;
         let late = |w: &[Impact]| ((w[p].time - w[0].time) * sine.frequency - f64::from(cycles)).abs();
         let mut near: Vec<&[Impact]> = all.windows(p + 1).filter(|w| late(w) < 0.25).collect();
-        near.sort_by(|a, b| late(a).total_cmp(&late(b)));
+        sort_by_number(&mut near, |w| late(w));
         // The closest returns, and others evenly from the rest.
         let step = (near.len() / (TRIES / 2)).max(1);
         let others = near.iter().skip(TRIES / 2).step_by(step).take(TRIES / 2);
@@ -75,7 +76,7 @@ pub fn search(rig: &Rig, sine: &Sine, impacts: u32, cycles: u32) -> Result<Vec<P
         }
     }
     let largest = |o: &PeriodicOrbit| o.beats.iter().map(|b| b.impulse).fold(0.0, f64::max);
-    found.sort_by(|a, b| largest(b).total_cmp(&largest(a)));
+    sort_by_number(&mut found, |a| -largest(a));
     Ok(found)
 }
 

@@ -3,7 +3,7 @@
 
 use num_complex::Complex64;
 use std::f64::consts::TAU;
-use vibro_math::least_squares;
+use vibro_math::{least_squares, sort_by_number};
 use vibro_record::{Trace, Window};
 use vibro_signal::fft::Transform;
 use vibro_signal::window;
@@ -32,7 +32,7 @@ pub fn second(lines: &[f64]) -> Option<usize> {
     let mut peaks: Vec<usize> = (1..lines.len().saturating_sub(1))
         .filter(|k| lines[*k] > lines[k - 1] && lines[*k] >= lines[k + 1])
         .collect();
-    peaks.sort_by(|a, b| lines[*b].total_cmp(&lines[*a]));
+    sort_by_number(&mut peaks, |a| -lines[*a]);
     peaks.get(1).copied()
 }
 

@@ -5,12 +5,13 @@ use crate::measure::response::{Receptance, Response};
 use crate::report::layout::lettered;
 use crate::report::{AxisSpec, Figure, Plot, Series, Stroke};
 use num_complex::Complex64;
+use vibro_math::sort_by_number;
 
 /// Points of a receptance by rising frequency; a missing value breaks the line at a jump.
 fn points(response: &Response) -> Vec<(f64, Receptance)> {
     let measured = response.points.iter().filter_map(|p| Some((p.excitation, p.receptance?)));
     let mut measured: Vec<(f64, Receptance)> = measured.collect();
-    measured.sort_by(|a, b| a.0.total_cmp(&b.0));
+    sort_by_number(&mut measured, |a| a.0);
     let jumps = |a: f64, b: f64| response.jumps.iter().any(|j| (j.frequency - a) * (j.frequency - b) < 0.0);
     let gap = (f64::NAN, Receptance { re: f64::NAN, im: f64::NAN, std: None });
     let mut broken: Vec<(f64, Receptance)> = Vec::new();

@@ -6,6 +6,7 @@ use crate::report::layout::capital;
 use crate::report::{AxisSpec, Figure, Heatmap, Legend, Plot, Waterfall};
 use crate::units::decibel;
 use ndarray::Axis;
+use vibro_math::sort_by_number;
 
 /// Reference of levels in SI units: 1 µm, 1 µm/s, …
 const REFERENCE: f64 = 1e-6;
@@ -31,7 +32,7 @@ pub fn waterfall(matrix: &Matrix, fmax: Option<f64>) -> Result<Figure> {
 /// If the matrix and its axes do not fit, or `fmax` is not above the cut-off.
 pub fn map(matrix: &Matrix, fmax: Option<f64>) -> Result<Figure> {
     let mut order: Vec<usize> = (0..matrix.excitation.len()).collect();
-    order.sort_by(|a, b| matrix.excitation[*a].total_cmp(&matrix.excitation[*b]));
+    sort_by_number(&mut order, |a| matrix.excitation[*a]);
     // A map has one row a position: of repeated excitations the first stays.
     order.dedup_by(|a, b| matrix.excitation[*a] <= matrix.excitation[*b]);
     let ShownRange { low, high, left_out } = shown(matrix, fmax, SHOWN_PART_IN_COLOUR)?;
