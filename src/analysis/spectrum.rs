@@ -11,7 +11,7 @@ use crate::campaign::{Campaign, Entry, KeyRange, channel};
 use crate::error::{Error, Result};
 use crate::measure::spectral::{Lines, Method, SpectralOptions, SpectralResult, spectral, stored};
 use crate::read::Header;
-use crate::record::{Scaling, Traces, Window, find_channel, shown};
+use crate::record::{Scaling, Traces, Window, find_channel, shown, sort_by_number};
 use crate::report::files::Names;
 use crate::report::layout::{headed, table};
 use crate::report::{Cell, Table, files};
@@ -19,7 +19,6 @@ use crate::signal::transfer::Estimator;
 use serde::Deserialize;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
-use vibro_math::sort_by_number;
 
 /// How a spectrum is taken, or the function of two channels.
 #[derive(Debug, Clone, Default, Deserialize)]

@@ -2,9 +2,8 @@
 
 use crate::error::{Error, Result};
 use crate::measure::response::{Response, ResponsePoint};
-use crate::record::{Finding, median};
+use crate::record::{Finding, median, sort_by_number};
 use crate::units::notation::significant;
-use vibro_math::sort_by_number;
 
 /// Force amplitude over excitation frequency.
 #[derive(Debug, Clone, PartialEq)]

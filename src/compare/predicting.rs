@@ -8,9 +8,8 @@ use crate::error::{Error, Result};
 use crate::measure::response::{Response, ResponsePoint};
 use crate::model::ladder::{self, Choice, Model, Need, Question, Stretch, choose_over};
 use crate::model::{ContactKeys, Excitation, Law, Observable, Rig, Scene, Sine};
-use crate::record::{Direction, Finding};
+use crate::record::{Direction, Finding, sort_by_number};
 use serde::Serialize;
-use vibro_math::sort_by_number;
 
 /// One sweep to be compared with the model.
 pub(super) struct Swept<'a> {

@@ -9,11 +9,10 @@ use crate::analysis::tone::Strongest;
 use crate::analysis::{self, AnswerCache, file_name, in_order};
 use crate::campaign::Reading;
 use crate::read::{Folder, Header, plain};
-use crate::record::{Finding, Record};
+use crate::record::{Finding, Record, sort_by_number};
 use rayon::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
-use vibro_math::sort_by_number;
 
 /// Largest relative difference in number of samples between records of one sweep. A person or a timer stops
 /// each of them.

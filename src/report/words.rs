@@ -17,13 +17,12 @@
 //! | `[refractory]` | a setting: `--refractory` for the command, `refractory` for a campaign |
 //! | `<, at {time s}>` | left out where the fact is missing |
 
-use crate::record::{Fact, Finding, Severity};
+use crate::record::{Fact, Finding, Severity, sort_by_number};
 use crate::units::notation::{estimate, quantity, significant};
 use serde_json::{Map, Value, json};
 use std::borrow::Cow;
 use std::collections::HashMap;
 use std::sync::LazyLock;
-use vibro_math::sort_by_number;
 
 /// The sentence of each code, as `docs/findings.md` lists them.
 static SENTENCES: LazyLock<HashMap<&str, &str>> = LazyLock::new(|| {

@@ -8,7 +8,7 @@ use crate::{
 };
 use ndarray::ArrayRef2;
 use serde::{Deserialize, Serialize};
-use vibro_record::Result;
+use vibro_record::{Result, sort_by_number};
 
 /// Space in points for numbers and a name on either side, before their widths are known.
 const SIDE: f64 = 34.0;
@@ -60,7 +60,7 @@ impl Waterfall {
             .filter(|(e, _)| e.is_finite())
             .map(|(e, row)| (*e, row.to_vec()))
             .collect();
-        rows.sort_by(|a, b| a.0.total_cmp(&b.0));
+        sort_by_number(&mut rows, |row| row.0);
         let (frequency, record) = (frequency.to_vec(), String::new());
         Ok(Waterfall { x: AxisSpec::frequency(), height, frequency, rows, record })
     }

@@ -2,7 +2,7 @@
 
 use super::jump::{Jump, Point, known};
 use std::collections::BTreeMap;
-use vibro_math::sort_by_number;
+use vibro_record::sort_by_number;
 
 /// Two points of a curve, and their weights in its interpolated logarithm.
 type Between = [(usize, f64); 2];

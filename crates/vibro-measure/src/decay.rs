@@ -18,9 +18,7 @@ use sines::{ENOUGH, MOST, STEADY, SURE, Sines, decays};
 use std::f64::consts::TAU;
 use std::ops::Range;
 use usable::{Usable, usable};
-use vibro_math::sort_by_number;
-use vibro_record::code;
-use vibro_record::{Doubt, Error, Finding, Result, Trace, Uncertain};
+use vibro_record::{Doubt, Error, Finding, Result, Trace, Uncertain, code, sort_by_number};
 
 /// Least amplitude of a steady line that is reported, over the strongest amplitude.
 const SEEN: f64 = 0.01;

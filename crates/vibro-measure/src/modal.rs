@@ -26,8 +26,7 @@ use peak::Peak;
 use rational::{Rational, rational};
 use report::Candidate;
 use selection::{PeakGroup, averaging, chosen, complete, groups, together};
-use vibro_math::sort_by_number;
-use vibro_record::{Error, Finding, Result};
+use vibro_record::{Error, Finding, Result, sort_by_number};
 
 /// Peaks and the modes that were fitted to them.
 type Fitted = (PeakGroup, Rational);

@@ -5,9 +5,8 @@ use super::jump::{Jump, Point, SIGMA, differ, echo, jumps, known};
 use super::peaks::{Maximum, Vertex, apex, local_maxima};
 use num_complex::Complex64;
 use serde::Serialize;
-use vibro_math::sort_by_number;
 
-use vibro_record::{Direction, uncertain};
+use vibro_record::{Direction, sort_by_number, uncertain};
 
 /// A maximum or minimum of a response curve.
 #[derive(Debug, Clone, PartialEq, Serialize)]

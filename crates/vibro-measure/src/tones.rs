@@ -18,9 +18,8 @@ use left::Left;
 use nalgebra::{DMatrix, DVector, RowVector3};
 use serde::Serialize;
 use std::f64::consts::{PI, TAU};
-use vibro_math::sort_by_number;
 use vibro_record::units::notation::quantity;
-use vibro_record::{Error, Finding, Result, Scaling, Trace, Window, uncertain};
+use vibro_record::{Error, Finding, Result, Scaling, Trace, Window, sort_by_number, uncertain};
 use vibro_signal::spectrum;
 
 /// Most sines of one record.

@@ -8,8 +8,8 @@ use super::rig::Rig;
 use super::scales;
 use super::steady::NoImpact;
 use serde::Serialize;
-use vibro_math::{sort_by_number, try_bisected};
-use vibro_record::{Error, Result};
+use vibro_math::try_bisected;
+use vibro_record::{Error, Result, sort_by_number};
 
 /// The most frequencies of a response.
 pub const MOST_POINTS: usize = 1_000_000;

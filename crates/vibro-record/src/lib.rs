@@ -46,7 +46,7 @@ pub use finding::{Estimate, Fact, Finding, Severity};
 pub use kind::{Kind, without_unit};
 pub use meta::{ADDED_DECAY, AVERAGED_WITH, FROM_BLOWS, Meta, Step};
 pub use near::{nearest, pattern};
-pub use order::{median, quantile, upper_median};
+pub use order::{median, quantile, sort_by_number, upper_median};
 pub use resample::evened;
 pub use shown::{is_unprintable, shown, typed};
 pub use spectrum::{Frf, Scaling, Spectrum, Values};

@@ -1,12 +1,11 @@
 //! Frequency response functions: magnitude and phase with the fitted modes.
 
 use crate::measure::modal::{Measured, Mode, OrderedPole};
-use crate::record::Meta;
+use crate::record::{Meta, sort_by_number};
 use crate::report::layout::{capital, lettered};
 use crate::report::{AxisSpec, Figure, Ink, Marker, Plot, Series, Stroke};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
-use vibro_math::sort_by_number;
 
 /// Most spectral lines that are drawn as dots; more are drawn as a curve.
 const DOTS: usize = 150;

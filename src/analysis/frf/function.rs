@@ -5,10 +5,9 @@ use crate::campaign::Campaign;
 use crate::error::{Error, Result};
 use crate::measure::modal::Measured;
 use crate::measure::response::{Response, ResponseOptions};
-use crate::record::{Finding, Meta, Record, upper_median};
+use crate::record::{Finding, Meta, Record, sort_by_number, upper_median};
 use crate::units::{Quantity, Unit};
 use num_complex::Complex64;
-use vibro_math::sort_by_number;
 
 /// A frequency response function, ready for the search for modes.
 #[derive(Debug, Clone)]

@@ -2,10 +2,10 @@
 
 use crate::figure::Shape;
 use crate::precision::{BenchmarkScene, Family, MeasuredMethod};
+use crate::record::sort_by_number;
 use crate::report::layout::capital;
 use crate::report::{AxisSpec, Figure, Ink, Legend, Marker, Plot, Series, Stroke};
 use crate::units::notation::typeset;
-use vibro_math::sort_by_number;
 
 /// Markers of methods, in turn.
 const MARKERS: [Marker; 6] = {

@@ -3,11 +3,10 @@
 use crate::analysis::named_file::few;
 use crate::analysis::source::file_name;
 use crate::measure::response::Response;
-use crate::record::{Direction, Finding, Sweep};
+use crate::record::{Direction, Finding, Sweep, sort_by_number};
 use crate::units::notation::significant;
 use std::collections::BTreeSet;
 use std::path::PathBuf;
-use vibro_math::sort_by_number;
 
 /// Relative difference in frequency up to which two steps have the same setting of the generator: twice the
 /// 50 ppm of a quartz.

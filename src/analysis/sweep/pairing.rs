@@ -4,11 +4,10 @@ use crate::compare::{Forcing, levels};
 use crate::measure::crossing::crossings;
 use crate::measure::resonance::{NamedCurve, deepest, name_modes};
 use crate::measure::response::Response;
-use crate::record::{Direction, Finding};
+use crate::record::{Direction, Finding, sort_by_number};
 use crate::report::words::About;
 use serde::Serialize;
 use std::mem::take;
-use vibro_math::sort_by_number;
 
 /// A crossing of the curves of both masses.
 #[derive(Debug, Clone, PartialEq, Serialize)]

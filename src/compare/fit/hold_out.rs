@@ -5,10 +5,10 @@ use super::{Converged, Data, MotionKind, Problem, Setting, assigned};
 use crate::measure::residuals::aicc;
 use crate::measure::response::Response;
 use crate::model::Parameter;
+use crate::record::sort_by_number;
 use rayon::prelude::*;
 use serde::Serialize;
 use std::ops::RangeInclusive;
-use vibro_math::sort_by_number;
 
 /// Number of steps on each side of a feature that are held out with it, since they would reveal its height.
 const STEPS_BESIDE: usize = 2;

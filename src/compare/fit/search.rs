@@ -12,8 +12,8 @@
 use super::{Data, MotionKind, Problem, Setting, SweepStep, Unknown};
 use crate::math::minimise;
 use crate::model::Parameter;
+use crate::record::sort_by_number;
 use rayon::prelude::*;
-use vibro_math::sort_by_number;
 
 /// Widths κ of the search, one after another: at first as large as the relative errors of the starts, up to a
 /// half.

@@ -4,7 +4,7 @@
 use super::description::Slot;
 use super::segment::Object;
 use std::collections::BTreeSet;
-use vibro_record::Values;
+use vibro_record::{Values, sort_by_number};
 
 /// Input number that means the raw values.
 const RAW: u32 = u32::MAX;
@@ -120,7 +120,7 @@ impl<'a> Scales<'a> {
             "Table" => {
                 let (from, to) = (list("Table_Pre_Scaled_Values")?, list("Table_Scaled_Values")?);
                 let mut table: Vec<(f64, f64)> = from.into_iter().zip(to).collect();
-                table.sort_by(|a, b| a.0.total_cmp(&b.0));
+                sort_by_number(&mut table, |row| row.0);
                 if table.len() < 2 || table.windows(2).any(|w| w[0].0 == w[1].0) {
                     return Err(missing("a table that rises"));
                 }

@@ -7,8 +7,7 @@ use crate::mean::average;
 use crate::noise;
 use num_complex::Complex64;
 use std::ops::Range;
-use vibro_math::sort_by_number;
-use vibro_record::median;
+use vibro_record::{median, sort_by_number};
 
 /// Most sines of one part, steady ones included.
 pub(super) const MOST: usize = 12;

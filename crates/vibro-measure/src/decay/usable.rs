@@ -4,8 +4,7 @@ use crate::clipping::clipped;
 use crate::mean::average;
 use num_complex::Complex64;
 use std::ops::Range;
-use vibro_math::sort_by_number;
-use vibro_record::{Error, Finding, Result, Scaling, Trace, Window, code, upper_median};
+use vibro_record::{Error, Finding, Result, Scaling, Trace, Window, code, sort_by_number, upper_median};
 use vibro_signal::fft::Transform;
 use vibro_signal::spectrum;
 

@@ -6,9 +6,7 @@ use crate::Estimate;
 use crate::mean::Mean;
 use serde::Serialize;
 use std::f64::consts::TAU;
-use vibro_math::sort_by_number;
-use vibro_record::code;
-use vibro_record::{Finding, Uncertain};
+use vibro_record::{Finding, Uncertain, code, sort_by_number};
 
 /// Largest bias of a mean, in standard uncertainties, that is ignored: ±1.96 of them then still cover 94 %.
 const BIAS: f64 = 0.3;

@@ -10,8 +10,7 @@ use super::parabola::{FEWEST, Parabola};
 use super::turns::Turn;
 use super::{Impact, TurnsFrom, turns};
 use crate::residuals::Whiteness;
-use vibro_math::sort_by_number;
-use vibro_record::median;
+use vibro_record::{median, sort_by_number};
 
 /// Most impacts in a turn: one at the front and one at the rear, and as many again where a turn holds two
 /// cycles of the machine.

@@ -142,7 +142,8 @@ fn chain(events: &[(f64, f64)], period: f64) -> Vec<usize> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use vibro_math::{Noise, sort_by_number};
+    use vibro_math::Noise;
+    use vibro_record::sort_by_number;
 
     /// Impacts from (instant, jump) at one sample a second.
     fn train(mut of: Vec<(f64, f64)>) -> Result<TurnImpacts> {

@@ -2,8 +2,7 @@
 
 use crate::mean::scatter;
 use std::collections::BTreeSet;
-use vibro_math::sort_by_number;
-use vibro_record::median;
+use vibro_record::{median, sort_by_number};
 
 /// Longest delay of an echo of a room in s: a path of 14 m.
 const LONGEST: f64 = 0.04;

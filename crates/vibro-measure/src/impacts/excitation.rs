@@ -9,8 +9,7 @@ use crate::drill::{Edge, Edges, Numbered, levels};
 use num_complex::Complex64;
 use serde::Serialize;
 use std::f64::consts::TAU;
-use vibro_math::sort_by_number;
-use vibro_record::{Error, Finding, Result, median};
+use vibro_record::{Error, Finding, Result, median, sort_by_number};
 
 /// Impacts per excitation cycles; 2/2 where impacts come once a cycle, but every second one alike (period
 /// doubling).

@@ -9,8 +9,8 @@ use nalgebra::{DMatrix, DVector};
 use num_complex::Complex64;
 use std::cell::RefCell;
 use std::f64::consts::TAU;
-use vibro_math::{Fit, least_squares, minimise, sort_by_number};
-use vibro_record::{Error, Result, Window};
+use vibro_math::{Fit, least_squares, minimise};
+use vibro_record::{Error, Result, Window, sort_by_number};
 
 /// Modes fitted together.
 pub(super) struct Rational {

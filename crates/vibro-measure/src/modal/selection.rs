@@ -6,9 +6,8 @@ use super::{Measured, Pole};
 use crate::peaks::local_maxima;
 use crate::residuals::NO_SUPPORT;
 use std::ops::Range;
-use vibro_math::sort_by_number;
 use vibro_record::units::notation::shortest;
-use vibro_record::{Error, Result, Window, median};
+use vibro_record::{Error, Result, Window, median, sort_by_number};
 
 /// Most modes in one group: with more, the parameters outgrow the lines.
 const TOGETHER: usize = 6;

@@ -5,7 +5,7 @@ use super::Measured;
 use nalgebra::DMatrix;
 use num_complex::Complex64;
 use std::f64::consts::TAU;
-use vibro_math::sort_by_number;
+use vibro_record::sort_by_number;
 
 /// Highest order. Each mode takes one pole; modes beyond the band and the noise take the others.
 const MOST: usize = 40;

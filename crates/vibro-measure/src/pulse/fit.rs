@@ -6,8 +6,8 @@ use crate::converter::{concealed, hidden, rounding};
 use crate::mean::{average, scatter};
 use crate::residuals::{Whiteness, aicc, student};
 use nalgebra::{DMatrix, DVector};
-use vibro_math::{Fit, least_squares, sort_by_number};
-use vibro_record::{Error, Result};
+use vibro_math::{Fit, least_squares};
+use vibro_record::{Error, Result, sort_by_number};
 
 /// Samples scaled to the pulse: time from its rising flank over its length, value over its height.
 pub(super) struct Samples<'a> {

@@ -3,8 +3,7 @@
 
 use crate::line::interpolate;
 use crate::noise;
-use vibro_math::sort_by_number;
-use vibro_record::{Window, median};
+use vibro_record::{Window, median, sort_by_number};
 use vibro_signal::window::line_shape;
 
 /// Least height of a line over the noise of one component.

@@ -2,7 +2,7 @@
 
 use super::pairs::{BestTrain, FallRecord, LARGEST, ODDS, Pairs, Rival, SHADOW};
 use crate::impacts::{QUIETER, Sound};
-use vibro_math::sort_by_number;
+use vibro_record::sort_by_number;
 
 /// Most sounds that are used, the loudest: the effort for trains grows as the square of their number.
 const MOST: usize = 128;

@@ -3,10 +3,11 @@
 use super::SpectralOptions;
 use crate::tones::Tone;
 use serde::Serialize;
-use vibro_math::sort_by_number;
 use vibro_record::units::Unit;
 use vibro_record::units::notation;
-use vibro_record::{Axis, Finding, Frf, Grid, Meta, Record, Scaling, Spectrum, Uncertain, Values};
+use vibro_record::{
+    Axis, Finding, Frf, Grid, Meta, Record, Scaling, Spectrum, Uncertain, Values, sort_by_number,
+};
 use vibro_signal::impact::Blow;
 use vibro_signal::transfer::{Estimator, Transfer};
 

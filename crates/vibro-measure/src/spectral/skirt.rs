@@ -2,8 +2,7 @@
 //! that are no sines of their own.
 
 use crate::line::interpolate;
-use vibro_math::sort_by_number;
-use vibro_record::Window;
+use vibro_record::{Window, sort_by_number};
 use vibro_signal::window::line_shape;
 
 /// Number of the largest peaks whose skirts are counted. Each further peak is checked against all of them,

@@ -7,7 +7,7 @@ use super::{Phasor, StepReading};
 use crate::residuals::widened;
 use num_complex::Complex64;
 use std::f64::consts::TAU;
-use vibro_math::sort_by_number;
+use vibro_record::sort_by_number;
 
 /// Least growth over its standard uncertainty that counts as seen.
 const SEEN: f64 = 4.0;

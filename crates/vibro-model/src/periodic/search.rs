@@ -9,8 +9,7 @@ use crate::orbit::check_not_zero;
 use crate::rig::Rig;
 use crate::simulate::Simulation;
 use std::f64::consts::TAU;
-use vibro_math::sort_by_number;
-use vibro_record::{Error, Result};
+use vibro_record::{Error, Result, sort_by_number};
 
 /// Cycles simulated from each start state.
 const CYCLES: f64 = 200.0;

@@ -3,8 +3,8 @@
 
 use num_complex::Complex64;
 use std::f64::consts::TAU;
-use vibro_math::{least_squares, sort_by_number};
-use vibro_record::{Trace, Window};
+use vibro_math::least_squares;
+use vibro_record::{Trace, Window, sort_by_number};
 use vibro_signal::fft::Transform;
 use vibro_signal::window;
 

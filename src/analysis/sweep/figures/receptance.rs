@@ -2,10 +2,10 @@
 
 use super::response::{look, rank};
 use crate::measure::response::{Receptance, Response};
+use crate::record::sort_by_number;
 use crate::report::layout::lettered;
 use crate::report::{AxisSpec, Figure, Plot, Series, Stroke};
 use num_complex::Complex64;
-use vibro_math::sort_by_number;
 
 /// Points of a receptance by rising frequency; a missing value breaks the line at a jump.
 fn points(response: &Response) -> Vec<(f64, Receptance)> {

@@ -2,11 +2,11 @@
 
 use crate::error::{Error, Result};
 use crate::measure::waterfall::Waterfall as Matrix;
+use crate::record::sort_by_number;
 use crate::report::layout::capital;
 use crate::report::{AxisSpec, Figure, Heatmap, Legend, Plot, Waterfall};
 use crate::units::decibel;
 use ndarray::Axis;
-use vibro_math::sort_by_number;
 
 /// Reference of levels in SI units: 1 µm, 1 µm/s, …
 const REFERENCE: f64 = 1e-6;
