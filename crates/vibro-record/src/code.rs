@@ -14,6 +14,8 @@ pub const RATE_FROM_HEAD: &str = "rate-from-head";
 pub const SCALING_UNSAID: &str = "scaling-unsaid";
 /// The unit of a record is not stated.
 pub const UNIT_UNSAID: &str = "unit-unsaid";
+/// Full scale is taken from a comment in the file.
+pub const FULL_SCALE_BY_COMMENT: &str = "full-scale-by-comment";
 /// The axis of a record is not stated.
 pub const ABSCISSA_UNSAID: &str = "abscissa-unsaid";
 /// The head states a scale that is not applied; the finding is removed if the user states a calibration.
