@@ -14,7 +14,11 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// Doubts that no case here provokes, each with the reason.
-const NOT_PROVOKED: [(&str, &str); 14] = [
+const NOT_PROVOKED: [(&str, &str); 18] = [
+    ("no-closing-line", "a damaged binary file: read/uff_damage.rs; all doubts of readers are one function"),
+    ("step-changed", "as no-closing-line: vibro-io/src/tdms/tests.rs"),
+    ("sheet-in-percent", "as no-closing-line: vibro-io/src/packed/tests.rs"),
+    ("decibels-overruled", "as no-closing-line, of a sweep: read/sweep_units.rs"),
     (
         "pulse-low-pass-missing",
         "another contact explains a smooth onset: pulse/tests.rs has one that none does",
