@@ -223,7 +223,8 @@ impl Inventory {
                 // Only of a file with uneven times is the setting known that helps.
                 Err(error) if error.settings().any(|key| key == "resample") => {
                     let settings = error.settings_with(|key, value| Voice::Command.set(key, value));
-                    format!("{}; `vibro init FOLDER {}` interpolates them", short(&error), settings.join(" "))
+                    let settings = settings.join(" ");
+                    format!("its samples are unevenly spaced; vibro init FOLDER {settings} interpolates them")
                 }
                 Err(error) => short(&error),
             };

@@ -1,5 +1,24 @@
 //! Codes of findings that one part of the program adds and another part searches for.
 
+/// Doubts of the readers, about the times, the unit or single values of a record.
+pub const READER_DOUBTS: [&str; 15] = [
+    "last-number-cut-off",
+    "no-closing-line",
+    "decibels-overruled",
+    "step-changed",
+    AXIS_ROUNDED_OR_LOST,
+    "axis-clock-minutes",
+    "rate-decimated",
+    "rates-differ",
+    "head-step-assumed",
+    "digits-may-be-grouped",
+    "unit-head-differs",
+    "unit-row-differs",
+    "sheet-in-percent",
+    "missing-marked",
+    "filled-with-zeros",
+];
+
 /// Samples are missing in a record.
 pub const SAMPLES_LOST: &str = "samples-lost";
 /// Times fit an even step, but also a shorter step with lost samples.

@@ -61,20 +61,21 @@ fn readers(folder: &Path) -> Vec<Case> {
     };
     let values: Vec<f64> = (0..3000).map(&mut value).collect();
     let text = |name: &'static str, head: &str, row: &dyn Fn(usize, f64) -> String, codes| {
+        let command = if name == "a missing value" { "spectrum --tones 1" } else { "decay" };
         let rows: Vec<String> = values.iter().enumerate().map(|(i, v)| row(i, *v)).collect();
         let path = folder.join(format!("{}.csv", name.replace(' ', "_")));
         std::fs::write(&path, format!("{head}\n{}", rows.concat())).unwrap();
-        case(name, "decay", Some(&path), codes)
+        case(name, command, Some(&path), codes)
     };
     let timed = |i: usize, v: f64| format!("{:.3},{v:.8}\n", i as f64 * 1e-3);
     let alone = |_: usize, v: f64| format!("{v:.8}\n");
-    let (marked, filled) = (
-        |i: usize, v: f64| timed(i, if i == 2000 { -9999.0 } else { v }),
-        |i: usize, v: f64| timed(i, if i < 2900 { v } else { 0.0 }),
-    );
+    let filled = |i: usize, v: f64| timed(i, if i < 2900 { v } else { 0.0 });
+    // A steady sine that stands out of the mark's even spectrum.
+    let steady = |i: usize| 90.0 * (TAU * 0.02 * i as f64).sin();
+    let marked = |i: usize, _: f64| timed(i, if i == 2000 { 999.0 } else { steady(i) });
     let lost = |i: usize, v: f64| if i % 50 == 9 { String::new() } else { timed(i, v) };
     let minutes = |i: usize, v: f64| format!("{}:{:02},{v:.8}\n", i / 60, i % 60);
-    let grouped = |i: usize, v: f64| format!("{:.4};{:.3}\n", i as f64 * 1e-3, 100.0 + 100.0 * v);
+    let grouped = |_: usize, v: f64| format!("{:.3}\n", 300.0 + 100.0 * v);
     let cut = |i: usize, v: f64| if i < 2999 { timed(i, v) } else { "2.999,0.0".to_owned() };
     vec![
         text("lost or rounded", "time [s],a [m]", &lost, &["axis-rounded-or-lost"]),
@@ -82,7 +83,7 @@ fn readers(folder: &Path) -> Vec<Case> {
         text("decimated", "Sampling rate: 1000 Hz\nevery 8th sample\na [m]", &alone, &["rate-decimated"]),
         text("two rates", "Sampling rate: 1000 Hz\nfs = 2000 Hz\na [m]", &alone, &["rates-differ"]),
         text("step without unit", "Sample period: 500\na [m]", &alone, &["head-step-assumed"]),
-        text("grouped digits", "time [s];a [m]", &grouped, &["digits-may-be-grouped"]),
+        text("grouped digits", "Sampling rate: 1000 Hz\na [m]", &grouped, &["digits-may-be-grouped"]),
         text("unit of the head", "Unit: mm\ntime [s],a [m]", &timed, &["unit-head-differs"]),
         text("unit of the row", "time [s],a [mm]\n[s],[m]", &timed, &["unit-row-differs"]),
         text("a missing value", "time [s],a [m]", &marked, &["missing-marked"]),

@@ -72,10 +72,9 @@ pub(super) struct Runs {
 
 impl Runs {
     /// Sweeps motions that `make` creates from an excitation, a state and a phase (rad), over the force at
-    /// `frequency` (Hz) if that is given. They begin at `start`, state and phase, and again at other phases; of
-    /// these, one that fails is left out. If at
-    /// most half of the points are regular, no other phase is tried: irregular motions cannot be told
-    /// apart.
+    /// `frequency` (Hz) if that is given. They begin at the stated state and phase, and again at later
+    /// phases, of which one that fails is left out. If at most half of the points are regular, no other phase
+    /// is tried: irregular motions cannot be told apart.
     pub fn of(
         make: impl Fn(&Excitation, State, f64) -> Result<Moving> + Sync,
         (state, phase): (State, f64),
