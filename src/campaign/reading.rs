@@ -46,6 +46,9 @@ pub struct Reading {
     pub resample: Option<f64>,
 }
 
+/// Name or number of a channel, and its unit.
+type ChannelUnit = (String, Unit);
+
 /// Which record of a file is meant, and its calibration.
 #[derive(Debug, Clone, Default, Deserialize)]
 #[serde(default, deny_unknown_fields)]
@@ -113,7 +116,7 @@ impl Reading {
     }
 
     /// The unit for all values, and those of single channels, each with the channel's name or number.
-    fn units(&self) -> Result<(Option<Unit>, Vec<(String, Unit)>)> {
+    fn units(&self) -> Result<(Option<Unit>, Vec<ChannelUnit>)> {
         let parsed = |text: &str| {
             let expected = "a unit such as m, mm/s, g, m/s², V, (m/s²)/N, dB re 1 g";
             let unknown =

@@ -61,12 +61,12 @@ impl Options {
     pub(crate) fn stated_units<'a>(
         &self,
         path: &Path,
-        all: impl Iterator<Item = &'a Meta> + Clone,
+        all: impl Iterator<Item = &'a Meta>,
     ) -> Result<Vec<(usize, &Unit)>> {
+        let all: Vec<(&str, &str)> = all.map(Meta::called).collect();
         let mut found: Vec<(usize, &Unit)> = Vec::new();
         for (name, unit) in &self.channel_units {
-            let of =
-                find_channel(path, name, all.clone().map(Meta::called)).map_err(|e| e.setting("unit"))?;
+            let of = find_channel(path, name, all.iter().copied()).map_err(|e| e.setting("unit"))?;
             if let Some((_, other)) = found.iter().find(|(channel, _)| *channel == of) {
                 let two = format!("two units of channel {name:?}, {other} and {unit}");
                 return Err(Error::usage(two, "one").hint("leave one out").setting("unit"));

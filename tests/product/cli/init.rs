@@ -210,7 +210,7 @@ fn a_folder_without_recordings_is_named_and_a_rate_can_be_stated() {
 #[test]
 fn of_uneven_samples_the_rate_that_interpolates_is_named_and_taken() {
     let root = tempfile::tempdir().unwrap();
-    let mut noise = vibroimpact::math::Noise::new(7);
+    let mut noise = Noise::new(7);
     let (mut table, mut t) = ("time [s],a [m/s²]\n".to_owned(), 0.0);
     for _ in 0..3000 {
         t += 1e-3 * noise.between(0.3, 1.7);
