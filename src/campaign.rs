@@ -48,9 +48,14 @@ use crate::model::{ContactKeys, Parameter, Rig, Scene};
 use crate::read::Folder;
 use crate::record::{Finding, shown};
 use serde::Deserialize;
+use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use toml::de::DeTable;
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+/// The table of curved springs, which only a rig's own file may have.
+const SPRINGS: &str = "springs";
 
 /// Folder for results where the file names no folder.
 const RESULTS: &str = "results";
@@ -152,6 +157,18 @@ impl Campaign {
             let rig = Error::input(Place::file(path), "this is a rig, not a campaign", expected);
             let hint = format!("`vibro model orbit {}` tells what the rig does", shown(path));
             return Err(rig.hint(format!("{hint}; docs/campaign.md shows a campaign")));
+        }
+        if let Some((key, springs)) = table.get_key_value(SPRINGS) {
+            let values = springs.get_ref().as_table().into_iter().flatten();
+            let set = |(key, value): (&Spanned<Cow<'_, str>>, &Spanned<DeValue<'_>>)| {
+                format!(" --set {SPRINGS}.{}={}", key.get_ref(), &text[value.span()])
+            };
+            let springs: String = values.map(set).collect();
+            let hint = "take it out; what curvature changes is told by";
+            let hint = format!("{hint} `vibro model choose --force 0.5 --frequency 11{springs}`");
+            let expected = "straight springs: no model of an overlay has curved ones";
+            let error = Error::usage(format!("[{SPRINGS}] in a campaign"), expected).hint(hint);
+            return Err(error.in_file(path).excerpt(&text, key.span()));
         }
         let of_records = |key: &str| sections.contains(&key);
         let (records, head): (DeTable<'_>, DeTable<'_>) =

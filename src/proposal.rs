@@ -21,6 +21,7 @@ use crate::error::{Error, Place, Result};
 use crate::read::Folder;
 use crate::record::shown;
 use serde::Serialize;
+use serde_json::Value;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
@@ -178,8 +179,9 @@ impl Table {
     /// Adds the settings for reading that `reading` states, if the table has a key for them.
     fn stated(&self, reading: &Reading) -> Table {
         let has = |key| self.rows.iter().any(|row| row.key == key);
-        let takes = |key: &str| has("file") || has("traces") && ["rate", "unit"].contains(&key);
-        let stated = reading.stated().into_iter().filter(|(key, _)| takes(key));
+        let of_traces = |key: &str, value: &Value| key == "rate" || key == "unit" && value.is_string();
+        let takes = |key: &str, value: &Value| has("file") || has("traces") && of_traces(key, value);
+        let stated = reading.stated().into_iter().filter(|(key, value)| takes(key, value));
         stated.fold(self.clone(), |table, (key, value)| table.found(key, value))
     }
 

@@ -13,6 +13,7 @@ use crate::campaign::{Entry, KeyRange};
 use crate::error::Result;
 use crate::measure::Estimate;
 use crate::measure::decay::{DecayOptions, DecayResult, decay};
+use crate::record::doubt_with_record;
 use crate::record::units::notation;
 use crate::report::files::Names;
 use crate::report::layout::{pair, table, titled};
@@ -39,7 +40,8 @@ impl OfFile for Keys {
     fn measure(&self, source: &Source<'_>) -> Result<Answer> {
         let mut recording = source.channels(None, BESIDE)?;
         let trace = recording.take_trace(source.channel.channel.as_deref(), source.channel.calibration)?;
-        let found = decay(&trace, &DecayOptions { band: self.band, modes: self.modes })?;
+        let mut found = decay(&trace, &DecayOptions { band: self.band, modes: self.modes })?;
+        doubt_with_record(recording.findings.iter().chain(&trace.meta.findings), &mut found);
         let mut answer = Answer::of(&found)?;
         answer.add("", &found.findings);
         answer.add("", &recording.findings);

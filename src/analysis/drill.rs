@@ -22,8 +22,8 @@ use crate::units::notation::counted;
 use file::Channels;
 use serde::Deserialize;
 use std::path::PathBuf;
-use vibro_record::Finding;
 use vibro_record::units::Quantity;
+use vibro_record::{Finding, doubt_with_record};
 
 /// Where the channels of a drill are, and how they are measured.
 #[derive(Debug, Clone, Default, Deserialize)]
@@ -257,6 +257,7 @@ impl Keys {
         let mut found = drill_each(&record, &options, noise.as_deref(), each)?;
         let twice = Finding::doubt("drill-velocity-scaled-twice").number("sensitivity", options.sensitivity);
         let twice = (is_velocity && options.sensitivity != 1.0).then(|| twice.of(&mut found));
+        doubt_with_record(&channels.findings, &mut found);
         found.findings.splice(..0, channels.findings.into_iter().chain(twice));
         answer(source.name, &found)
     }

@@ -13,7 +13,7 @@ use crate::campaign::{Entry, KeyRange};
 use crate::error::{Error, Hint, Result};
 use crate::measure::impacts::ImpactsOptions;
 use crate::measure::restitution::{Drop, GRAVITY, Measured, Restitution, Train, Velocities, restitution};
-use crate::record::{Doubt, Finding, Trace, shown};
+use crate::record::{Doubt, Finding, Trace, doubt_with_record, shown};
 use crate::report::files::Names;
 use crate::report::layout::{Shown, table};
 use crate::report::words::{About, Voice};
@@ -267,6 +267,7 @@ impl Series {
         let mut found = restitution(&Measured { drop, trains, velocities, contact_time })?;
         let doubts = self.doubts.into_iter().map(|(file, doubt)| (file, doubt.of(&mut found)));
         self.findings.extend(doubts);
+        doubt_with_record(self.findings.iter().map(|(_, found)| found), &mut found);
         let mut answer = Answer::of(&found)?;
         answer.findings = self.findings;
         if !self.records.is_empty() {

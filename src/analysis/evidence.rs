@@ -3,8 +3,9 @@
 use crate::measure::decay::DecayResult;
 use crate::measure::impacts::Impacts;
 use crate::measure::pulse::PulseResult;
-use crate::measure::response::Response;
+use crate::measure::response::{Response, ResponsePoint};
 use crate::measure::restitution::Restitution;
+use crate::record::code::READER_DOUBTS;
 use serde::{Deserialize, Serialize};
 
 /// Numbers of one record by which its kind is judged; times in s.
@@ -26,7 +27,10 @@ pub enum Evidence {
 
 impl From<&Response> for Evidence {
     fn from(response: &Response) -> Evidence {
-        let sure = response.points.iter().filter(|point| point.amplitude.std.is_some()).count();
+        // A doubt of the reader takes the uncertainty of every step.
+        let read_in_doubt = response.findings.iter().any(|found| READER_DOUBTS.contains(&&*found.code));
+        let is_sure = |point: &&ResponsePoint| read_in_doubt || point.amplitude.std.is_some();
+        let sure = response.points.iter().filter(is_sure).count();
         Evidence::Sweep { steps: response.points.len(), sure, jumps: !response.jumps.is_empty() }
     }
 }

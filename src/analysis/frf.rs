@@ -192,7 +192,9 @@ impl Keys {
                 meta.step("calibrate", &[("factor", &factor)]);
                 measured.values.iter_mut().for_each(|v| *v *= factor);
             }
-            Ok(Function::new(meta, measured))
+            let mut all = recording.findings.iter().chain(&meta.findings);
+            let in_doubt = all.any(|found| found.severity() == Severity::Doubt);
+            Ok(Function { in_doubt, ..Function::new(meta, measured) })
         };
         all.into_iter().map(function).collect()
     }

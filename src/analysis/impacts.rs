@@ -11,7 +11,7 @@ use crate::campaign::{Entry, KeyRange, channel};
 use crate::error::{Error, Result};
 use crate::measure::impacts::{Impacts, ImpactsOptions, REGULAR, impacts};
 use crate::read::Reader;
-use crate::record::median;
+use crate::record::{doubt_with_record, median};
 use crate::report::files::Names;
 use crate::report::layout::{pair, table};
 use crate::report::{Cell, Table};
@@ -92,7 +92,8 @@ impl Keys {
             shape: shape.transpose()?,
             complete: self.none_missed,
         };
-        let found = impacts(&trace, &options)?;
+        let mut found = impacts(&trace, &options)?;
+        doubt_with_record(recording.findings.iter().chain(&trace.meta.findings), &mut found);
         let mut answer = Answer::of(&found)?;
         answer.add("", &found.findings);
         answer.add("", &recording.findings);

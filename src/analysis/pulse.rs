@@ -10,6 +10,7 @@ use super::source::Source;
 use crate::campaign::{Entry, KeyRange, LowPass};
 use crate::error::{Error, Result};
 use crate::measure::pulse::{Instrument, PulseOptions, PulseResult, pulse, two_times};
+use crate::record::doubt_with_record;
 use crate::report::files::Names;
 use crate::report::layout::{headed, pair, table, titled};
 use crate::report::{Cell, Table};
@@ -94,7 +95,8 @@ impl Keys {
     pub fn measure(&self, source: &Source<'_>) -> Result<Answer> {
         let recording = source.recording()?;
         let trace = source.trace(&recording)?;
-        let found = pulse(&trace, &self.options()?)?;
+        let mut found = pulse(&trace, &self.options()?)?;
+        doubt_with_record(recording.findings.iter().chain(&trace.meta.findings), &mut found);
         let mut answer = shown(source.name, &found)?;
         answer.add("", &recording.findings);
         answer.add("", &trace.meta.findings);

@@ -11,7 +11,7 @@ use crate::campaign::{Campaign, Entry, KeyRange, channel};
 use crate::error::{Error, Result};
 use crate::measure::spectral::{Lines, Method, SpectralOptions, SpectralResult, spectral, stored};
 use crate::read::Header;
-use crate::record::{Scaling, Traces, Window, find_channel, shown, sort_by_number};
+use crate::record::{Scaling, Traces, Window, doubt_with_record, find_channel, shown, sort_by_number};
 use crate::report::files::Names;
 use crate::report::layout::{headed, table};
 use crate::report::{Cell, Table, files};
@@ -142,7 +142,9 @@ impl Keys {
     /// If the traces allow no answer.
     pub fn lines_of(&self, mut traces: Traces, source: &Source<'_>) -> Result<SpectralResult> {
         let all = traces.frames();
-        spectral(&mut traces, &self.options()?, |done| source.progress.at(done, all))
+        let mut found = spectral(&mut traces, &self.options()?, |done| source.progress.at(done, all))?;
+        doubt_with_record(&traces.findings(), &mut found);
+        Ok(found)
     }
 }
 
@@ -155,6 +157,7 @@ fn stored_lines(source: &Source<'_>, options: &SpectralOptions) -> Result<Spectr
     let all = source.reader()?.from_path(source.path)?;
     let spectrum = all.spectrum(source.channel.channel.as_deref())?;
     let mut found = stored(spectrum, options)?;
+    doubt_with_record(all.findings.iter().chain(&spectrum.meta.findings), &mut found);
     found.findings.extend(all.findings);
     Ok(found)
 }

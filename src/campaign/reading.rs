@@ -1,7 +1,7 @@
 //! Settings for reading a file, where the file does not state them: keys of a campaign and options of the
 //! command line.
 
-use super::value::channel;
+use super::value::{channel, one_or_list, one_or_more};
 use crate::error::{Error, Result};
 use crate::read::{Format, Reader};
 use crate::units::Unit;
@@ -23,8 +23,9 @@ pub struct Reading {
     pub rate: Option<f64>,
     /// Base band in Hz: the values are a spectrum from 0 to it, or a trace sampled at 2.56 times it
     pub base_band: Option<f64>,
-    /// Unit of the values, such as mm/s
-    pub unit: Option<String>,
+    /// Unit of the values, such as mm/s; of one channel NAME=UNIT
+    #[serde(deserialize_with = "one_or_more", serialize_with = "one_or_list")]
+    pub unit: Vec<String>,
     /// Decimal mark, where the file leaves it open: comma or point
     #[cfg_attr(feature = "cli", arg(value_name = "MARK", value_parser = crate::campaign::word::<Decimal>))]
     pub decimal: Option<Decimal>,
@@ -44,6 +45,9 @@ pub struct Reading {
     /// Rate in Hz at which samples of uneven times are interpolated
     pub resample: Option<f64>,
 }
+
+/// Name or number of a channel, and its unit.
+type ChannelUnit = (String, Unit);
 
 /// Which record of a file is meant, and its calibration.
 #[derive(Debug, Clone, Default, Deserialize)]
@@ -100,13 +104,49 @@ impl Reading {
     /// Keys that are stated, with their values.
     pub fn stated(&self) -> Vec<(&'static str, Value)> {
         let Ok(Value::Object(mut all)) = serde_json::to_value(self) else { return Vec::new() };
-        let stated = |key| Some((key, all.remove(key).filter(|v| !v.is_null() && *v != Value::Bool(false))?));
+        let unset =
+            |v: &Value| v.is_null() || *v == Value::Bool(false) || v.as_array().is_some_and(Vec::is_empty);
+        let stated = |key| Some((key, all.remove(key).filter(|v| !unset(v))?));
         Reading::KEYS.into_iter().filter_map(stated).collect()
     }
 
     /// These settings without those of the axis, for files that state their sampling rate or frequencies.
     pub fn untimed(&self) -> Reading {
         Reading { rate: None, base_band: None, span: None, stretch: None, resample: None, ..self.clone() }
+    }
+
+    /// The unit for all values, and those of single channels, each with the channel's name or number.
+    fn units(&self) -> Result<(Option<Unit>, Vec<ChannelUnit>)> {
+        let parsed = |text: &str| {
+            let expected = "a unit such as m, mm/s, g, m/s², V, (m/s²)/N, dB re 1 g";
+            let unknown =
+                || Error::usage(format!("the unit {text:?} is not known"), expected).setting("unit");
+            Unit::parse_or_level(text).ok_or_else(unknown)
+        };
+        let (mut of_channels, mut of_all) = (Vec::new(), None);
+        for text in &self.unit {
+            if let Some((channel, unit)) = text.rsplit_once('=') {
+                of_channels.push((channel.to_owned(), parsed(unit)?));
+            } else if let Some(other) = of_all.replace(parsed(text)?) {
+                let found = format!("two units for all channels, {other} and {text}");
+                return Err(Error::usage(found, "one, or one a channel").hint("NAME=UNIT").setting("unit"));
+            }
+        }
+        Ok((of_all, of_channels))
+    }
+
+    /// The unit of a file of one channel.
+    ///
+    /// # Errors
+    /// If the unit of a channel is stated by its name, or several units are.
+    #[cfg(feature = "cli")]
+    pub fn only_unit(&self) -> Result<Option<String>> {
+        match self.unit.as_slice() {
+            [] => Ok(None),
+            [unit] if !unit.contains('=') => Ok(Some(unit.clone())),
+            all => Err(Error::usage(format!("the unit {}", all.join(", ")), "one unit for all values")
+                .setting("unit")),
+        }
     }
 
     /// A reader with these settings.
@@ -120,16 +160,14 @@ impl Reading {
         let format = |name: &String| {
             Format::from_name(name).ok_or_else(|| unknown("format", name, &Format::names().join(", ")))
         };
-        let unit = |text: &String| {
-            let expected = "a unit such as m, mm/s, g, m/s², V, (m/s²)/N, dB re 1 g";
-            Unit::parse_or_level(text).ok_or_else(|| unknown("unit", text, expected))
-        };
+        let (of_all, of_channels) = self.units()?;
         Ok(Reader::new()
             .format(self.format.as_ref().map(format).transpose()?)
             .allow_missing(self.allow_missing)
             .rate(self.rate)
             .base_band(self.base_band)
-            .unit(self.unit.as_ref().map(unit).transpose()?)
+            .unit(of_all)
+            .channel_units(of_channels)
             .decimal_comma(self.decimal.map(|d| d == Decimal::Comma))
             .complex(self.complex)
             .span(self.span)

@@ -4,7 +4,7 @@
 use crate::record::{Kind, kind};
 use serde::de::value::SeqAccessDeserializer;
 use serde::de::{DeserializeOwned, Error, SeqAccess, Unexpected, Visitor};
-use serde::{Deserialize, Deserializer};
+use serde::{Deserialize, Deserializer, Serialize as _, Serializer};
 use std::fmt::{self, Formatter};
 
 /// A value by its name, as a campaign writes it between quotes.
@@ -146,6 +146,17 @@ pub fn one_or_more<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<String>, D:
         }
     }
     from.deserialize_any(Names)
+}
+
+/// Writes one name by itself, several as a list: the counterpart of [`one_or_more`].
+///
+/// # Errors
+/// As the serializer's.
+pub fn one_or_list<S: Serializer>(names: &[String], to: S) -> Result<S::Ok, S::Error> {
+    match names {
+        [name] => name.serialize(to),
+        names => names.serialize(to),
+    }
 }
 
 /// A list of channels.

@@ -288,7 +288,7 @@ impl Modal {
         } else {
             let inside = folder.clone().allow_outside(false);
             let Ok(list) = SweepList::from_path(path, &inside) else { return Ok(None) };
-            let (unit, calibration) = (self.record.reading.unit.clone(), self.record.channel.calibration);
+            let (unit, calibration) = (self.record.reading.only_unit()?, self.record.channel.calibration);
             let (name, folder) = (path.to_owned(), folder.clone());
             let mut reader = SweepReader { name, folder, ..SweepReader::default() };
             StoredResponseKeys { unit, calibration, ..StoredResponseKeys::default() }.apply(&mut reader)?;

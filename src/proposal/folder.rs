@@ -6,6 +6,7 @@ use crate::campaign::{Campaign, Reading};
 use crate::error::{Error, Result};
 use crate::read::{Folder, Header, MAGNITUDE, SweepList, longest_stretch};
 use crate::record::{Fact, shown};
+use crate::report::words::Voice;
 use rayon::prelude::*;
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
@@ -57,7 +58,7 @@ impl Surveyed {
         let untimed_reading = reading.untimed();
         let as_stored = survey(&untimed_reading);
         let timed = as_stored.as_ref().is_ok_and(|(_, headers, _)| !untimed(headers));
-        let stated = reading.rate.or(reading.base_band).is_some();
+        let stated = reading.rate.or(reading.base_band).or(reading.resample).is_some();
         let found = if timed || !stated { as_stored } else { survey(reading) };
         let lost = found.as_ref().ok().filter(|(_, headers, _)| untimed(headers));
         let stretch = lost.and_then(|(.., findings)| longest_stretch(findings));
@@ -70,7 +71,13 @@ impl Surveyed {
         } else {
             (reading.clone(), found)
         };
-        Surveyed { reading, headers: found.map(|(_, headers, _)| headers) }
+        let headers = found.and_then(|(_, headers, _)| {
+            let uneven = untimed(&headers) && headers.iter().any(|header| header.dx.is_none());
+            let why =
+                || reading.reader()?.within(folder).from_path(path)?.trace(Some("1"), None)?.sampling_rate();
+            if uneven { why().map(|_| headers) } else { Ok(headers) }
+        });
+        Surveyed { reading, headers }
     }
 }
 
@@ -198,10 +205,6 @@ impl Inventory {
         for (path, Surveyed { reading, headers }) in surveyed {
             let why = match headers {
                 Ok(headers) if headers.is_empty() => "no records".to_owned(),
-                Ok(headers) if untimed(&headers) && headers.iter().any(|h| h.dx.is_none()) => {
-                    "its samples are unevenly spaced; `vibro spectrum` with --resample HZ interpolates them"
-                        .to_owned()
-                }
                 Ok(headers) if untimed(&headers) => {
                     "the file has no sampling rate; vibro init FOLDER --rate HZ states one for the whole folder"
                         .to_owned()
@@ -216,6 +219,12 @@ impl Inventory {
                     }
                     kinds[place].1.push((path, reading, headers));
                     continue;
+                }
+                // Only of a file with uneven times is the setting known that helps.
+                Err(error) if error.settings().any(|key| key == "resample") => {
+                    let settings = error.settings_with(|key, value| Voice::Command.set(key, value));
+                    let settings = settings.join(" ");
+                    format!("its samples are unevenly spaced; vibro init FOLDER {settings} interpolates them")
                 }
                 Err(error) => short(&error),
             };

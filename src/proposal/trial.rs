@@ -16,7 +16,8 @@ use crate::analysis::{self, Answer, AnswerCache, Evidence};
 use crate::campaign::Reading;
 use crate::measure::restitution::Train;
 use crate::read::{Folder, Header};
-use crate::record::{Fact, Finding, Record, Severity, code};
+use crate::record::code::{self, READER_DOUBTS};
+use crate::record::{Fact, Finding, Record, Severity};
 use rayon::prelude::*;
 use std::ops::Range;
 use std::slice::from_ref;
@@ -26,6 +27,12 @@ const HEIGHT: &str = "height of the fall in m";
 
 /// Longest contact in s; a longer hump is no contact pulse.
 const LONGEST_CONTACT: f64 = 0.1;
+
+/// Whether a finding is a doubt about the analysis, and not about how the file is read: that holds for every
+/// analysis of the record.
+fn doubts_analysis(found: &Finding) -> bool {
+    found.severity() == Severity::Doubt && !READER_DOUBTS.contains(&&*found.code)
+}
 
 /// Codes of the doubts about a friction-damped decay, whose amplitude falls by a constant step per swing.
 const FRICTION_DOUBTS: [&str; 2] = [code::DECAY_UNEXPLAINED, code::DECAY_CHANGES];
@@ -116,7 +123,7 @@ impl Trial<'_> {
     /// The first decay table whose only doubts are those of a friction-damped decay.
     fn friction_decay(&self, tables: &[Table]) -> Option<Table> {
         let only_friction_doubts = |answer: &Answer| {
-            let allowed = |f: &Finding| f.severity() < Severity::Doubt || FRICTION_DOUBTS.contains(&&*f.code);
+            let allowed = |f: &Finding| !doubts_analysis(f) || FRICTION_DOUBTS.contains(&&*f.code);
             answer.findings.iter().all(|(_, finding)| allowed(finding))
         };
         let is_friction_decay = |table: &&Table| {
@@ -131,7 +138,7 @@ impl Trial<'_> {
     /// The answers of the tables, if they are plausible and no finding has the severity [`Severity::Doubt`].
     fn plausible_answer(&self, tables: &[Table]) -> Option<Answer> {
         let is_plausible = |answer: &Answer| {
-            answer.findings.iter().all(|(_, f)| f.severity() < Severity::Doubt) && fits_kind(tables, answer)
+            answer.findings.iter().all(|(_, f)| !doubts_analysis(f)) && fits_kind(tables, answer)
         };
         self.answers(tables).ok().filter(is_plausible)
     }

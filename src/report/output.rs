@@ -239,7 +239,7 @@ impl Output {
         for StagedFile { name, digest, staged } in std::mem::take(&mut self.files) {
             if self.check_writable(&before, &name, Some(&digest))? == Present::Replaceable {
                 meanwhile.add(self.owner, &name, digest);
-                changed.push(staged);
+                changed.push((name.clone(), staged));
             } else if !before.knows(self.owner, &name, &digest) {
                 // The bytes are the same, but the file is a person's: it stays out of the manifest.
                 continue;
@@ -252,7 +252,7 @@ impl Output {
         if changed.len() + stale.len() > 1 && !self.folder.is_file(&path) {
             self.folder.stage(&path, mark.as_bytes())?.place()?;
         }
-        changed.into_iter().try_for_each(Staged::place)?;
+        place(changed)?;
         stale.iter().try_for_each(|name| self.folder.remove(&self.at(name)))?;
         self.write_manifest(&meanwhile, &after)?;
         // A marker left by another kind of command stays.
@@ -282,6 +282,22 @@ impl Output {
         }
         self.folder.stage(&self.at(Manifest::FILE), after.text().as_bytes())?.place()
     }
+}
+
+/// Renames files to their names, in order.
+///
+/// # Errors
+/// If the system refuses one; the error names the files before it, which are new.
+fn place(files: Vec<(String, Staged)>) -> Result<()> {
+    let mut placed: Vec<String> = Vec::new();
+    for (name, staged) in files {
+        staged.place().map_err(|error| match placed.as_slice() {
+            [] => error,
+            new => error.hint(format!("the same command again; so far it wrote only {}", new.join(", "))),
+        })?;
+        placed.push(name);
+    }
+    Ok(())
 }
 
 /// Files that vibro keeps for itself in a folder of results.

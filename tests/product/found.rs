@@ -148,6 +148,11 @@ fn a_sine_of_few_counts_that_is_clipped_is_named() {
     let clipped = finding(&answer, "step-clipped").expect("the clipped step is named");
     let frequency = clipped["numbers"]["frequencies"].as_array().map_or(&clipped["numbers"], |all| &all[0]);
     assert!(frequency.to_string().contains("27.6"), "{clipped}");
+    // A sine clipped at 97 % of its amplitude reads low by less than 3 %.
+    let amplitude = |p: &Value| p["amplitude"]["value"].as_f64().unwrap();
+    let of_step = answer["points"].as_array().unwrap().iter().find(|p| p["amplitude"]["std"].is_null());
+    let amplitude = amplitude(of_step.unwrap());
+    assert!((amplitude / 1.604_35e-5 - 1.0).abs() < 0.03, "{amplitude}");
     let std: Vec<bool> =
         answer["points"].as_array().unwrap().iter().map(|p| p["amplitude"]["std"].is_null()).collect();
     assert_eq!(std.iter().filter(|none| **none).count(), 1, "{std:?}");

@@ -168,7 +168,8 @@ pub fn from_values(
         let found = match clock.jitter > 0.0 {
             true => Some(clock.finding(what)),
             false if perhaps_lost => {
-                with_steps(Finding::caution(code::AXIS_ROUNDED_OR_LOST).number("step", clock.step))
+                let lost = Finding::doubt(code::AXIS_ROUNDED_OR_LOST).number("step", clock.step);
+                with_steps(lost.without_estimate())
             }
             false => with_steps(clock.finding(what)),
         };

@@ -10,9 +10,9 @@ use crate::reader::{Reader, Recording};
 use crate::source::Source;
 use crate::text;
 use crate::wav::Wave;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use vibro_record::{
-    Error, Place, Record, Result, Spectrum, Stream as _, Trace, Traces, code, find_channel, lanes,
+    Error, Finding, Place, Record, Result, Spectrum, Stream, Trace, Traces, code, find_channel, lanes,
 };
 
 /// Size in bytes from which a text is streamed. A shorter text is read into memory, which avoids reading it
@@ -46,11 +46,11 @@ impl Reader {
         let format = self.entry(&source)?.format;
         if as_it_is && format == Format::Wav {
             let mut wave = Wave::open(&source, &self.options)?;
-            let chosen = named(&path, channels, wave.channels.iter().map(|t| &t.meta))?;
-            let traces: Vec<Trace> = chosen.iter().map(|i| wave.channels[*i].clone()).collect();
+            let all = std::mem::take(&mut wave.channels);
+            let chosen = named(&path, channels, all.iter().map(|t| &t.meta))?;
             wave.keep(&chosen);
             let (findings, frames) = (wave.layout.findings.clone(), wave.frames());
-            return Traces::of_stream(path, findings, &traces, frames, Box::new(wave));
+            return self.streamed(path, findings, (&all, &chosen), frames, Box::new(wave));
         }
         // If streaming fails, reading the text as a whole below reports the error.
         let long = || text::stream(&source, &self.options, format).ok().flatten();
@@ -60,12 +60,32 @@ impl Reader {
             && let Some(text::Streamed { traces, findings, mut columns }) = long()
         {
             let chosen = named(&path, channels, traces.iter().map(|t| &t.meta))?;
-            let traces: Vec<Trace> = chosen.iter().map(|i| traces[*i].clone()).collect();
             columns.keep(&chosen);
             let frames = traces.first().map_or(0, |trace| trace.axis.len());
-            return Traces::of_stream(path, findings, &traces, frames, Box::new(columns));
+            return self.streamed(path, findings, (&traces, &chosen), frames, Box::new(columns));
         }
         self.traces_in_memory(&source, channels)
+    }
+
+    /// The `chosen` of all traces of a file, which come from a stream, with the units that are stated for
+    /// them.
+    fn streamed(
+        &self,
+        path: PathBuf,
+        findings: Vec<Finding>,
+        (all, chosen): (&[Trace], &[usize]),
+        frames: usize,
+        stream: Box<dyn Stream>,
+    ) -> Result<Traces> {
+        let units = self.options.stated_units(&path, all.iter().map(|trace| &trace.meta))?;
+        let traces: Vec<Trace> = chosen.iter().map(|i| all[*i].clone()).collect();
+        let mut traces = Traces::of_stream(path, findings, &traces, frames, stream)?;
+        for (channel, index) in chosen.iter().enumerate() {
+            if let Some((_, unit)) = units.iter().find(|(of, _)| of == index) {
+                traces.restate_unit(channel, unit, self.options.unit.is_none());
+            }
+        }
+        Ok(traces)
     }
 
     /// Traces of a source that is read into memory as a whole.

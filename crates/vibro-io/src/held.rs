@@ -2,6 +2,7 @@
 
 use crate::assemble::{self, NOMINAL, Spectral};
 use crate::options::Options;
+use std::path::Path;
 use vibro_record::code;
 use vibro_record::lanes::{Extremes, FIRST_VALUES};
 use vibro_record::{Axis, AxisKind, Error, Finding, Meta, Record, Result, Values, units};
@@ -113,6 +114,32 @@ impl Contents {
     /// Contents of a file whose values are all kept in full.
     pub fn of(records: impl IntoIterator<Item = Record>, findings: Vec<Finding>) -> Contents {
         Contents { records: records.into_iter().map(|record| (record, None)).collect(), findings }
+    }
+
+    /// Gives channels the units that are stated for them by name or number.
+    ///
+    /// # Errors
+    /// As [`Options::stated_units`]; if a value overflows a double.
+    pub fn with_stated_units(mut self, path: &Path, options: &Options) -> Result<Contents> {
+        let stated = options.stated_units(path, self.records.iter().map(|(record, _)| record.meta()))?;
+        if !stated.is_empty() && stated.len() == self.records.len() {
+            self.findings.retain(|found| !["format-without-units", "unit-for-all"].contains(&&*found.code));
+        }
+        for (channel, unit) in stated {
+            let (record, summary) = &mut self.records[channel];
+            let factor = record.meta_mut().restate_unit(unit, options.unit.is_none());
+            match record {
+                Record::Trace(trace) => units::scale(&mut trace.values, factor)?,
+                Record::Spectrum(spectrum) => assemble::to_si(&mut spectrum.values, factor)?,
+                Record::Frf(frf) => {
+                    units::scale(frf.values.iter_mut().flat_map(|v| [&mut v.re, &mut v.im]), factor)?;
+                }
+            }
+            for values in summary.iter_mut().flat_map(Extremes::values_mut) {
+                units::scale(values, factor)?;
+            }
+        }
+        Ok(self)
     }
 
     /// Gives traces an even axis as the options state:

@@ -3,7 +3,7 @@
 use crate::limit::Limit;
 use std::path::Path;
 use vibro_record::units::Unit;
-use vibro_record::{Axis, Meta, Result, find_channel};
+use vibro_record::{Axis, Error, Meta, Result, find_channel};
 
 /// Accepted range in Hz of rates, bands and line widths. All instruments lie far inside it, and every step
 /// computed from it is finite and positive.
@@ -26,6 +26,8 @@ pub struct Options {
     pub base_band: Option<f64>,
     /// Unit of the values.
     pub unit: Option<Unit>,
+    /// Units of single channels, each by its name or by its number from 1; they take precedence.
+    pub channel_units: Vec<(String, Unit)>,
     /// Whether a comma is the decimal mark; `None`: detected.
     pub decimal_comma: Option<bool>,
     /// Whether two value columns are the real and the imaginary part.
@@ -47,6 +49,32 @@ pub struct Options {
 }
 
 impl Options {
+    /// Whether the unit of any channel is stated.
+    pub(crate) fn states_units(&self) -> bool {
+        self.unit.is_some() || !self.channel_units.is_empty()
+    }
+
+    /// Index and unit of each of these channels whose own unit is stated.
+    ///
+    /// # Errors
+    /// If there is no such channel, or two units are stated for one.
+    pub(crate) fn stated_units<'a>(
+        &self,
+        path: &Path,
+        all: impl Iterator<Item = &'a Meta>,
+    ) -> Result<Vec<(usize, &Unit)>> {
+        let all: Vec<(&str, &str)> = all.map(Meta::called).collect();
+        let mut found: Vec<(usize, &Unit)> = Vec::new();
+        for (name, unit) in &self.channel_units {
+            let of = find_channel(path, name, all.iter().copied()).map_err(|e| e.setting("unit"))?;
+            if let Some((_, other)) = found.iter().find(|(channel, _)| *channel == of) {
+                let two = format!("two units of channel {name:?}, {other} and {unit}");
+                return Err(Error::usage(two, "one").hint("leave one out").setting("unit"));
+            }
+            found.push((of, unit));
+        }
+        Ok(found)
+    }
     /// Checks that this many values fit into memory, with the results computed from them.
     ///
     /// # Errors

@@ -174,7 +174,7 @@ pub fn percent(source: &Source) -> Option<Finding> {
         cell.trim_end_matches([')', ']', ' ']).ends_with('%') && !cell.contains(|c: char| c.is_ascii_digit())
     };
     let cell = str::from_utf8(text).ok()?.split(['\t', '\n']).find(in_percent)?;
-    Some(Finding::caution("sheet-in-percent").name("column", cell.trim()))
+    Some(Finding::doubt("sheet-in-percent").name("column", cell.trim()).without_estimate())
 }
 
 /// Whether a file is an archive or a workbook that can be unpacked.

@@ -120,6 +120,13 @@ impl Reader {
         self
     }
 
+    /// States the units of single channels, each by its name or by its number from 1. They take precedence
+    /// over [`Reader::unit`]. Default: none.
+    pub fn channel_units(mut self, units: Vec<(String, Unit)>) -> Reader {
+        self.options.channel_units = units;
+        self
+    }
+
     /// States whether a comma is the decimal mark. Default: detected; an ambiguous file is refused.
     pub fn decimal_comma(mut self, comma: Option<bool>) -> Reader {
         self.options.decimal_comma = comma;
@@ -260,7 +267,9 @@ impl Reader {
         let room = self.options.limit.hold(if entry.whole { 2.0 * source.len() as f64 } else { 0.0 });
         // The wave reader already reads only the span.
         let span = self.options.span.filter(|_| entry.format != Format::Wav);
-        let read = |survey| (entry.read)(source, &self.options, survey);
+        let read = |survey| {
+            (entry.read)(source, &self.options, survey)?.with_stated_units(source.path(), &self.options)
+        };
         let changes = span.is_some() || self.options.stretch.is_some() || self.options.resample.is_some();
         let contents = room.and_then(|()| read(survey && !changes)).and_then(|all| {
             let mut all = if level::needs_values(&all) { read(false)? } else { all };

@@ -168,7 +168,7 @@ impl SweepReader {
     /// Factor from the values as read to SI units, and the SI unit.
     fn factor(&self, meta: &Meta, force: bool, found: &mut impl FnMut(Finding)) -> Result<(f64, Unit)> {
         // If the file states a unit, the reader has already multiplied the values by `taken`, to SI.
-        let (written, taken) = (&meta.unit, factor_to_si(meta));
+        let (written, taken) = (&meta.unit, meta.factor_to_si());
         let meant = self.meant();
         let raw = matches!(written.quantity(), Quantity::Voltage | Quantity::Ratio);
         let adopted = match &self.unit {
@@ -224,12 +224,6 @@ const SPECTRA: &str = "list the spectra of the analyser; time records and freque
 
 /// Hint for values that are levels in dB.
 const LINEAR: &str = "export linear amplitudes; levels in decibels are not read";
-
-/// Factor from stored numbers to SI, from the history of the record.
-fn factor_to_si(meta: &Meta) -> f64 {
-    let steps = meta.history.iter().filter(|step| step.name == "to_si").flat_map(|step| &step.arguments);
-    steps.filter(|(key, _)| key == "factor").filter_map(|(_, factor)| factor.parse::<f64>().ok()).product()
-}
 
 /// Values of a spectrum times `factor`; the spectrum must have the lines of `axis`.
 fn scaled(spectrum: &Spectrum, axis: &Axis, factor: f64) -> Result<Values> {

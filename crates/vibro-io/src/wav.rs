@@ -28,7 +28,7 @@ use std::io::{Read, SeekFrom};
 use std::path::PathBuf;
 use vibro_record::lanes::{self, Extremes};
 use vibro_record::units::{self, Unit};
-use vibro_record::{Axis, Error, Finding, Meta, Place, Record, Result, Stream, Trace};
+use vibro_record::{Axis, Error, Finding, Meta, Place, Record, Result, Stream, Trace, code};
 
 /// The unit of values without a calibration.
 const FULL_SCALE: &str = "FS";
@@ -122,7 +122,7 @@ impl Wave {
             kept: (0..n).collect(),
             largest: vec![0.0; n],
             allow_missing: options.allow_missing,
-            scaled: layout.scales.is_some() || options.unit.is_some(),
+            scaled: layout.scales.is_some() || options.states_units(),
             layout,
         };
         for channel in 0..n {
@@ -158,7 +158,7 @@ impl Wave {
         let (full_scale, unit, said) = match (&options.unit, scale) {
             (Some(unit), _) => (1.0, unit.clone(), Finding::note("full-scale-stated")),
             (None, Some(scale)) => {
-                let said = Finding::caution("full-scale-by-comment").number("factor", scale.factor);
+                let said = Finding::caution(code::FULL_SCALE_BY_COMMENT).number("factor", scale.factor);
                 (scale.factor, Unit::parse_or_opaque(&scale.unit), said)
             }
             (None, None) => return Ok((trace, 1.0)),

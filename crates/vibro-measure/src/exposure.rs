@@ -4,7 +4,7 @@ use super::Estimate;
 use super::mean::{Mean, average};
 use num_complex::Complex64;
 use std::f64::consts::{PI, TAU};
-use vibro_record::{Error, Finding, Result};
+use vibro_record::{Error, Finding, Result, uncertain};
 use vibro_signal::fft::Transform;
 
 /// Corners of the band limitation in Hz (ISO 5349-1:2001, table A.1).
@@ -111,6 +111,8 @@ impl WeightedAxis {
         })
     }
 }
+
+uncertain!(Exposure: axes, a_hv, a8);
 
 /// Records shorter than this, in s, are unlikely to be reliable (ISO 5349-2:2001, 5.4.1).
 const SHORT: f64 = 8.0;

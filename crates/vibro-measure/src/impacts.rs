@@ -29,7 +29,7 @@ use crate::swings::Swings;
 use echoes::echoes;
 use interval::{CountedImpacts, count, evened, pattern};
 use serde::Serialize;
-use vibro_record::{Doubt, Error, Finding, Result, Severity, Trace, median};
+use vibro_record::{Doubt, Error, Finding, Result, Severity, Trace, median, uncertain};
 
 /// Intervals that spread by less than this fraction of their median are regular.
 pub const REGULAR: f64 = 0.05;
@@ -84,6 +84,8 @@ pub struct Impacts {
     /// Changes made to the trace, and doubts.
     pub findings: Vec<Finding>,
 }
+
+uncertain!(Impacts: interval, frequency, beat);
 
 /// Finds the impacts of `trace`, their mean interval, and the pattern that they repeat. Two further searches
 /// follow if the record shows none or most are lost in its noise, and no option states how to search: for

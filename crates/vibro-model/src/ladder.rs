@@ -32,7 +32,7 @@ mod stage;
 mod starts;
 
 pub use axis::{MOST_POINTS, Stretch, Summary, Survey, choose_over};
-pub use curvature::Curvature;
+pub use curvature::{Curvature, MassChange};
 pub use motions::KnownMotion;
 pub use question::{Change, Question};
 pub use rung::{Model, Need, Needed, Rung};
@@ -72,6 +72,9 @@ pub struct Choice {
     /// open.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub springs: Vec<Curvature>,
+    /// Change of the answer by the curvature of both springs together, where both are curved.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub springs_together: Option<MassChange>,
     /// The answers over a range of contact stiffnesses, where the stiffness is unknown and no rung is good
     /// enough without it; empty where they cannot be computed.
     pub sensitivity: Vec<Sensitivity>,
@@ -180,8 +183,9 @@ fn chosen(scene: &Scene, frequency: f64, question: &Question, bend: bool) -> Res
     }
     choice.findings = findings::findings(&choice, question);
     if scene.springs.is_some() {
-        choice.springs = curvature::effects(&choice, &stage, settled)?;
-        choice.findings.push(curvature::finding(&choice, question));
+        let effects = curvature::effects(&choice, &stage, settled)?;
+        (choice.springs, choice.springs_together) = (effects.each, effects.together);
+        choice.findings.extend(curvature::findings(&choice, question));
     }
     Ok(choice)
 }

@@ -1,5 +1,24 @@
 //! Codes of findings that one part of the program adds and another part searches for.
 
+/// Doubts of the readers, about the times, the unit or single values of a record.
+pub const READER_DOUBTS: [&str; 15] = [
+    "last-number-cut-off",
+    "no-closing-line",
+    "decibels-overruled",
+    "step-changed",
+    AXIS_ROUNDED_OR_LOST,
+    "axis-clock-minutes",
+    "rate-decimated",
+    "rates-differ",
+    "head-step-assumed",
+    "digits-may-be-grouped",
+    "unit-head-differs",
+    "unit-row-differs",
+    "sheet-in-percent",
+    "missing-marked",
+    "filled-with-zeros",
+];
+
 /// Samples are missing in a record.
 pub const SAMPLES_LOST: &str = "samples-lost";
 /// Times fit an even step, but also a shorter step with lost samples.
@@ -14,6 +33,8 @@ pub const RATE_FROM_HEAD: &str = "rate-from-head";
 pub const SCALING_UNSAID: &str = "scaling-unsaid";
 /// The unit of a record is not stated.
 pub const UNIT_UNSAID: &str = "unit-unsaid";
+/// Full scale is taken from a comment in the file.
+pub const FULL_SCALE_BY_COMMENT: &str = "full-scale-by-comment";
 /// The axis of a record is not stated.
 pub const ABSCISSA_UNSAID: &str = "abscissa-unsaid";
 /// The head states a scale that is not applied; the finding is removed if the user states a calibration.

@@ -1,12 +1,18 @@
 //! Doubts: a finding that a number may be wrong, which cannot be made without taking its uncertainty away.
 
-use super::{Estimate, Finding};
+use super::{Estimate, Finding, Severity};
 use std::collections::BTreeMap;
 
 /// Numbers with standard uncertainties, which a [`Doubt`] about them takes away.
 pub trait Uncertain {
     /// Takes the standard uncertainties away.
     fn doubt(&mut self);
+
+    /// As [`Uncertain::doubt`], of all numbers, where the whole record is in doubt: those, too, that a doubt
+    /// about the values leaves.
+    fn doubt_all(&mut self) {
+        self.doubt();
+    }
 }
 
 /// Implements [`Uncertain`] for a struct by its fields that have uncertainties.
@@ -116,6 +122,17 @@ impl Doubt {
     }
 }
 
+/// Takes the standard uncertainties of numbers away if a reader's finding on their record is a doubt: what is
+/// computed from values or times that may be wrong may be wrong by more.
+pub fn doubt_with_record<'a>(
+    findings: impl IntoIterator<Item = &'a Finding>,
+    numbers: &mut (impl Uncertain + ?Sized),
+) {
+    if findings.into_iter().any(|found| found.severity() == Severity::Doubt) {
+        numbers.doubt_all();
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -128,7 +145,7 @@ mod tests {
         let named: &mut [&mut dyn Uncertain] = &mut [&mut one, &mut listed, &mut std];
         let found = Finding::doubt("x").number("part", 0.5).about("laser").of(named);
         assert_eq!((found.get("part"), found.subject.as_deref()), (Some(0.5), Some("laser")));
-        assert_eq!(found.severity(), crate::Severity::Doubt);
+        assert_eq!(found.severity(), Severity::Doubt);
         assert!(one.iter().chain(&listed).all(|e| e.std.is_none() && e.value > 0.0) && std.is_none());
         assert_eq!(other.std, Some(0.1));
         let mut named = BTreeMap::from([("other", &mut other)]);

@@ -40,7 +40,7 @@ use num_complex::Complex64;
 
 pub use axis::{Axis, AxisKind, Grid};
 pub use clock::{Clock, RATE_OVER_BASE_BAND, Stretch, is_fine, stretches, uniform_std};
-pub use doubt::{Doubt, Uncertain};
+pub use doubt::{Doubt, Uncertain, doubt_with_record};
 pub use error::{Error, Hint, Place, Result};
 pub use finding::{Estimate, Fact, Finding, Severity};
 pub use kind::{Kind, without_unit};

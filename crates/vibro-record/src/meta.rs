@@ -2,7 +2,7 @@
 
 use crate::code;
 use crate::units::{Quantity, Unit};
-use crate::{Finding, Window};
+use crate::{Finding, Trace, Window};
 
 /// One step that made a record: its name, its arguments, the version of this crate.
 #[derive(Debug, Clone, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
@@ -23,6 +23,11 @@ impl Step {
             arguments: arguments.iter().map(|(k, v)| ((*k).to_owned(), v.to_string())).collect(),
             version: env!("CARGO_PKG_VERSION").to_owned(),
         }
+    }
+
+    /// The text of an argument.
+    pub fn argument(&self, key: &str) -> Option<&str> {
+        self.arguments.iter().find(|(name, _)| name == key).map(|(_, text)| text.as_str())
     }
 }
 
@@ -117,13 +122,13 @@ impl Meta {
     /// this crate state it.
     pub fn added_decay(&self) -> Option<f64> {
         let made = self.history.iter().rev().find(|step| step.name == "exponential_window");
-        let made = made.and_then(|step| step.arguments.iter().find(|(key, _)| key == "decay"));
+        let made = made.and_then(|step| step.argument("decay"));
         let line = self.notes.iter().find(|(key, _)| key == "id line 5").map(|(_, line)| line.as_str());
         let line = line.and_then(|line| line.strip_prefix(ADDED_DECAY));
         let own = format!(" of {}", self.name);
         let mut remark = self.notes.iter().filter(|(key, _)| key == "added decay");
         let remark = remark.find_map(|(_, text)| text.strip_suffix(own.as_str()));
-        let text = made.map(|(_, value)| value.as_str()).or(line).or(remark)?;
+        let text = made.or(line).or(remark)?;
         text.trim().parse().ok().filter(|decay: &f64| decay.is_finite() && *decay > 0.0)
     }
 
@@ -131,13 +136,13 @@ impl Meta {
     /// the writers of this crate state it. `None` for one that was averaged over blows.
     pub fn averaged_with(&self) -> Option<Window> {
         let made = self.history.iter().rev().find(|step| step.name == "segments");
-        let made = made.and_then(|step| step.arguments.iter().find(|(key, _)| key == "window"));
+        let made = made.and_then(|step| step.argument("window"));
         let line = self.notes.iter().find(|(key, _)| key == "id line 4").map(|(_, line)| line.as_str());
         let line = line.and_then(|line| line.strip_prefix(AVERAGED_WITH));
         let own = format!(" of {}", self.name);
         let mut remark = self.notes.iter().filter(|(key, _)| key == "averaged with");
         let remark = remark.find_map(|(_, text)| text.strip_suffix(own.as_str()));
-        let name = made.map(|(_, name)| name.as_str()).or(line).or(remark)?;
+        let name = made.or(line).or(remark)?;
         Window::from_name(name).filter(|_| !self.from_blows())
     }
 
@@ -167,5 +172,44 @@ impl Meta {
             self.step("to_si", &[("from", &unit.symbol()), ("factor", &unit.factor())]);
         }
         unit.factor()
+    }
+
+    /// Factor from stored numbers to the present values, from the history.
+    pub fn factor_to_si(&self) -> f64 {
+        let number = |step: &Step, key| step.argument(key).and_then(|text| text.parse::<f64>().ok());
+        let to_si = |step: &Step| match step.name.as_str() {
+            "to_si" => number(step, "factor"),
+            "calibrate" => {
+                let unit = step.argument("unit").map_or(1.0, |unit| Unit::parse_or_opaque(unit).factor());
+                number(step, "factor").map(|factor| factor * unit)
+            }
+            _ => None,
+        };
+        self.history.iter().filter_map(to_si).product()
+    }
+
+    /// Replaces the unit of the stored numbers by one that is stated for this channel, and drops findings on
+    /// the former unit with its steps in the history. A unit `of_file` that differs is named in a caution.
+    /// Returns the factor by which the present values must be multiplied.
+    pub fn restate_unit(&mut self, unit: &Unit, of_file: bool) -> f64 {
+        let former = self.factor_to_si();
+        let text =
+            self.history.iter().find(|step| step.name == "to_si").and_then(|step| step.argument("from"));
+        let file = text.unwrap_or(self.unit.symbol()).to_owned();
+        let differs = Finding::caution("unit-overrides-file").name("file", file);
+        let differs = differs.name("used", unit.symbol());
+        let of_full_scale = self.has(Trace::UNCALIBRATED) || self.has(code::FULL_SCALE_BY_COMMENT);
+        let said = of_file && self.unit.is_known() && (former != unit.factor() || self.unit != unit.si());
+        self.findings.retain(|found| {
+            let on_unit = [code::LEVELS_IN_DECIBELS, Trace::UNCALIBRATED, code::FULL_SCALE_BY_COMMENT];
+            !found.code.starts_with("unit-") && !on_unit.contains(&&*found.code)
+        });
+        self.history.retain(|step| !["to_si", "calibrate"].contains(&step.name.as_str()));
+        if of_full_scale {
+            self.found(Finding::note("full-scale-stated").name("unit", unit.symbol()));
+        } else if said {
+            self.found(differs);
+        }
+        self.adopt_unit(unit.symbol()) / former
     }
 }

@@ -1,6 +1,6 @@
 //! Time traces, read block by block.
 
-use crate::units::notation;
+use crate::units::{Unit, notation};
 use crate::{Error, Finding, Meta, Place, Result, Trace, code, nearest, units};
 use std::path::{Path, PathBuf};
 
@@ -251,6 +251,13 @@ impl Traces {
         self.findings.retain(|found| found.code != code::SCALE_IN_HEAD);
         meta.step("calibrate", &[("factor", &factor)]);
         Ok(())
+    }
+
+    /// Replaces the unit of a channel, see [`Meta::restate_unit`]; an index that does not exist is ignored.
+    pub fn restate_unit(&mut self, channel: usize, unit: &Unit, of_file: bool) {
+        if let (Some(meta), Some(known)) = (self.channels.get_mut(channel), self.factors.get_mut(channel)) {
+            *known *= meta.restate_unit(unit, of_file);
+        }
     }
 }
 

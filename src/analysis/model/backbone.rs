@@ -18,8 +18,8 @@ pub struct Keys {
     #[cfg_attr(feature = "cli", command(flatten))]
     pub scene: SceneKeys,
     /// Mass that is driven, alone on its spring: 1 or 2
-    #[cfg_attr(feature = "cli", arg(default_value_t = 1))]
-    pub mass: u32,
+    #[cfg_attr(feature = "cli", arg(default_value_t = 1, value_parser = crate::record::kind::whole::<u8, 1, 2>))]
+    pub mass: u8,
     /// Lowest excitation frequency in Hz
     pub from: f64,
     /// Highest excitation frequency in Hz
@@ -57,7 +57,7 @@ impl Keys {
             let found = format!("the excitation {:?}", excitation.kind());
             return Err(Error::usage(found, "a sine: harmonic balance takes no other").setting("force"));
         };
-        let duffing = Duffing::new(&scene, self.mass as usize)?;
+        let duffing = Duffing::new(&scene, self.mass.into())?;
         let found = duffing.response(sine.force, self.from, self.to, self.points)?;
         let limit = Some(duffing.limit()).filter(|limit| limit.is_finite());
         let mut answer = Answer::of(&json!({

@@ -6,8 +6,8 @@ use crate::compare::Overlay;
 use crate::error::{Error, Result};
 use crate::model::Observable;
 use crate::model::ladder::{
-    Choice, Curvature, Model, Need, Question, Rung, Sensitivity, Stretch, Summary, Survey, choose,
-    choose_over,
+    Choice, Curvature, MassChange, Model, Need, Question, Rung, Sensitivity, Stretch, Summary, Survey,
+    choose, choose_over,
 };
 use crate::record::{Direction, Finding, Severity};
 use crate::report::files::Names;
@@ -100,7 +100,7 @@ fn at_one_frequency(choice: &Choice, question: &Question, answer: &mut Answer) -
     answer.add("", &choice.findings);
     answer.table("rungs", rungs(choice, question));
     if !choice.springs.is_empty() {
-        answer.table("springs", springs(&choice.springs));
+        answer.table("springs", springs(&choice.springs, choice.springs_together));
     }
     if !choice.sensitivity.is_empty() {
         answer.table("sensitivity", sensitivity(&choice.sensitivity, question));
@@ -245,18 +245,27 @@ fn rungs(choice: &Choice, question: &Question) -> Table {
 }
 
 /// Effect of the curvature of the springs.
-fn springs(all: &[Curvature]) -> Table {
-    table(
+fn springs(all: &[Curvature], together: Option<MassChange>) -> Table {
+    let change = |change: Option<MassChange>| percent(change.map(|c| c.change.change));
+    let mass = |change: Option<MassChange>| Cell::from(change.and_then(|c| c.mass).map(usize::from));
+    let enough = |change: Option<MassChange>| Cell::from(change.map(|c| c.change.enough));
+    let mut table = table(
         "Curvature of the springs",
         all,
         &[
             ("spring", "", &|s| usize::from(s.spring).into()),
             ("amplitude", "m", &|s| s.amplitude.into()),
             ("natural frequency shifts by", "%", &|s| percent(s.shift)),
-            ("answer changes by", "%", &|s| percent(s.change.map(|c| c.change))),
-            ("within the tolerance", "", &|s| s.change.map(|c| c.enough).into()),
+            ("answer changes by", "%", &|s| change(s.change)),
+            ("of mass", "", &|s| mass(s.change)),
+            ("within the tolerance", "", &|s| enough(s.change)),
         ],
-    )
+    );
+    if together.is_some() {
+        let none = || Cell::from(None::<f64>);
+        table.push(["1 and 2".into(), none(), none(), change(together), mass(together), enough(together)]);
+    }
+    table
 }
 
 /// The answer as a function of an unknown contact stiffness.

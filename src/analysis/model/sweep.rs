@@ -124,11 +124,10 @@ impl Keys {
         };
         let plan = Plan { from: self.from, to: self.to, pace, observable: self.observable };
         plan.check()?;
-        let (state, phase) = self.start(&scene.rig)?;
+        let start = self.start(&scene.rig)?;
         let make = contact::motions(&scene, self.model, GRAZING_SPEED)?;
-        let make = |excitation: &_, later: f64| make(excitation, state, phase + later);
         let frequency = over_force.then(|| excitation.frequency());
-        let runs = Runs::of(make, &excitation, &plan, frequency, self.direction.sweeps())?;
+        let runs = Runs::of(make, start, &excitation, &plan, frequency, self.direction.sweeps())?;
         let swept = runs.swept();
         let floor = swept.floor();
         let (irregular, by_chance) = (runs.irregular(floor), runs.by_chance(floor));
@@ -152,7 +151,9 @@ impl Keys {
         answer.add("", contact::buffer(&scene, self.model));
         let all = swept.up.len() + swept.down.len();
         answer.add("", points_within(&irregular, all, "sweep-cycles-unlike"));
+        answer.add("", runs.irregular_maxima(floor));
         answer.add("", points_within(coexisting, all, "sweep-start-decides"));
+        answer.add("", runs.starts_failed());
         answer.add("", still(&swept, &scene.rig));
         answer.tables.push(resonances_and_jumps(&resonances, &jumps));
         if !(irregular.is_empty() && coexisting.is_empty()) {

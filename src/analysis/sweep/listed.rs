@@ -7,7 +7,7 @@ use crate::error::{Error, Result};
 use crate::measure::response::{Response, ResponseOptions, answerable, response};
 use crate::measure::stepped::stepped;
 use crate::read::{Steps, SweepList, SweepReader};
-use crate::record::{Axis, Finding, Sweep};
+use crate::record::{Axis, Finding, Sweep, doubt_with_record};
 use std::path::{Path, PathBuf};
 
 /// The files of a sweep, with the reader for them.
@@ -90,7 +90,8 @@ impl Listed {
         match &self.files {
             Files::Spectra(list) => {
                 let sweep = answerable(self.reader.read(list)?, options)?;
-                let response = response(&sweep, options)?;
+                let mut response = response(&sweep, options)?;
+                doubt_with_record(&sweep.findings, &mut response);
                 Ok((sweep, response))
             }
             Files::Traces(steps) => {
@@ -102,6 +103,7 @@ impl Listed {
                     (sweep, response) = self.stepped(&Steps { files, ..steps.clone() }, options)?;
                     response.findings.push(found);
                 }
+                doubt_with_record(&sweep.findings, &mut response);
                 response.findings.extend(order::repeated(&sweep, &response));
                 response.findings.extend(self.findings.iter().cloned());
                 Ok((sweep, response))

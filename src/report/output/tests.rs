@@ -58,6 +58,7 @@ fn a_failure_leaves_the_old_content_and_no_temporary() {
     out.write(&long, "new").unwrap();
     let error = out.commit().unwrap_err().to_string();
     assert!(error.contains(&long) && !error.contains(".part"), "{error}");
+    assert!(error.contains("so far it wrote only a"), "{error}");
     assert_eq!(names(dir.path()), [Output::INCOMPLETE, "a", "x"]);
     assert_eq!(fs::read_to_string(dir.path().join("x/old")).unwrap(), "old");
     written(results(dir.path()), &[("a", "newer"), ("b", "newer")]).unwrap();

@@ -206,6 +206,24 @@ fn a_folder_without_recordings_is_named_and_a_rate_can_be_stated() {
     assert!(written.contains("rate = 1000") && written.contains("unit = \"m/s²\""), "{written}");
 }
 
+/// Steps between 0.3 and 1.7 ms. What the complaint names is typed.
+#[test]
+fn of_uneven_samples_the_rate_that_interpolates_is_named_and_taken() {
+    let root = tempfile::tempdir().unwrap();
+    let mut noise = Noise::new(7);
+    let (mut table, mut t) = ("time [s],a [m/s²]\n".to_owned(), 0.0);
+    for _ in 0..3000 {
+        t += 1e-3 * noise.between(0.3, 1.7);
+        writeln!(table, "{t:.6},{:.6}", (20.0 * t).sin()).unwrap();
+    }
+    fs::write(root.path().join("uneven.csv"), table).unwrap();
+    let said = complaint(&["init", text(root.path())], 2);
+    let rate = said.split("--resample ").nth(1).expect(&said).split(' ').next().unwrap();
+    json(&["init", text(root.path()), "--resample", rate]);
+    let written = fs::read_to_string(root.path().join("campaign.toml")).unwrap();
+    assert!(written.contains(&format!("resample = {rate}")), "{written}");
+}
+
 /// 1 s of samples, a gap of 0.3 s, then 1.5 s of samples.
 #[test]
 fn of_a_record_with_lost_samples_the_longest_even_stretch_is_proposed() {

@@ -42,7 +42,16 @@ fn what_a_curved_spring_cannot_be_is_refused() {
     for (typed, code, words) in [
         ("--force 5e-3", 2, "spring 1 is straight"),
         ("--force 0 --set springs.cubic1=1e7", 2, "nothing drives the mass"),
-        ("--force 5e-3 --set springs.cubic1=1e7 --mass 3", 2, "mass 3"),
+        (
+            "--force 5e-3 --set springs.cubic1=1e7 --mass 3",
+            2,
+            "--mass is 3; expected a whole number from 1 to 2",
+        ),
+        (
+            "--force 5e-3 --set springs.cubic1=1e7 --mass 0",
+            2,
+            "--mass is 0; expected a whole number from 1 to 2",
+        ),
         ("--force 5e-3 --set springs.cubic1=1e7 --tolerance 0", 2, "a tolerance of 0"),
         ("--force 5e-3 --set springs.cubic2=1e7 --mass 2 --set m2=inf", 2, "mass 2 is a wall"),
         ("--impulse 5e-3 --set springs.cubic1=1e7", 2, "impulse"),
@@ -53,6 +62,36 @@ fn what_a_curved_spring_cannot_be_is_refused() {
         let said = complaint(&typed.split(' ').collect::<Vec<_>>(), code);
         assert!(said.contains(words), "{typed}: {said}");
     }
+}
+
+/// A campaign has no model with curved springs; the command that is named instead runs as it stands.
+#[test]
+fn a_campaign_says_where_springs_belong() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("c.toml");
+    std::fs::write(&path, "[rig]\nm1 = 0.125\n[springs]\ncubic1 = 1e7\ncubic2 = -2e6\n").unwrap();
+    let said = complaint(&["run", text(&path)], 2);
+    assert!(said.contains("line 3") && said.contains("[springs] in a campaign"), "{said}");
+    let named = said.split('`').nth(1).unwrap().strip_prefix("vibro ").unwrap();
+    let found = json(&named.split(' ').collect::<Vec<_>>());
+    assert_eq!(found["scene"]["springs"], serde_json::json!({ "cubic1": 1e7, "cubic2": -2e6 }));
+}
+
+/// Both springs together are judged beside each alone, each with the mass whose answer changes most.
+#[test]
+fn two_curved_springs_are_judged_together() {
+    let found = model(
+        "choose --force 5e-3 --frequency 5.1 --history up --set contact.stiffness=1e7 \
+         --set springs.cubic1=1e7 --set springs.cubic2=1e9",
+    );
+    // Mass 2 rests: both springs change what the first alone changes.
+    let alone = &found["springs"][0]["change"];
+    assert_eq!((&found["springs_together"], &alone["mass"]), (alone, &1.into()));
+    let doubts = found["findings"].as_array().unwrap().iter().filter(|f| f["severity"] == "doubt");
+    let codes: Vec<&str> = doubts.map(|f| f["code"].as_str().unwrap()).collect();
+    assert!(codes.contains(&"springs-together-matter"), "{codes:?}");
+    let one = model("choose --force 5e-3 --frequency 5.1 --history up --set springs.cubic1=1e7");
+    assert!(one.get("springs_together").is_none());
 }
 
 #[test]

@@ -84,6 +84,38 @@ fn a_start_has_five_numbers() {
     assert!(String::from_utf8_lossy(&output.stderr).contains("five: x1,v1,x2,v2,phase"));
 }
 
+/// The sweep down begins at the state in which the sweep up ends, not after the cycles that are drawn there:
+/// a sweep down that is started from that state has the same amplitudes, but for the rounding of its phase.
+#[test]
+fn down_continues_at_the_end_of_up() {
+    let range = "model sweep --force 0.5 --from 9 --to 10 --steps 5 --settle 5 --measure 2";
+    let both = json(&words(&format!("{range} --direction up-down")));
+    let end = |key: &str| both["ends"][0][key].as_f64().unwrap();
+    let [x1, v1, x2, v2, phase] = ["x1", "v1", "x2", "v2", "phase"].map(end);
+    let down =
+        json(&words(&format!("{range} --direction down --start={x1:?},{v1:?},{x2:?},{v2:?},{phase:?}")));
+    for (a, b) in both["down"].as_array().unwrap().iter().zip(down["down"].as_array().unwrap()) {
+        let [a, b] = [a, b].map(|point| point["x1"].as_f64().unwrap());
+        assert!((a / b - 1.0).abs() < 1e-9, "{a} {b}");
+    }
+}
+
+#[test]
+fn a_largest_amplitude_in_irregular_motion_is_named() {
+    let answer = json(&words("model sweep --force 0.5 --from 11.5 --to 12 --steps 20 --direction up"));
+    let largest = |key: &str| {
+        let points = answer["up"].as_array().unwrap().iter();
+        points.map(|p| p[key].as_f64().unwrap()).fold(0.0, f64::max)
+    };
+    let all = answer["findings"].as_array().unwrap().iter();
+    let named: Vec<_> = all.filter(|f| f["code"] == "sweep-maximum-irregular").collect();
+    assert!(!named.is_empty());
+    for found in named {
+        let mass = found["numbers"]["mass"].as_f64().unwrap();
+        assert_eq!(found["numbers"]["amplitude"], largest(&format!("x{mass}")));
+    }
+}
+
 #[test]
 fn a_map_has_its_keys_and_its_rows() {
     let folder = tempfile::tempdir().unwrap();

@@ -18,7 +18,6 @@ pub enum Concern {
 }
 use Concern::{At, Group, Item, Nothing, Whole};
 
-const READER: &str = "of a reader: what a file holds has no uncertainty";
 const MODEL: &str = "of a model: what it computes has no uncertainty";
 const FIT: Concern = At(&["fit/parameters/*/estimate", "fit/parameters/*/interval", "fit/profile/interval"]);
 const PARAMETER: Concern = Item("fit/parameters", "parameter", &["estimate", "interval"]);
@@ -31,7 +30,7 @@ const VELOCITIES: Concern =
     Group(&["first_contact", "before", "after", "energy", "energy_given", "restitution"]);
 
 /// Every code of a doubt.
-pub const CONCERNS: [(&str, Concern); 61] = [
+pub const CONCERNS: [(&str, Concern); 73] = [
     ("rig-left-out", Nothing(MODEL)),
     ("decay-unexplained", MODE),
     ("decay-changes", MODE),
@@ -49,10 +48,21 @@ pub const CONCERNS: [(&str, Concern); 61] = [
     ("drill-velocity-impossible", Group(&[""])),
     ("drill-ringing", Group(&[""])),
     ("drill-instrument-limited", Nothing("a bandwidth has no uncertainty")),
-    ("last-number-cut-off", Nothing(READER)),
-    ("no-closing-line", Nothing(READER)),
-    ("decibels-overruled", Nothing(READER)),
-    ("step-changed", Nothing(READER)),
+    ("last-number-cut-off", Whole),
+    ("no-closing-line", Whole),
+    ("decibels-overruled", Whole),
+    ("axis-rounded-or-lost", Whole),
+    ("axis-clock-minutes", Whole),
+    ("rate-decimated", Whole),
+    ("rates-differ", Whole),
+    ("head-step-assumed", Whole),
+    ("digits-may-be-grouped", Whole),
+    ("unit-head-differs", Whole),
+    ("unit-row-differs", Whole),
+    ("sheet-in-percent", Whole),
+    ("missing-marked", Whole),
+    ("filled-with-zeros", Whole),
+    ("step-changed", Whole),
     ("prior-contradicted", FIT),
     ("bound-contradicted", FIT),
     ("least-squares-elsewhere", FIT),
@@ -79,6 +89,7 @@ pub const CONCERNS: [(&str, Concern); 61] = [
     ("law-matters", Nothing(MODEL)),
     ("spring-beyond-force", Nothing(MODEL)),
     ("spring-curvature-matters", Nothing(MODEL)),
+    ("springs-together-matter", Nothing(MODEL)),
     ("pulse-instrument-unknown", Whole),
     ("pulse-corner-above-half-rate", Whole),
     ("pulse-low-pass-missing", Whole),

@@ -25,7 +25,7 @@ fn case(name: &'static str, arguments: &str, file: Option<&Path>, codes: &'stati
 
 /// Records that provoke doubts of all analyses but fits, written to a folder.
 pub fn cases(folder: &Path) -> Vec<Case> {
-    let all = [decays, functions, impacts, pulses, restitutions, spectra, sweeps, drills];
+    let all = [readers, decays, functions, impacts, pulses, restitutions, spectra, sweeps, drills];
     let each = all.into_iter().enumerate().flat_map(|(i, cases)| {
         let own = folder.join(i.to_string());
         std::fs::create_dir(&own).unwrap();
@@ -50,6 +50,46 @@ fn table(folder: &Path, name: &str, head: &str, rows: impl IntoIterator<Item = V
 fn samples(folder: &Path, name: &str, unit: &str, rate: f64, values: &[f64]) -> PathBuf {
     let rows = values.iter().enumerate().map(|(i, value)| vec![i as f64 / rate, *value]);
     table(folder, name, &format!("time [s],a [{unit}]"), rows)
+}
+
+/// Steady decays of 20 Hz at 1 kHz in files that leave their times, their unit or single values in doubt.
+fn readers(folder: &Path) -> Vec<Case> {
+    let mut noise = Noise::new(5);
+    let mut value = |i: usize| {
+        let t = i as f64 * 1e-3;
+        (-0.02 * TAU * 20.0 * t).exp() * (TAU * 20.0 * t).cos() + 1e-4 * noise.normal()
+    };
+    let values: Vec<f64> = (0..3000).map(&mut value).collect();
+    let text = |name: &'static str, head: &str, row: &dyn Fn(usize, f64) -> String, codes| {
+        let command = if name == "a missing value" { "spectrum --tones 1" } else { "decay" };
+        let rows: Vec<String> = values.iter().enumerate().map(|(i, v)| row(i, *v)).collect();
+        let path = folder.join(format!("{}.csv", name.replace(' ', "_")));
+        std::fs::write(&path, format!("{head}\n{}", rows.concat())).unwrap();
+        case(name, command, Some(&path), codes)
+    };
+    let timed = |i: usize, v: f64| format!("{:.3},{v:.8}\n", i as f64 * 1e-3);
+    let alone = |_: usize, v: f64| format!("{v:.8}\n");
+    let filled = |i: usize, v: f64| timed(i, if i < 2900 { v } else { 0.0 });
+    // A steady sine that stands out of the mark's even spectrum.
+    let steady = |i: usize| 90.0 * (TAU * 0.02 * i as f64).sin();
+    let marked = |i: usize, _: f64| timed(i, if i == 2000 { 999.0 } else { steady(i) });
+    let lost = |i: usize, v: f64| if i % 50 == 9 { String::new() } else { timed(i, v) };
+    let minutes = |i: usize, v: f64| format!("{}:{:02},{v:.8}\n", i / 60, i % 60);
+    let grouped = |_: usize, v: f64| format!("{:.3}\n", 300.0 + 100.0 * v);
+    let cut = |i: usize, v: f64| if i < 2999 { timed(i, v) } else { "2.999,0.0".to_owned() };
+    vec![
+        text("lost or rounded", "time [s],a [m]", &lost, &["axis-rounded-or-lost"]),
+        text("hours or minutes", "time,a [m]", &minutes, &["axis-clock-minutes"]),
+        text("decimated", "Sampling rate: 1000 Hz\nevery 8th sample\na [m]", &alone, &["rate-decimated"]),
+        text("two rates", "Sampling rate: 1000 Hz\nfs = 2000 Hz\na [m]", &alone, &["rates-differ"]),
+        text("step without unit", "Sample period: 500\na [m]", &alone, &["head-step-assumed"]),
+        text("grouped digits", "Sampling rate: 1000 Hz\na [m]", &grouped, &["digits-may-be-grouped"]),
+        text("unit of the head", "Unit: mm\ntime [s],a [m]", &timed, &["unit-head-differs"]),
+        text("unit of the row", "time [s],a [mm]\n[s],[m]", &timed, &["unit-row-differs"]),
+        text("a missing value", "time [s],a [m]", &marked, &["missing-marked"]),
+        text("filled up", "time [s],a [m]", &filled, &["filled-with-zeros"]),
+        text("cut off", "time [s],a [m]", &cut, &["last-number-cut-off"]),
+    ]
 }
 
 /// Free decays of a mode of 20 Hz whose frequency rises with its amplitude.

@@ -200,7 +200,7 @@ impl RecordContext<'_> {
     /// The scale of times that count from 1970, or in days as in spreadsheets; the first value shows which.
     fn counted_from(&self, scale: AxisScale, column: &Column, values: &[f64]) -> AxisScale {
         if self.is_clock(column) {
-            let minutes = || Finding::caution("axis-clock-minutes");
+            let minutes = || Finding::doubt("axis-clock-minutes").without_estimate();
             let found = if self.minutes() { minutes() } else { Finding::note("axis-clock") };
             return AxisScale { assumed: Some(found), ..scale };
         }

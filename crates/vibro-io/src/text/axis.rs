@@ -263,20 +263,18 @@ fn headed(n: usize, header: &Stated, findings: &mut Vec<Finding>) -> Axis {
                 findings.push(Finding::caution("rate-and-spectrum-in-header").number("rate", rate));
             }
             let assumed =
-                header.assumed.as_deref().map(|key| Finding::caution("head-step-assumed").name("key", key));
-            findings.extend(assumed.map(|found| found.number("step", 1.0 / rate)));
+                header.assumed.as_deref().map(|key| Finding::doubt("head-step-assumed").name("key", key));
+            findings.extend(assumed.map(|found| found.number("step", 1.0 / rate).without_estimate()));
             if header.assumed.is_none() {
                 findings.push(Finding::note(code::RATE_FROM_HEAD).number("rate", rate));
                 let line = header.decimation.as_deref();
-                findings.extend(
-                    line.map(|line| {
-                        Finding::caution("rate-decimated").number("rate", rate).name("line", line)
-                    }),
-                );
+                findings.extend(line.map(|line| {
+                    let found = Finding::doubt("rate-decimated").number("rate", rate);
+                    found.name("line", line).without_estimate()
+                }));
             }
-            let other =
-                header.other_rate.map(|other| Finding::caution("rates-differ").number("other", other));
-            findings.extend(other.map(|found| found.number("rate", rate)));
+            let other = header.other_rate.map(|other| Finding::doubt("rates-differ").number("other", other));
+            findings.extend(other.map(|found| found.number("rate", rate).without_estimate()));
             Axis::time(header.start.unwrap_or(0.0), 1.0 / rate, n)
         }
         _ => {

@@ -1,13 +1,14 @@
-//! Cautions on the values of a text: scale factors that are not applied, repeated rows, sample-and-hold,
+//! Findings on the values of a text: scale factors that are not applied, repeated rows, sample-and-hold,
 //! marks of missing values, zero padding.
 
 use super::column::Column;
 use super::header::Stated;
 use vibro_record::code;
-use vibro_record::{Axis, AxisKind, Finding};
+use vibro_record::{Axis, AxisKind, Finding, Values};
 
-/// Magnitudes by which programs mark missing values.
-const MISSING_MARKS: [f64; 5] = [999.0, 9999.0, 99_999.0, 999_999.0, 9_999_999.0];
+/// Magnitudes by which programs mark missing values. The last is the fill value of netCDF.
+const MISSING_MARKS: [f64; 11] =
+    [999.0, 9999.0, 99_999.0, 999_999.0, 9_999_999.0, 1e20, 1e30, 1e35, 1e36, 1e38, 9.969_209_968_386_869e36];
 
 /// A missing-value mark is at least 10 times all other magnitudes; a measured 999 has neighbours of its
 /// size.
@@ -46,18 +47,14 @@ pub fn of(table: &[Column], axis: &Axis, stated: &Stated, is_table: bool) -> Vec
     if let Some((n, all)) = repeats(table) {
         found.push(Finding::caution("rows-repeat").count("n", n).count("all", all));
     }
-    let marked = table.iter().filter_map(|column| Some((column.label(), column.missing_mark()?)));
-    found.extend(marked.map(|(label, (mark, n))| {
-        let marked = Finding::caution("missing-marked").name("column", label);
-        marked.number("mark", mark).count("n", n)
-    }));
     let filled = table.iter().filter_map(|column| Some((column.label(), column.filled_with_zeros()?)));
     found.extend(filled.map(|(label, n)| {
-        let filled = Finding::caution("filled-with-zeros").name("column", label).count("n", n);
+        let filled = Finding::doubt("filled-with-zeros").name("column", label).count("n", n);
         match &axis.kind {
             AxisKind::Time => filled.number("end", axis.at(axis.len().saturating_sub(n))),
             _ => filled,
         }
+        .without_estimate()
     }));
     let held = table.iter().filter_map(|column| Some((column.held()?, column.label())));
     let held: Vec<(usize, String)> = held.collect();
@@ -97,6 +94,21 @@ impl Column {
         let largest = others.fold(f64::NEG_INFINITY, |largest: f64, v| largest.max(v.abs()));
         let n = values.iter().filter(|v| **v == mark).count();
         (2 * n < values.len() && FAR * largest <= mark.abs()).then_some((mark, n))
+    }
+
+    /// The finding on marks of missing values, which become missing (NaN) where that is allowed.
+    pub fn take_marks(&mut self, allow_missing: bool) -> Option<Finding> {
+        let (mark, n) = self.missing_mark()?;
+        let facts = [("mark", mark), ("n", n as f64)];
+        if !allow_missing {
+            let found = Finding::doubt("missing-marked").name("column", self.label());
+            return Some(facts.iter().fold(found, |found, (k, v)| found.number(k, *v)).without_estimate());
+        }
+        if let Some(Values::Real(values)) = self.values.values_mut() {
+            values.iter_mut().filter(|v| **v == mark).for_each(|v| *v = f64::NAN);
+        }
+        let found = Finding::caution("marks-as-missing").name("column", self.label());
+        Some(facts.iter().fold(found, |found, (k, v)| found.number(k, *v)))
     }
 
     /// Number of zeros that pad the end of the column; hardly any value before them is 0.

@@ -113,8 +113,8 @@ impl Name {
         let own = Name::parse(&self.name).unit?;
         let known = |unit: &str| Unit::parse(amplitude(unit).0);
         let differ = known(&own)? != known(used)?;
-        let found = Finding::caution("unit-row-differs").name("head", own).name("used", used);
-        differ.then(|| found.name("column", self.name.as_str()))
+        let found = Finding::doubt("unit-row-differs").name("head", own).name("used", used);
+        differ.then(|| found.name("column", self.name.as_str()).without_estimate())
     }
 
     /// Reads a quantity divided by its unit, `t/s` or `a/(m/s²)`; `None` for other text.

@@ -102,8 +102,10 @@ impl<'a> RecordContext<'a> {
         if table.len() == 2 && !has_axis && self.dialect.names.is_none() && !self.options.complex {
             of_axis.push(Finding::caution("two-channels"));
         }
-        let table = self.joined(table, &over.axis, &mut of_axis)?;
+        let mut table = self.joined(table, &over.axis, &mut of_axis)?;
         of_axis.extend(cautions::of(&table, &over.axis, &self.stated, self.is_table));
+        let marks = table.iter_mut().filter_map(|column| column.take_marks(self.options.allow_missing));
+        of_axis.extend(marks.collect::<Vec<_>>());
         let record = |(i, column)| self.record(i, column, &over);
         let mut built = table.into_iter().enumerate().map(record).collect::<Result<Vec<_>>>()?;
         if self.is_table {
@@ -299,7 +301,8 @@ impl<'a> RecordContext<'a> {
         let (head, used) = (self.stated.unit.as_deref()?, name.unit.as_deref()?);
         let (of_head, of_name) = (Unit::parse(head)?, Unit::parse(used)?);
         let same = of_head.dimension() == of_name.dimension() && of_head.factor() != of_name.factor();
-        same.then(|| Finding::caution("unit-head-differs").name("head", head).name("used", used))
+        let found = Finding::doubt("unit-head-differs").name("head", head).name("used", used);
+        same.then(|| found.without_estimate())
     }
 
     /// Scaling, window and other spectral properties that remarks and the unit of a column state.

@@ -172,8 +172,8 @@ pub fn grouped(text: &Text, dialect: &Dialect) -> Result<Option<Finding>> {
     let first = all.map(|(_, (_, cell))| cell).next();
     Ok(first.map(|cell| {
         let other = if dialect.decimal == b',' { "point" } else { "comma" };
-        let found = Finding::caution("digits-may-be-grouped").name("columns", labels.join(", "));
-        found.name("cell", cell.as_str()).name("other", other)
+        let found = Finding::doubt("digits-may-be-grouped").name("columns", labels.join(", "));
+        found.name("cell", cell.as_str()).name("other", other).without_estimate()
     }))
 }
 

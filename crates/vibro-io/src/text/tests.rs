@@ -1549,6 +1549,17 @@ fn marks_of_missing_values_and_zeros_that_fill_up_are_said() {
     let signal = |i: usize| 2.0 * (0.37 * i as f64 + 0.1).sin();
     let marked = table(&|i| if i % 50 == 9 { -9999.0 } else { signal(i) });
     assert!(has_finding(&marked, "missing-marked", &["mark=-9999", "n=4"]), "{marked:?}");
+    // Where missing values are allowed, they are taken as missing, as is a value of 1e30.
+    for mark in [-9999.0, 1e30] {
+        let rows: Vec<String> =
+            (0..200).map(|i| format!("{i},{}", if i == 9 { mark } else { signal(i) })).collect();
+        let text = format!("t [s],a [g]\n{}\n", rows.join("\n"));
+        let found = read_with(&Reader::new().allow_missing(true), text).unwrap();
+        assert!(has_finding(&found.all_findings(), "marks-as-missing", &["n=1"]), "{:?}", found.findings);
+        let Record::Trace(trace) = &found.records[0] else { panic!("no trace") };
+        let missing: Vec<usize> = (0..200).filter(|i| trace.values[*i].is_nan()).collect();
+        assert_eq!(missing, [9]);
+    }
     let filled = table(&|i| if i < 150 { signal(i) } else { 0.0 });
     assert!(has_finding(&filled, "filled-with-zeros", &["n=50", "end=0.15"]), "{filled:?}");
     // Values of a magnitude near the mark are measured, and a signal that rests at 0 is not padded.

@@ -59,5 +59,6 @@ pub struct DecayResult {
     pub curves: [Vec<f64>; 3],
 }
 
+uncertain!(DecayResult: modes, levels, decrement);
 uncertain!(DecayMode: frequency, zeta, amplitude, phase);
 uncertain!(Level: mode);

@@ -9,7 +9,7 @@ use crate::exposure::Exposure;
 use serde::Serialize;
 use std::collections::BTreeSet;
 use vibro_record::code;
-use vibro_record::{Finding, uncertain};
+use vibro_record::{Finding, Uncertain, uncertain};
 
 /// Result of a drill's record.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -88,7 +88,27 @@ pub struct Drill {
 }
 
 // Speed and exposure do not depend on the velocity.
-uncertain!(Drill: groups, before, after, phase, energy, energy_given, restitution, displacement);
+impl Uncertain for Drill {
+    fn doubt(&mut self) {
+        let Drill { groups, before, after, phase, energy, energy_given, restitution, displacement, .. } =
+            self;
+        let of_velocity: [&mut dyn Uncertain; 8] =
+            [groups, before, after, phase, energy, energy_given, restitution, displacement];
+        of_velocity.into_iter().for_each(Uncertain::doubt);
+    }
+
+    fn doubt_all(&mut self) {
+        self.doubt();
+        self.speed.doubt();
+        self.exposure.doubt();
+        for impact in &mut self.impacts {
+            let Impact { time_std, phase_std, first_contact_std, before_std, after_std, .. } = impact;
+            for std in [time_std, phase_std, first_contact_std, before_std, after_std] {
+                *std = f64::NAN;
+            }
+        }
+    }
+}
 
 impl Drill {
     /// Doubt where the velocity, of this range, has clipped samples: they bias the displacement low.

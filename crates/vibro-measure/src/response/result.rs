@@ -67,9 +67,24 @@ pub struct Receptance {
 
 uncertain!(Harmonic: amplitude);
 uncertain!(Receptance: std);
-uncertain!(Response: points, resonances, jumps);
 // Phase and receptance are ratios of two lines of one window, on which they do not depend.
 uncertain!(ResponsePoint: excitation_std, force_std, frequency_std, amplitude, harmonics, subharmonics);
+
+impl Uncertain for Response {
+    fn doubt(&mut self) {
+        self.points.doubt();
+        self.resonances.doubt();
+        self.jumps.doubt();
+    }
+
+    fn doubt_all(&mut self) {
+        self.doubt();
+        for point in &mut self.points {
+            point.of_response().doubt();
+        }
+        self.jumps.iter_mut().for_each(|jump| jump.frequency_std = f64::NAN);
+    }
+}
 
 impl ResponsePoint {
     /// The numbers of the response: all but its frequency and the force.

@@ -33,7 +33,26 @@ pub struct Curvature {
     pub shift: Option<f64>,
     /// Change of the answer with the equivalent straight spring, of the mass that it changes most; `None`
     /// where there is no answer, or the spring is deflected at rest.
-    pub change: Option<Change>,
+    pub change: Option<MassChange>,
+}
+
+/// Change of an answer, with the mass that changes most over its allowance.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct MassChange {
+    /// The change.
+    #[serde(flatten)]
+    pub change: Change,
+    /// Number of the mass; `None` for an observable of both masses.
+    pub mass: Option<u8>,
+}
+
+/// Effects of the curved springs on an answer.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Effects {
+    /// Of each curved spring.
+    pub each: Vec<Curvature>,
+    /// Change of the answer with both; `None` where only one is curved, or one has no change of its own.
+    pub together: Option<MassChange>,
 }
 
 /// Displacement of a mass, sampled: extremes in m, and sums over time of x, x², x³ and x⁴.
@@ -81,12 +100,10 @@ impl Displacement {
 ///
 /// # Errors
 /// If the motion cannot be followed.
-pub fn effects(
-    choice: &Choice,
-    stage: &DrivenScene<'_>,
-    settled: Option<Simulation>,
-) -> Result<Vec<Curvature>> {
-    let (Some(mut motion), Some(springs)) = (settled, stage.scene.springs) else { return Ok(Vec::new()) };
+pub fn effects(choice: &Choice, stage: &DrivenScene<'_>, settled: Option<Simulation>) -> Result<Effects> {
+    let (Some(mut motion), Some(springs)) = (settled, stage.scene.springs) else {
+        return Ok(Effects::default());
+    };
     let mut displacements = [Displacement::NONE; 2];
     let rig = stage.scene.rig;
     let fastest =
@@ -103,40 +120,70 @@ pub fn effects(
         })?;
     }
     let model = choice.chosen.unwrap_or(Model::Restitution);
+    let added = [0, 1].map(|i| springs.cubic()[i] * displacements[i].slope());
+    let change = |added: [f64; 2]| -> Option<MassChange> {
+        let changed = Rig { k1: rig.k1 + added[0], k2: rig.k2 + added[1], ..rig };
+        let change = elsewhere(choice, model, stage, changed)?;
+        Some(MassChange { change, mass: (!stage.question.observable.is_of_impacts()).then_some(change.mass) })
+    };
     let effect = |i: usize| {
         let (x, cubic, stiffness) = (&displacements[i], springs.cubic()[i], [rig.k1, rig.k2][i]);
-        let added = cubic * x.slope();
-        let changed =
-            if i == 0 { Rig { k1: rig.k1 + added, ..rig } } else { Rig { k2: rig.k2 + added, ..rig } };
+        let (added, alone) = (added[i], [0, 1].map(|k| if k == i { added[k] } else { 0.0 }));
         let within = x.high.max(-x.low) <= limit(stiffness, cubic) && added > -stiffness;
         Curvature {
             spring: i as u8 + 1,
             amplitude: (x.high - x.low) / 2.0,
             shift: within.then(|| (1.0 + added / stiffness).sqrt() - 1.0),
-            change: (within && x.is_centred()).then(|| elsewhere(choice, model, stage, changed)).flatten(),
+            change: (within && x.is_centred()).then(|| change(alone)).flatten(),
         }
     };
     let counts = |i: &usize| springs.cubic()[*i] != 0.0 && (*i == 0 || !rig.has_wall());
-    Ok((0..2).filter(counts).map(effect).collect())
+    let each: Vec<Curvature> = (0..2).filter(counts).map(effect).collect();
+    let both = each.len() == 2 && each.iter().all(|spring| spring.change.is_some());
+    let together = both.then(|| change(added)).flatten();
+    Ok(Effects { each, together })
+}
+
+/// The findings on the spring with the largest effect, and on both together.
+pub fn findings(choice: &Choice, question: &Question) -> Vec<Finding> {
+    let together = choice.springs_together.map(|MassChange { change, mass }| {
+        let found = if change.enough {
+            Finding::note("springs-together-hold")
+        } else {
+            Finding::doubt("springs-together-matter").without_estimate()
+        };
+        of_mass(found.number("change", change.change), mass).number("tolerance", question.tolerance)
+    });
+    [finding(choice, question)].into_iter().chain(together).collect()
+}
+
+/// Names the mass whose answer changes, if the observable is of one.
+fn of_mass(found: Finding, mass: Option<u8>) -> Finding {
+    mass.into_iter().fold(found, |found, mass| found.count("mass", mass.into()))
 }
 
 /// The finding on the spring with the largest effect.
-pub fn finding(choice: &Choice, question: &Question) -> Finding {
-    let size = |c: &Curvature| c.change.map_or(f64::INFINITY, |change| change.change.abs());
+fn finding(choice: &Choice, question: &Question) -> Finding {
+    let size = |c: &Curvature| c.change.map_or(f64::INFINITY, |c| c.change.change.abs());
     let Some(worst) = choice.springs.iter().max_by(|a, b| size(a).total_cmp(&size(b))) else {
         return Finding::caution("springs-unchecked");
     };
     let Curvature { spring, amplitude, shift, change } = *worst;
     let told = |found: Finding| found.count("spring", spring.into()).number("amplitude", amplitude);
     let Some(shift) = shift else { return told(Finding::doubt("spring-beyond-force").without_estimate()) };
-    let enough = change.is_some_and(|c| c.enough);
+    let enough = change.is_some_and(|c| c.change.enough);
     let found = if enough {
         Finding::note("spring-curvature-holds")
     } else {
         Finding::doubt("spring-curvature-matters").without_estimate()
     };
     let found = told(found).number("shift", shift).number("tolerance", question.tolerance);
-    let found = change.into_iter().fold(found, |found, change| found.number("change", change.change));
-    let impacts = choice.rung(Model::Linear).error.filter(|impacts| !enough && size(worst) > *impacts);
+    let found = change.into_iter().fold(found, |found, MassChange { change, mass }| {
+        of_mass(found.number("change", change.change), mass)
+    });
+    let impacts = choice
+        .rung(Model::Linear)
+        .error
+        .filter(|impacts| !enough && change.is_some() && size(worst) > *impacts);
     impacts.into_iter().fold(found, |found, impacts| found.number("impacts", impacts))
 }

@@ -66,6 +66,9 @@ pub struct Change {
     /// Whether the change is within the tolerance, the noise floor or the standard errors of the answers.
     /// Never where one motion has not settled, or has a standard error above tolerance and noise floor.
     pub enough: bool,
+    /// Number of the mass of the change; 1 where neither changes.
+    #[serde(skip)]
+    pub mass: u8,
 }
 
 /// An answer of a model.
@@ -105,7 +108,7 @@ impl Answer {
     /// Whether `other` may be an answer of the same motion: for both masses the difference is within the
     /// tolerance, the noise floor or this many standard errors.
     pub fn agrees(&self, other: &Answer, question: &Question, errors: f64) -> bool {
-        self.farthest(other, question, errors).is_none_or(|(ratio, _)| ratio <= 1.0)
+        self.farthest(other, question, errors).is_none_or(|(ratio, ..)| ratio <= 1.0)
     }
 
     /// Change to `other`, the answer of the rung `at`.
@@ -113,14 +116,14 @@ impl Answer {
         // An uncertain answer confirms nothing. The standard error of a motion that has not settled does not
         // widen the allowance.
         let known = self.known(question) && other.known(question);
-        let (ratio, change) =
-            self.farthest(other, question, if known { SAME } else { 0.0 }).unwrap_or_default();
-        Change { at, change, enough: known && ratio <= 1.0 }
+        let (ratio, change, mass) =
+            self.farthest(other, question, if known { SAME } else { 0.0 }).unwrap_or((0.0, 0.0, 1));
+        Change { at, change, enough: known && ratio <= 1.0, mass }
     }
 
-    /// Ratio of the change to its allowance, and the relative change, for the mass with the larger ratio;
-    /// `None` where neither mass changes. The allowance includes `errors` standard errors.
-    fn farthest(&self, other: &Answer, question: &Question, errors: f64) -> Option<(f64, f64)> {
+    /// Ratio of the change to its allowance, the relative change, and its mass, for the mass with the larger
+    /// ratio; `None` where neither mass changes. The allowance includes `errors` standard errors.
+    fn farthest(&self, other: &Answer, question: &Question, errors: f64) -> Option<(f64, f64, u8)> {
         let largest = self.value.iter().chain(&other.value).fold(0.0_f64, |l, v| l.max(v.abs()));
         let far = |i: usize| {
             let (own, moved) = (self.value[i].abs(), other.value[i] - self.value[i]);
@@ -128,7 +131,8 @@ impl Answer {
             let allowed = (question.tolerance * own.max(STILL * largest)).max(question.noise).max(unsure);
             // Without an allowance any change is too large.
             let ratio = if allowed > 0.0 { moved.abs() / allowed } else { f64::INFINITY };
-            (moved != 0.0).then(|| (ratio, moved / if own < STILL * largest { largest } else { own }))
+            let change = moved / if own < STILL * largest { largest } else { own };
+            (moved != 0.0).then_some((ratio, change, i as u8 + 1))
         };
         [0, 1].into_iter().filter_map(far).reduce(|a, b| if b.0 > a.0 { b } else { a })
     }

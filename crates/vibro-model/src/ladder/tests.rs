@@ -497,11 +497,17 @@ fn a_curved_spring_counts_by_its_equivalent_stiffness() {
         let shift = (1.0 + added / rig.k1).sqrt() - 1.0;
         assert!((first.shift.unwrap() / shift - 1.0).abs() < 2e-3, "{first:?} {shift}");
         let change = linear(rig.k1 + added) / amplitude - 1.0;
-        assert!((first.change.unwrap().change / change - 1.0).abs() < 4e-3, "{first:?} {change}");
+        assert!((first.change.unwrap().change.change / change - 1.0).abs() < 4e-3, "{first:?} {change}");
         // Mass 2 rests.
         assert_eq!((second.spring, second.amplitude, second.shift), (2, 0.0, Some(0.0)));
         let found = finding(&choice, code);
-        assert_eq!((found.get("change"), found.get("spring")), (first.change.map(|c| c.change), Some(1.0)));
+        assert_eq!(
+            (found.get("change"), found.get("spring")),
+            (first.change.map(|c| c.change.change), Some(1.0))
+        );
+        assert_eq!((found.get("mass"), first.change.unwrap().mass), (Some(1.0), Some(1)));
+        // Mass 2 rests: both springs change what the first alone changes.
+        assert_eq!(choice.springs_together, first.change);
         // Without impacts they change nothing.
         assert_eq!(found.get("impacts").is_some(), code == "spring-curvature-matters");
     }

@@ -1,11 +1,12 @@
 //! Runs of a sweep from its start, and from the same state at other phases of the excitation.
 
 use super::Moving;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::model::portrait::{Portrait, PortraitOptions};
 use crate::model::sweep::{Plan, Point, Swept, in_phase};
 use crate::model::{Excitation, Motion, Regime, State};
-use crate::record::Direction;
+use crate::record::{Direction, Finding};
+use rayon::iter::Either;
 use rayon::prelude::*;
 use serde::Serialize;
 use std::f64::consts::TAU;
@@ -64,19 +65,19 @@ pub(super) struct Runs {
     legs: Vec<Leg>,
     /// Points of the sweeps from other phases, for each of the same legs; `None` where there was none.
     others: Option<Vec<Vec<Vec<Point>>>>,
+    /// Errors of sweeps from other phases.
+    failed: Vec<Error>,
     over_force: bool,
 }
 
-/// Sweeps a motion in one direction.
-type Sweep<'a> = &'a dyn Fn(&mut dyn Motion, Direction) -> Result<Vec<Point>>;
-
 impl Runs {
-    /// Sweeps motions that `make` creates from an excitation and a shift of the start phase (rad), over the
-    /// force at `frequency` (Hz) if that is given. A start from another phase that fails is left out. If at
-    /// most half of the points are regular, no other phase is tried: irregular motions cannot be told
-    /// apart.
+    /// Sweeps motions that `make` creates from an excitation, a state and a phase (rad), over the force at
+    /// `frequency` (Hz) if that is given. They begin at the stated state and phase, and again at later
+    /// phases, of which one that fails is left out. If at most half of the points are regular, no other phase
+    /// is tried: irregular motions cannot be told apart.
     pub fn of(
-        make: impl Fn(&Excitation, f64) -> Result<Moving> + Sync,
+        make: impl Fn(&Excitation, State, f64) -> Result<Moving> + Sync,
+        (state, phase): (State, f64),
         excitation: &Excitation,
         plan: &Plan,
         frequency: Option<f64>,
@@ -93,21 +94,60 @@ impl Runs {
                 Ok((frequency, value))
             }),
         };
-        let run = |(phase, directions): (f64, &[Direction])| -> Result<Vec<Leg>> {
+        let run = |(later, directions): (f64, &[Direction])| -> Result<Vec<Leg>> {
             let first = if directions.first() == Some(&Direction::Down) { plan.to } else { plan.from };
-            let mut motion = make(&at(first), phase * TAU)?;
-            directions.iter().map(|direction| leg(&mut *motion, *direction, &points)).collect()
+            let mut motion = make(&at(first), state, phase + later * TAU)?;
+            let one = |direction: &Direction| {
+                let points = points(&mut *motion, *direction)?;
+                // The motion after the end is that of a copy: the next direction begins at the end.
+                let last = if *direction == Direction::Up { plan.to } else { plan.from };
+                let mut copy = make(&at(last), motion.state(), motion.phase())?;
+                copy.set_frequency(motion.frequency())?;
+                leg(points, &mut *copy, *direction)
+            };
+            directions.iter().map(one).collect()
         };
         let legs = sweeps.par_iter().map(|s| run((0.0, s))).collect::<Result<Vec<_>>>()?.concat();
-        let all = |phase: f64| -> Option<Vec<Vec<Point>>> {
-            let legs: Vec<_> = sweeps.par_iter().map(|s| run((phase, s)).ok()).collect::<Option<_>>()?;
-            Some(legs.into_iter().flatten().map(|leg| leg.points).collect())
+        let all = |phase: f64| -> Result<Vec<Vec<Point>>> {
+            let legs: Vec<_> = sweeps.par_iter().map(|s| run((phase, s))).collect::<Result<_>>()?;
+            Ok(legs.into_iter().flatten().map(|leg| leg.points).collect())
         };
-        let mut runs = Runs { legs, others: None, over_force: frequency.is_some() };
+        let mut runs = Runs { legs, others: None, failed: Vec::new(), over_force: frequency.is_some() };
         if runs.mostly_regular() {
-            runs.others = Some(OTHER_PHASES.into_par_iter().filter_map(all).collect());
+            let (others, failed) = OTHER_PHASES.into_par_iter().map(all).partition_map(|run| match run {
+                Ok(points) => Either::Left(points),
+                Err(error) => Either::Right(error),
+            });
+            let others: Vec<_> = others;
+            (runs.others, runs.failed) = (Some(others).filter(|all| !all.is_empty()), failed);
         }
         Ok(runs)
+    }
+
+    /// Caution on sweeps from other phases that failed.
+    pub fn starts_failed(&self) -> Option<Finding> {
+        let why = self.failed.first()?.why();
+        let found = Finding::caution("sweep-starts-failed").count("n", self.failed.len());
+        Some(found.count("all", OTHER_PHASES.len()).name("why", why.trim_end_matches('.')))
+    }
+
+    /// Cautions on the largest amplitudes of masses, above `floor` (m), that belong to irregular motion.
+    pub fn irregular_maxima(&self, floor: f64) -> Vec<Finding> {
+        let unit = if self.over_force { "N" } else { "Hz" };
+        let maximum = |(leg, mass): (&Leg, usize)| {
+            let size = |p: &&Point| p.amplitudes()[mass];
+            let largest = leg.points.iter().max_by(|a, b| size(a).total_cmp(&size(b)))?;
+            let found = Finding::caution("sweep-maximum-irregular").count("mass", mass + 1);
+            let found = found.name("direction", leg.direction.name()).number("amplitude", size(&largest));
+            let found = found.number("at", self.value(largest)).name("unit", unit);
+            (size(&largest) > floor && !largest.is_regular(floor)).then_some(found)
+        };
+        self.legs.iter().flat_map(|leg| [(leg, 0), (leg, 1)]).filter_map(maximum).collect()
+    }
+
+    /// The swept value of a point: its force in N or its frequency in Hz.
+    fn value(&self, point: &Point) -> f64 {
+        if self.over_force { point.force } else { point.frequency }
     }
 
     /// The sweeps from the start.
@@ -156,7 +196,7 @@ impl Runs {
 
     /// Ranges of points for which `is` holds, given the leg, its points and the index.
     fn ranges(&self, is: impl Fn(usize, &[Point], usize) -> bool) -> Vec<Range> {
-        let value = |p: &Point| if self.over_force { p.force } else { p.frequency };
+        let value = |p: &Point| self.value(p);
         let mut found: Vec<Range> = Vec::new();
         for (k, Leg { direction, points, .. }) in self.legs.iter().enumerate() {
             let (mut last, begun) = (None, found.len());
@@ -191,9 +231,8 @@ const FEWEST: usize = 3;
 /// Ranges that are fewer points apart are one.
 const NEAR: usize = 4;
 
-/// Sweeps in one direction, and reads the motion after the end.
-fn leg(motion: &mut dyn Motion, direction: Direction, sweep: Sweep<'_>) -> Result<Leg> {
-    let points = sweep(motion, direction)?;
+/// The points of one direction, and the motion after the end.
+fn leg(points: Vec<Point>, motion: &mut dyn Motion, direction: Direction) -> Result<Leg> {
     let (frequency, phase, state) = (motion.frequency(), motion.phase(), motion.state());
     let portrait = Portrait::take(motion, &END)?;
     let relative_phase = points.last().and_then(|p| p.relative_phase);
