@@ -414,7 +414,7 @@ impl Scaled<'_> {
 
     fn result(&self, fit: &Fit, noise: &'static str, weight: &LineNoise) -> Rational {
         let n = self.x.len();
-        let whiteness = Whiteness::of(&fit.residuals.chunks(n).collect::<Vec<_>>());
+        let whiteness = Whiteness::of_fit(fit, n);
         let free = self.free();
         let place = |i: usize| free.iter().position(|f| *f == i);
         let covariance =
