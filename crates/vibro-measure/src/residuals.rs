@@ -51,8 +51,7 @@ impl Whiteness {
         if n < 12 || squares <= 0.0 || !squares.is_finite() {
             return Whiteness { p_value: None, inflation: 1.0 };
         }
-        let correlation =
-            |lag: usize| (lagged(sequences.iter().copied(), lag) - expected(lag)) / squares;
+        let correlation = |lag: usize| (lagged(sequences.iter().copied(), lag) - expected(lag)) / squares;
         let lags = if n < 40 { 4 } else { 10 };
         let total = n as f64;
         let sum: f64 = (1..=lags).map(|k| correlation(k).powi(2) / (total - k as f64)).sum();
@@ -70,6 +69,11 @@ impl Whiteness {
     /// Whether white noise is rejected.
     pub fn rejected(&self) -> bool {
         self.rejected_among(1)
+    }
+
+    /// Whether white noise is rejected and neighbouring residuals are alike, as where a model lacks a part.
+    pub fn alike(&self) -> bool {
+        self.rejected() && self.inflation > 1.0
     }
 
     /// Whether white noise is rejected for one of `many` records tested. Each may be rejected by chance, so
