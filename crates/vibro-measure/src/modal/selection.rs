@@ -248,16 +248,16 @@ pub(super) fn complete(
             coloured = Some(more);
             continue;
         }
-        if coloured.take().is_some_and(|fewer| fewer.aicc <= more.aicc) {
+        if coloured.as_ref().is_some_and(|fewer| left_out || fewer.aicc <= more.aicc) {
             break;
         }
         let (peaks, its) = more.at_peaks(lines);
         if better > SPLIT && !left_out {
             group.ahead = more.unclear(&its).map(|at| (better, at));
             if group.ahead.is_some() {
-                return sound;
+                break;
             }
-            (group.peaks, group.wider, group.pattern) = (peaks, None, None);
+            (group.peaks, group.wider, group.pattern, coloured) = (peaks, None, None, None);
             (*fit, sound) = (more, its);
             continue;
         }
