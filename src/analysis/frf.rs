@@ -245,6 +245,9 @@ impl Keys {
         answer.figure("frf", figures::frf(name, meta, measured, &found.modes));
         answer.figure("argand", figures::argand(name, meta, measured, &found.modes));
         let poles = stabilisation(measured, self.band);
+        if !poles.is_empty() {
+            answer.csv("stability", &tables::poles(&poles));
+        }
         answer.figure("stability", figures::stabilisation(name, meta, measured, &poles, &found.modes));
         if !records.is_empty() {
             let (files, unwritten) = files::records("frf", records)?;

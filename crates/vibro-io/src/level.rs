@@ -6,7 +6,7 @@ use crate::format::Format;
 use crate::held::Contents;
 use crate::options::Options;
 use vibro_record::code;
-use vibro_record::units::is_level;
+use vibro_record::units::{Unit, is_level};
 use vibro_record::{AxisKind, Error, Meta, Record, Result, Spectrum, Trace, Values};
 
 /// Words in a channel's name that mean a spectrum.
@@ -75,11 +75,7 @@ fn convert_levels(spectrum: &mut Spectrum) -> Result<()> {
     let Values::Real(values) = &mut spectrum.values else { return Ok(()) };
     let meta = &mut spectrum.meta;
     if let Some(reference) = meta.unit.reference() {
-        let is_density = reference.symbol().ends_with("/Hz");
-        let per_decade = if is_density { DB_PER_DECADE_OF_POWER } else { DB_PER_DECADE_OF_AMPLITUDE };
-        for level in values.iter_mut() {
-            *level = 10f64.powf(*level / per_decade);
-        }
+        values.iter_mut().for_each(|level| *level = above(&reference, *level));
         meta.findings.retain(|found| found.code != code::LEVELS_IN_DECIBELS);
         meta.step("from_levels", &[("unit", &meta.unit.symbol().to_owned())]);
         let factor = meta.adopt_unit(reference.symbol());
@@ -96,6 +92,12 @@ fn convert_levels(spectrum: &mut Spectrum) -> Result<()> {
         )));
     }
     Ok(())
+}
+
+/// Amplitude, or power density for a reference per Hz, of a level in dB over a reference of 1.
+pub fn above(reference: &Unit, level: f64) -> f64 {
+    let is_density = reference.symbol().ends_with("/Hz");
+    10f64.powf(level / if is_density { DB_PER_DECADE_OF_POWER } else { DB_PER_DECADE_OF_AMPLITUDE })
 }
 
 /// Refuses values that the file calls levels while their unit is linear, such as m/s².

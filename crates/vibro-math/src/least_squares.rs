@@ -14,6 +14,8 @@ pub struct Fit {
     pub parameters: Vec<f64>,
     /// Residuals at the minimum.
     pub residuals: Vec<f64>,
+    /// J: ∂rᵢ/∂pⱼ at the minimum.
+    pub jacobian: DMatrix<f64>,
     /// (JᵀJ)⁻¹: covariance of the parameters for residuals of unit variance.
     pub cofactor: DMatrix<f64>,
     /// Whether a minimum was reached; else the parameters are the best ones found.
@@ -84,7 +86,7 @@ pub fn least_squares(
     scale: &[f64],
 ) -> Result<Fit> {
     let Minimum { parameters, residuals, jacobian, converged } = minimise(residuals, n, start, scale, None)?;
-    Ok(Fit { cofactor: cofactor(jacobian)?, parameters, residuals, converged })
+    Ok(Fit { cofactor: cofactor(jacobian.clone())?, parameters, residuals, jacobian, converged })
 }
 
 /// Parameters that minimise a sum of squared residuals, without their uncertainty.

@@ -22,6 +22,7 @@ pub use response::Measured;
 pub use result::{ByMethod, ModalOptions, ModalResult, Mode, Pole};
 pub use stabilisation::{OrderedPole, stabilisation};
 
+use num_complex::Complex64;
 use peak::Peak;
 use rational::{Rational, rational};
 use report::Candidate;
@@ -35,12 +36,28 @@ type Fitted = (PeakGroup, Rational);
 ///
 /// Each peak a factor of two above its valleys is a candidate. Peaks too near each other to be separated are
 /// fitted together, and modes of other groups are subtracted before the last fit of a group. With a band, its
-/// modes are then fitted together to all its lines, where that explains the lines.
+/// modes are then fitted together to all its lines, where that explains the lines. Where only the conjugate
+/// of the function has modes, its phase follows exp(−iωt), and the conjugate is fitted.
 ///
 /// # Errors
 /// If the band is impossible, holds no peak or fewer lines than the parameters of a mode, or no line can be
 /// used.
 pub fn modal(measured: &Measured, options: &ModalOptions) -> Result<ModalResult> {
+    let refused = match damped(measured, options) {
+        Err(refused) if !measured.magnitude_only => refused,
+        found => return found,
+    };
+    let values = measured.values.iter().map(Complex64::conj).collect();
+    let Ok(mut found) = damped(&Measured { values, ..measured.clone() }, options) else {
+        return Err(refused);
+    };
+    found.modes.iter_mut().flat_map(|mode| &mut mode.fitted).for_each(|(_, _, im)| *im = -*im);
+    found.findings.insert(0, Finding::caution("modal-phase-reversed"));
+    Ok(found)
+}
+
+/// The modes of a function whose phase falls through a resonance.
+fn damped(measured: &Measured, options: &ModalOptions) -> Result<ModalResult> {
     let least = options.least_coherence.unwrap_or(0.5);
     if !(0.0..1.0).contains(&least) {
         return Err(Error::usage(format!("a least coherence of {least}"), "a number from 0 to below 1"));
@@ -96,33 +113,38 @@ pub fn modal(measured: &Measured, options: &ModalOptions) -> Result<ModalResult>
 fn without_modes(options: &ModalOptions) -> Error {
     let refused = Error::refused("no peak of the function is supported as a mode");
     match options.band {
-        None => refused.hint("a band around one peak, or check the sign of the phase").setting("band"),
-        Some(_) => {
-            refused.hint("longer records, for five lines or more in the peak; check the sign of the phase")
-        }
+        None => refused.hint("choose a band around one peak").setting("band"),
+        Some(_) => refused.hint("take longer records, for five lines or more in the peak"),
     }
 }
 
-/// Gathers `unsupported` peaks, and findings on further peaks without a mode, in one finding.
+/// Gathers `unsupported` peaks in one finding, and findings on peaks without a mode where these are more
+/// than [`ALONE`].
 fn gather_noise(lines: &Measured, unsupported: &[Peak], findings: &mut Vec<Finding>) {
-    // The [`NAMED`] highest peaks without a mode keep a finding each. Further ones are noise, and share one
-    // finding.
     let odd = |found: &Finding| found.get("frequency").filter(|_| found.code == "modal-peak-unsupported");
-    let height = |f: &f64| lines.values[lines.frequency.partition_point(|line| line < f)].norm();
     let mut at: Vec<f64> = findings.iter().filter_map(odd).collect();
-    sort_by_number(&mut at, |a| -height(a));
-    let mut at = at.split_off(at.len().min(NAMED));
-    findings.retain(|found| odd(found).is_none_or(|f| !at.contains(&f)));
-    if !unsupported.is_empty() || !at.is_empty() {
-        at.extend(unsupported.iter().map(|p| lines.frequency[p.at]));
-        at.sort_by(f64::total_cmp);
-        let finding = Finding::caution("modal-peaks-of-noise").count("n", at.len());
-        at.truncate(NAMED);
-        findings.push(finding.numbers("lines", at));
+    if at.len() > ALONE {
+        findings.retain(|found| odd(found).is_none());
+    } else {
+        at.clear();
     }
+    at.extend(unsupported.iter().map(|p| lines.frequency[p.at]));
+    if at.is_empty() {
+        return;
+    }
+    // The highest are named.
+    let height = |f: &f64| lines.values[lines.frequency.partition_point(|line| line < f)].norm();
+    sort_by_number(&mut at, |a| -height(a));
+    let finding = Finding::caution("modal-peaks-of-noise").count("n", at.len());
+    at.truncate(NAMED);
+    at.sort_by(f64::total_cmp);
+    findings.push(finding.numbers("lines", at));
 }
 
-/// Most peaks without a mode that are named.
+/// Most peaks without a mode that have a finding each.
+const ALONE: usize = 2;
+
+/// Most peaks without a mode that one finding names.
 const NAMED: usize = 8;
 
 /// The modes of all groups but group `at`. A mode that no peak of its own group supports may belong to group
@@ -155,7 +177,6 @@ fn refine(lines: &Measured, fits: &mut [Fitted]) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use num_complex::Complex64;
     use vibro_record::Fact;
     use vibro_record::units::Quantity;
 
@@ -197,6 +218,27 @@ mod tests {
         let circle = result.modes[0].by.iter().find(|b| b.method == "circle fit").unwrap();
         assert!((circle.frequency.value - 80.3).abs() < 0.02, "{circle:?}");
         assert!((circle.zeta.as_ref().unwrap().value / 0.01 - 1.0).abs() < 0.02, "{circle:?}");
+    }
+
+    /// A phase that rises through resonances is that of exp(−iωt).
+    #[test]
+    fn the_conjugate_of_a_function_has_its_modes() {
+        let conjugate = |of: &Measured| Measured {
+            values: of.values.iter().map(Complex64::conj).collect(),
+            ..of.clone()
+        };
+        let (plain, reversed) =
+            (found(&two(), &ModalOptions::default()), found(&conjugate(&two()), &ModalOptions::default()));
+        assert!(says(&reversed, "modal-phase-reversed") && !says(&plain, "modal-phase-reversed"));
+        assert_eq!(plain.modes.len(), reversed.modes.len());
+        for (plain, reversed) in plain.modes.iter().zip(&reversed.modes) {
+            assert_eq!(
+                (&plain.frequency, &plain.modal_constant),
+                (&reversed.frequency, &reversed.modal_constant)
+            );
+            let [a, b] = [plain, reversed].map(|mode| mode.fitted[0]);
+            assert_eq!(a, (b.0, b.1, -b.2), "the fit is of the lines as they are");
+        }
     }
 
     /// A mode shape: where two parts move against each other, one of their modal constants is negative.
@@ -367,7 +409,5 @@ mod tests {
         let with = |value| Measured { values: vec![value; 600], ..two() };
         assert!(refusal(&with(Complex64::new(1.0, 0.0)), None).contains("no peak"));
         assert!(refusal(&with(Complex64::new(f64::NAN, 0.0)), None).contains("0 of 600 lines"));
-        let reversed = Measured { values: two().values.iter().map(Complex64::conj).collect(), ..two() };
-        assert!(refusal(&reversed, None).contains("check the sign of the phase"));
     }
 }

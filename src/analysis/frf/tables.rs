@@ -1,6 +1,6 @@
 //! Modes as tables.
 
-use crate::measure::modal::ModalResult;
+use crate::measure::modal::{ModalResult, OrderedPole};
 use crate::report::layout::table;
 use crate::report::words::{Voice, sentence};
 use crate::report::{Cell, Table};
@@ -42,6 +42,25 @@ pub(crate) fn modal_methods(result: &ModalResult) -> Table {
             ("damping ratio", "1", &|by| by.zeta.as_ref().into()),
             ("modal constant", unit_of_constants(result), &|by| by.modal_constant.as_ref().into()),
             ("note", "", &|by| Cell::from(note(&by.note))),
+        ],
+    )
+}
+
+/// Poles of a stabilisation diagram, one row a pole.
+pub(crate) fn poles(poles: &[OrderedPole]) -> Table {
+    let stays = |pole: &OrderedPole| match pole {
+        OrderedPole { damping_stays: true, .. } => "frequency and damping",
+        OrderedPole { frequency_stays: true, .. } => "frequency",
+        _ => "",
+    };
+    table(
+        "Poles of models of rising order",
+        poles,
+        &[
+            ("order", "", &|pole| Cell::from(pole.order)),
+            ("frequency", "Hz", &|pole| Cell::Number(pole.frequency)),
+            ("damping ratio", "1", &|pole| Cell::Number(pole.zeta)),
+            ("stays", "", &|pole| Cell::from(stays(pole))),
         ],
     )
 }

@@ -3,6 +3,7 @@
 use super::names::{Name, label};
 use crate::assemble::kind_of;
 use crate::held::{Held, rises};
+use crate::level::above;
 use num_complex::Complex64;
 use std::borrow::Cow;
 use vibro_record::units::{Quantity, Unit};
@@ -122,25 +123,23 @@ impl Column {
         })
     }
 
-    /// Makes the magnitude of a frequency response function complex if the next column, `behind`, is its
-    /// phase. Returns whether it is.
+    /// Makes the magnitude of a frequency response function, or its level in dB over a unit such as 1 m/N,
+    /// complex if the next column, `behind`, is its phase. Returns whether it is.
     pub fn take_phase(&mut self, behind: &Column) -> bool {
-        let unit = self.name.unit.as_deref().and_then(Unit::parse);
-        let functions = [Quantity::Receptance, Quantity::Mobility, Quantity::Accelerance];
-        let is_function = unit.is_some_and(|unit| functions.contains(&unit.quantity()));
-        let (magnitudes, phases) = (self.reals(), behind.reals());
-        let plain = !self.values.is_complex() && magnitudes.len() == phases.len();
-        let Some(factor) = behind
-            .name
-            .phase()
-            .filter(|_| is_function && plain && magnitudes.iter().all(|magnitude| *magnitude >= 0.0))
-        else {
-            return false;
-        };
-        let pairs = magnitudes.iter().zip(phases.iter());
-        let values =
-            pairs.map(|(magnitude, phase)| Complex64::from_polar(*magnitude, factor * phase)).collect();
-        self.values = Values::Complex(values).into();
+        let reference = self.name.unit.as_deref().map(Unit::parse_or_opaque).and_then(|u| u.reference());
+        let unit = reference.clone().or_else(|| self.name.unit.as_deref().and_then(Unit::parse));
+        let is_function = unit.is_some_and(|unit| unit.quantity().is_function());
+        let (sizes, phases) = (self.reals(), behind.reals());
+        let plain = !self.values.is_complex() && sizes.len() == phases.len();
+        let usable = is_function && plain && (reference.is_some() || sizes.iter().all(|size| *size >= 0.0));
+        let Some(factor) = behind.name.phase().filter(|_| usable) else { return false };
+        let magnitude = |size: f64| reference.as_ref().map_or(size, |reference| above(reference, size));
+        let pairs = sizes.iter().zip(phases.iter());
+        let values = pairs.map(|(size, phase)| Complex64::from_polar(magnitude(*size), factor * phase));
+        self.values = Values::Complex(values.collect()).into();
+        if let Some(reference) = reference {
+            self.name.unit = Some(reference.symbol().to_owned());
+        }
         true
     }
 

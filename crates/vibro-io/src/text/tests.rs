@@ -1210,6 +1210,18 @@ fn magnitude_and_phase_of_a_function_are_one_complex_record() {
     let values = &record.values;
     assert!((values[0] - Complex64::new(0.0, 2.0 * 9.806_65)).norm() < 1e-12, "{values:?}");
     assert!((values[1] - Complex64::new(-4.0 * 9.806_65, 0.0)).norm() < 1e-12, "{values:?}");
+    // 20 dB are a factor of ten of the reference, which may be any multiple of the unit.
+    for (names, one) in
+        [("Frequency (Hz),Level (dB re 1 m/N),Phase (deg)", 1.0), ("f (Hz),H (dB re 1 µm/N),Phase (°)", 1e-6)]
+    {
+        let function = table(names);
+        let [Record::Frf(record)] = function.records.as_slice() else { panic!("{:?}", function.records) };
+        let expected = [2.0, 4.0, 1.0, 1.0].map(|level| one * 10f64.powf(level / 20.0));
+        for (value, size) in record.values.iter().zip(expected) {
+            assert!((value.norm() / size - 1.0).abs() < 1e-12, "{names}: {value} {size}");
+        }
+        assert!((record.values[0].arg().to_degrees() - 90.0).abs() < 1e-9, "{names}");
+    }
     // A response beside its force is not a function, and an angle beside a function is not its phase.
     for names in ["Frequency (Hz),Amp (µm),Phase (deg)", "Frequency (Hz),Magnitude (g/N),Tilt (deg)"] {
         assert_eq!(table(names).records.len(), 2, "{names}");

@@ -31,6 +31,9 @@ const POINTS: usize = 6;
 /// Largest deviation of points that still count as a circle, root mean square over its radius.
 const ROUND: f64 = 0.1;
 
+/// Half bandwidths on either side of a mode with the lines of its circle: 270° of it.
+pub(super) const CIRCLE: f64 = 2.4;
+
 /// Fits a circle to the mobility at the lines within 2.4 half bandwidths of the mode (270° of the circle),
 /// by the method of Pratt (1987). Natural frequency and damping then follow from the angles on the circle:
 /// tan(θ/2) = (ωᵣ² − ω²)/(2ζωᵣω) from the resonance.
@@ -44,7 +47,7 @@ pub(super) fn circle(
     near: &Pole,
     part: &Range<usize>,
 ) -> Result<(Pole, usize), Finding> {
-    let reach = 2.4 * near.zeta * near.frequency;
+    let reach = CIRCLE * near.zeta * near.frequency;
     let points: Vec<(f64, Complex64)> = part
         .clone()
         .filter(|i| (measured.frequency[*i] - near.frequency).abs() <= reach)

@@ -1,6 +1,6 @@
 //! Results of fitted modes with their uncertainties, beside those of the classical methods.
 
-use super::classical::{circle, half_power};
+use super::classical::{CIRCLE, circle, half_power};
 use super::rational::Rational;
 use super::selection::PeakGroup;
 use super::{ByMethod, Measured, ModalOptions, Mode, Pole};
@@ -89,9 +89,29 @@ impl Candidate<'_> {
         let two = ahead.map(|ahead| Finding::doubt("modal-two-modes").number("ahead", ahead));
         let more = group.pattern.map(|ahead| Finding::doubt("modal-more-modes").number("ahead", ahead));
         let mut mode = self.estimates(&own, std);
+        let beside = self.neighbour().or(ahead.map(|_| at));
+        if let Some(beside) = beside.filter(|_| !measured.magnitude_only) {
+            let one_mode =
+                |by: &&mut ByMethod| by.note.is_none() && matches!(by.method, "circle fit" | "half power");
+            let shared = |by: &mut ByMethod| {
+                by.note = Some(Finding::caution("method-of-one-mode").number("frequency", beside))
+            };
+            mode.by.iter_mut().filter(one_mode).for_each(shared);
+        }
         let doubts = two.into_iter().chain(more);
         findings.extend(doubts.map(|doubt| doubt.number("frequency", at).of(&mut mode)));
         Some(mode)
+    }
+
+    /// Frequency in Hz of a mode that is fitted beside this one and has lines of its circle, within
+    /// [`CIRCLE`] half bandwidths of each.
+    fn neighbour(&self) -> Option<f64> {
+        let own = &self.fit.modes[self.m];
+        let half = |mode: &Pole| mode.zeta * mode.frequency;
+        let others = self.fit.modes.iter().enumerate().filter(|(m, _)| *m != self.m).map(|(_, mode)| mode);
+        let mut near =
+            others.filter(|mode| (mode.frequency - own.frequency).abs() < CIRCLE * (half(mode) + half(own)));
+        near.next().map(|mode| mode.frequency)
     }
 
     /// The estimates of a mode by all methods. `own` is its pole without the decay of a window; `std` are

@@ -60,7 +60,20 @@ pub(super) fn chosen(
     if fit.whiteness.rejected() {
         complete(lines, group, &mut fit, &[]);
     }
-    Ok(if fit.whiteness.rejected() { narrowed(lines, group, fit) } else { fit })
+    if !fit.whiteness.rejected() {
+        return Ok(fit);
+    }
+    let wide = group.clone();
+    let narrow = narrowed(lines, group, fit);
+    // The modes of the narrow band are good first guesses for the wide one, with a neighbour beside them.
+    let more = one_more(lines, &wide, &narrow, &[]).filter(|_| group.lines != wide.lines);
+    let Some(more) = more.filter(|more| !more.whiteness.rejected()) else { return Ok(narrow) };
+    let (peaks, sound) = more.at_peaks(lines);
+    if more.unclear(&sound).is_some() || wide.leaves_out(lines, &more.modes) {
+        return Ok(narrow);
+    }
+    *group = PeakGroup { peaks, lines: wide.lines, ..PeakGroup::default() };
+    Ok(more)
 }
 
 /// Drops the modes that are not determined, the lowest peak first, then those whose removal raises Akaike's
@@ -121,7 +134,7 @@ pub(super) fn together(
     if fit.whiteness.rejected() && explained {
         return;
     }
-    let mut all = PeakGroup { peaks, lines: part, ahead: None, pattern: None };
+    let mut all = PeakGroup { peaks, lines: part, ..PeakGroup::default() };
     let fit = pruned(lines, &mut all, fit, unsupported);
     *fits = vec![(all, fit)];
 }
@@ -142,7 +155,7 @@ fn narrowed(lines: &Measured, group: &mut PeakGroup, wide: Rational) -> Rational
         let part = first - below..last + above + 1;
         let fit = rational(lines, part.clone(), (&starts, 0), &[]).ok();
         if let Some(fit) = fit.filter(|fit| !fit.whiteness.rejected()) {
-            (group.lines, group.ahead, group.pattern) = (part, None, None);
+            (group.lines, group.wider, group.ahead, group.pattern) = (part, group.ahead, None, None);
             return fit;
         }
     }
@@ -192,10 +205,12 @@ fn one_more(lines: &Measured, group: &PeakGroup, fit: &Rational, others: &[Pole]
     sort_by_number(&mut guesses, |a| a.0);
     let fitted = |(_, starts): (f64, Vec<(f64, f64)>)| {
         let known = starts.len() - 1;
-        let more = rational(lines, group.lines.clone(), (&starts, known), others).ok()?;
-        more.modes.iter().all(|m| m.zeta > 0.0).then_some(more)
+        rational(lines, group.lines.clone(), (&starts, known), others).ok()
     };
-    guesses.into_iter().take(TRIED).filter_map(fitted).min_by(|a, b| a.aicc.total_cmp(&b.aicc))
+    // A mode that grows is none, but a sign of one where no other fits.
+    let grows = |fit: &Rational| fit.modes.iter().any(|m| m.zeta <= 0.0);
+    let fits = guesses.into_iter().take(TRIED).filter_map(fitted);
+    fits.min_by(|a, b| grows(a).cmp(&grows(b)).then(a.aicc.total_cmp(&b.aicc)))
 }
 
 /// Adds modes that the lines need although they show no peak: one beside a higher peak, or two under one.
@@ -208,7 +223,7 @@ pub(super) fn complete(
     fit: &mut Rational,
     others: &[Pole],
 ) -> Vec<bool> {
-    (group.ahead, group.pattern) = (None, None);
+    (group.ahead, group.pattern) = (group.wider, None);
     let mut sound = fit.sound(lines, &group.peaks);
     // No neighbours are searched without phases, or around a peak of noise.
     if lines.magnitude_only || !sound.contains(&true) && fit.unexplained > NOISE {
@@ -223,7 +238,7 @@ pub(super) fn complete(
         let Some(more) = one_more(lines, group, last, others) else { break };
         let better = fit.aicc - more.aicc;
         let left_out = group.leaves_out(lines, &more.modes);
-        if fit.whiteness.rejected() && more.whiteness.rejected() {
+        if fit.whiteness.alike() && more.whiteness.alike() {
             // Residuals that stay coloured support any further mode a little. One that explains much more may
             // be the first of two that are missing. A third is not tried: each takes longer than all before.
             if left_out || coloured.is_some() || better <= SPLIT {
@@ -233,21 +248,16 @@ pub(super) fn complete(
             coloured = Some(more);
             continue;
         }
-        if coloured.take().is_some_and(|fewer| fewer.aicc <= more.aicc) {
+        if coloured.as_ref().is_some_and(|fewer| left_out || fewer.aicc <= more.aicc) {
             break;
         }
-        let width = |pair: &[Pole]| pair[0].zeta * pair[0].frequency + pair[1].zeta * pair[1].frequency;
-        let close = |w: &&[Pole]| w[1].frequency - w[0].frequency <= APART * width(w);
-        let one = more.modes.windows(2).find(close).map(|w| w[0].frequency);
-        let peaks: Vec<Peak> = more.modes.iter().map(|mode| lines.peak(mode)).collect();
-        let its = more.sound(lines, &peaks);
+        let (peaks, its) = more.at_peaks(lines);
         if better > SPLIT && !left_out {
-            let unknown = its.iter().position(|sound| !sound).map(|at| more.modes[at].frequency);
-            group.ahead = one.or(unknown).map(|at| (better, at));
+            group.ahead = more.unclear(&its).map(|at| (better, at));
             if group.ahead.is_some() {
-                return sound;
+                break;
             }
-            (group.peaks, group.pattern) = (peaks, None);
+            (group.peaks, group.wider, group.pattern, coloured) = (peaks, None, None, None);
             (*fit, sound) = (more, its);
             continue;
         }
@@ -259,7 +269,30 @@ pub(super) fn complete(
         group.ahead = group.ahead.or(ahead);
         break;
     }
+    // Modes that explain far more than their pattern are kept; the pattern makes them doubtful.
+    let Some((more, better)) = coloured.zip(group.pattern) else { return sound };
+    let (peaks, its) = more.at_peaks(lines);
+    if more.unclear(&its).is_none() && better > SPLIT * more.whiteness.inflation.powi(2) {
+        (group.peaks, *fit, sound) = (peaks, more, its);
+    }
     sound
+}
+
+impl Rational {
+    /// The peaks of the modes, whether they show or not, and which modes are sound.
+    fn at_peaks(&self, lines: &Measured) -> (Vec<Peak>, Vec<bool>) {
+        let peaks: Vec<Peak> = self.modes.iter().map(|mode| lines.peak(mode)).collect();
+        let sound = self.sound(lines, &peaks);
+        (peaks, sound)
+    }
+
+    /// Frequency in Hz of the first of two modes that count as one, else of the first that is not sound.
+    fn unclear(&self, sound: &[bool]) -> Option<f64> {
+        let width = |pair: &[Pole]| pair[0].zeta * pair[0].frequency + pair[1].zeta * pair[1].frequency;
+        let close = |w: &&[Pole]| w[1].frequency - w[0].frequency <= APART * width(w);
+        let one = self.modes.windows(2).find(close).map(|w| w[0].frequency);
+        one.or_else(|| sound.iter().position(|sound| !sound).map(|at| self.modes[at].frequency))
+    }
 }
 
 /// Widens the uncertainties of a fit to cover the fit `more`, which has one more mode, by its Akaike weight;
@@ -292,13 +325,15 @@ fn widened(fit: &mut Rational, more: &Rational, sound: &[bool], better: f64) -> 
 }
 
 /// Peaks that are fitted together, and the lines used for the fit.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub(super) struct PeakGroup {
     pub peaks: Vec<Peak>,
     pub lines: Range<usize>,
     /// Drop of Akaike's criterion with one more mode, and the frequency in Hz, where that mode is not
     /// determined: the modes around it are then doubtful.
     pub ahead: Option<(f64, f64)>,
+    /// As `ahead`, of a wider band that these lines were taken from.
+    wider: Option<(f64, f64)>,
     /// Drop of Akaike's criterion with one more mode, where the residuals keep a pattern with it, too: all
     /// modes of the group are then doubtful.
     pub pattern: Option<f64>,
@@ -308,7 +343,7 @@ impl PeakGroup {
     /// Whether one of `modes` lies beyond the lines or is much lower than the highest: it does not belong to
     /// the group, and only widens the uncertainties.
     fn leaves_out(&self, lines: &Measured, modes: &[Pole]) -> bool {
-        let height = |mode: &Pole| mode.constant.norm() / (mode.zeta * mode.frequency.powi(2));
+        let height = |mode: &Pole| mode.constant.norm() / (mode.zeta.abs() * mode.frequency.powi(2));
         let highest = modes.iter().map(height).fold(0.0, f64::max);
         let part = lines.frequency[self.lines.start]..lines.frequency[self.lines.end - 1];
         modes.iter().any(|m| height(m) < LOW * highest || !part.contains(&m.frequency))
@@ -391,7 +426,7 @@ pub(super) fn groups(measured: &Measured, band: Option<(f64, f64)>) -> Result<Ve
         let below = i.checked_sub(1).map_or(0, |before| usize::midpoint(spans[before].1, spans[i].0));
         let above = spans.get(i + 1).map_or(f.len(), |after| usize::midpoint(after.0, spans[i].1) + 1);
         let lines = low.max(below).max(within.start)..high.min(above).min(within.end);
-        PeakGroup { peaks, lines, ahead: None, pattern: None }
+        PeakGroup { peaks, lines, ..PeakGroup::default() }
     };
     Ok(groups.into_iter().enumerate().map(group).collect())
 }
