@@ -38,6 +38,8 @@ const BLOCK: [usize; 4] = [12, 6, 4, 2];
 const BLOCKS: (usize, usize) = (12, 48);
 /// 99 % quantile of χ² with two degrees of freedom.
 const CHANCE: f64 = 9.21;
+/// Least growth of a force over its standard uncertainty with which the blocks are fitted again.
+const CLEAR: f64 = 4.0;
 /// A response that still changes by less than this fraction of its amplitude counts as settled.
 const SETTLED: f64 = 1e-3;
 /// An amplitude below this many of its standard uncertainties counts as noise: it gets an upper limit.
@@ -102,6 +104,9 @@ pub fn stepped(
     Ok((sweep, found.curve(direction)))
 }
 
+/// Rounds in which a common variance settles.
+const ROUNDS: usize = 20;
+
 /// Hint where a force has no sine.
 const SHAKER: &str = "check the channel of the force, and that the shaker ran";
 /// Most steps that a finding names.
@@ -117,8 +122,8 @@ struct StepReading {
     frequency: Estimate,
     /// Amplitude of the force in N, and its standard uncertainty.
     force: (f64, Option<f64>),
-    /// Relative rate in 1/s at which the force grows; 0 where none is seen.
-    growth: f64,
+    /// Relative rate in 1/s at which the force grows, and its standard uncertainty.
+    growth: (f64, f64),
     /// Phasor of the response relative to the phase of the force.
     response: Phasor,
     /// Phasor of response over force.
@@ -211,7 +216,7 @@ impl StepReading {
             [&mut response, &mut ratio].doubt();
             force.1 = force.1.filter(|_| cut_force == 0);
         }
-        let growth = growth * rate;
+        let growth = (growth.0 * rate, growth.1 * rate);
         let begins = blocks.start(begins);
         Ok(StepReading {
             rate,
@@ -317,6 +322,21 @@ impl Phasor {
     }
 }
 
+/// Variance that values have in common beyond their own variances, from their squares and these: the weighted
+/// mean of the differences, with weights for values of a normal distribution about 0; at least 0.
+fn common(squares: &[(f64, f64)]) -> f64 {
+    let mut found = squares.iter().map(|(square, _)| square).sum::<f64>() / squares.len() as f64;
+    for _ in 0..ROUNDS {
+        let known = squares.iter().filter(|(_, own)| *own + found > 0.0);
+        let (over, all) = known.fold((0.0, 0.0), |(over, all), (square, own)| {
+            let weight = (own + found).powi(-2);
+            (over + weight * (square - own), all + weight)
+        });
+        found = if all > 0.0 { (over / all).max(0.0) } else { 0.0 };
+    }
+    found
+}
+
 /// Standard uncertainty (Student) of the mean of independent values; `None` for fewer than four.
 fn scatter_of_mean(values: &[f64]) -> Option<f64> {
     let n = values.len();
@@ -345,9 +365,10 @@ impl Blocks {
         ((block * self.periods) as f64 * self.period).round() as usize
     }
 
-    /// Relative rate in 1/samples at which the force grows while the response is settled; the phasors of the
-    /// force, and those of response over force, fitted with this growth.
-    fn growing(&self, force: &Trace, response: &Trace) -> (f64, Vec<Complex64>, Vec<Complex64>) {
+    /// Relative rate in 1/samples at which the force grows while the response is settled, with its standard
+    /// uncertainty; the phasors of the force, and those of response over force, fitted with this growth where
+    /// it is clear.
+    fn growing(&self, force: &Trace, response: &Trace) -> ((f64, f64), Vec<Complex64>, Vec<Complex64>) {
         let fitted = |growth: f64| {
             let (f, x) = (self.phasors(force, growth), self.phasors(response, growth));
             let ratio: Vec<Complex64> = x.iter().zip(&f).map(|(x, f)| x / f).collect();
@@ -356,8 +377,8 @@ impl Blocks {
         let (f, ratio) = fitted(0.0);
         let begins = settled(&ratio).0.min(f.len());
         let growth = growth(&f[begins..], self.periods as f64 * self.period);
-        // Most forces do not grow: their phasors are those already fitted.
-        let (f, ratio) = if growth == 0.0 { (f, ratio) } else { fitted(growth) };
+        let clear = growth.0.abs() > CLEAR * growth.1;
+        let (f, ratio) = if clear { fitted(growth.0) } else { (f, ratio) };
         (growth, f, ratio)
     }
 
