@@ -27,6 +27,7 @@ use vibro_record::{
 use vibro_signal::spectrum;
 
 mod growth;
+mod hum;
 
 /// Fewest periods of a step: as blocks of one period, they leave four in its second half, the fewest with an
 /// uncertainty.
@@ -58,11 +59,14 @@ pub fn stepped(
     options: &ResponseOptions,
 ) -> Result<(Sweep, Response)> {
     let taken = steps.into_iter().map(|(path, step)| {
-        let taken = step.and_then(|step| Ok((StepReading::of(&step)?, step))).map_err(|e| e.in_file(&path));
+        let taken = step.and_then(|step| Ok((Sine::of(&step)?, step))).map_err(|e| e.in_file(&path));
         (path, taken)
     });
     let (taken, left_out) = answered(taken)?;
-    let (mut taken, steps): (Vec<StepReading>, Vec<StepTraces>) = taken.into_iter().unzip();
+    let (sines, mut steps): (Vec<Sine>, Vec<StepTraces>) = taken.into_iter().unzip();
+    let hums = without_hum(&sines, &mut steps)?;
+    let read_one = |(sine, step)| StepReading::of(sine, step);
+    let mut taken: Vec<StepReading> = sines.into_iter().zip(&steps).map(read_one).collect();
     without_growth(&mut taken);
     let rate = taken.first().map_or(0.0, |step| step.rate);
     if let Some((step, at)) = taken.iter().zip(&steps).find(|(step, _)| (step.rate / rate - 1.0).abs() > 1e-6)
@@ -85,7 +89,10 @@ pub fn stepped(
     let excitations: Vec<Excitation> =
         taken.iter().zip(&steps).map(|(taken, step)| taken.excitation(step)).collect();
     let (mut found, beside) = read(&sweep, options, &excitations)?;
-    for ((point, step), beside) in found.points.iter_mut().zip(&mut taken).zip(beside) {
+    let unit = steps.first().map_or("", |step| step.response.meta.unit.symbol());
+    found.findings.extend(hums.iter().map(|hum| hum.finding(unit)));
+    for (k, ((point, step), beside)) in found.points.iter_mut().zip(&mut taken).zip(beside).enumerate() {
+        let beside = hums.iter().map(|hum| hum.left[k]).fold(beside, f64::hypot);
         step.response.allow(beside);
         step.ratio.allow(beside / step.force.0);
         step.overrule(point, options.times(&sweep), found.unit);
@@ -173,18 +180,56 @@ fn excitation(force: &Trace, rate: f64) -> Result<(Estimate, f64)> {
     Ok((frequency, periods))
 }
 
+/// The excitation of a step, as its force has it.
+struct Sine {
+    rate: f64,
+    frequency: Estimate,
+    periods: f64,
+    /// Number of clipped samples of the force and of the response.
+    cut: [usize; 2],
+}
+
+impl Sine {
+    fn of(StepTraces { force, response, .. }: &StepTraces) -> Result<Sine> {
+        let rate = rate_of(force, response)?;
+        let (frequency, periods) = excitation(force, rate)?;
+        let cut = [force, response].map(|trace| clipped(&trace.values, rate / frequency.value).len());
+        Ok(Sine { rate, frequency, periods, cut })
+    }
+
+    fn blocks(&self, step: &StepTraces) -> Blocks {
+        Blocks::of(self.periods, self.rate / self.frequency.value, step.force.values.len())
+    }
+}
+
+/// Removes hum from the responses.
+///
+/// # Errors
+/// If a response has no spectrum.
+fn without_hum(sines: &[Sine], steps: &mut [StepTraces]) -> Result<Vec<hum::Hum>> {
+    let parts = sines.iter().zip(steps).map(|(sine, step)| {
+        let blocks = sine.blocks(step);
+        let (growth, _, ratio) = blocks.growing(&step.force, &step.response);
+        hum::Settled {
+            rate: sine.rate,
+            begins: blocks.start(settled(&ratio).0),
+            frequency: sine.frequency.value,
+            growth,
+            response: &mut step.response,
+        }
+    });
+    hum::remove(parts.collect())
+}
+
 impl StepReading {
-    fn of(step: &StepTraces) -> Result<StepReading> {
+    fn of(sine: Sine, step: &StepTraces) -> StepReading {
         let StepTraces { force, response, .. } = step;
         let metas = [&force.meta, &response.meta];
-        let rate = rate_of(force, response)?;
         let samples = force.values.len();
-        let (frequency, periods) = excitation(force, rate)?;
+        let blocks = sine.blocks(step);
+        let Sine { rate, frequency, cut: [cut_force, cut], .. } = sine;
         let about = |code| Finding::doubt(code).number("frequency", frequency.value);
         let mut doubts = Vec::new();
-        let cut = clipped(&response.values, rate / frequency.value).len();
-        let cut_force = clipped(&force.values, rate / frequency.value).len();
-        let blocks = Blocks::of(periods, rate / frequency.value, samples);
         let (growth, f, ratio) = blocks.growing(force, response);
         let (begins, left, stays) = settled(&ratio);
         // While the force still rises, the ratio is right already but amplitudes are not: each has its own
@@ -218,18 +263,7 @@ impl StepReading {
         }
         let growth = (growth.0 * rate, growth.1 * rate);
         let begins = blocks.start(begins);
-        Ok(StepReading {
-            rate,
-            samples,
-            begins,
-            frequency,
-            force,
-            growth,
-            response,
-            ratio,
-            whiteness,
-            doubts,
-        })
+        StepReading { rate, samples, begins, frequency, force, growth, response, ratio, whiteness, doubts }
     }
 
     fn excitation(&self, step: &StepTraces) -> Excitation {
