@@ -27,6 +27,7 @@ use vibro_record::{
 use vibro_signal::spectrum;
 
 mod growth;
+mod hum;
 
 /// Fewest periods of a step: as blocks of one period, they leave four in its second half, the fewest with an
 /// uncertainty.
@@ -38,6 +39,8 @@ const BLOCK: [usize; 4] = [12, 6, 4, 2];
 const BLOCKS: (usize, usize) = (12, 48);
 /// 99 % quantile of χ² with two degrees of freedom.
 const CHANCE: f64 = 9.21;
+/// Least growth of a force over its standard uncertainty with which the blocks are fitted again.
+const CLEAR: f64 = 4.0;
 /// A response that still changes by less than this fraction of its amplitude counts as settled.
 const SETTLED: f64 = 1e-3;
 /// An amplitude below this many of its standard uncertainties counts as noise: it gets an upper limit.
@@ -56,11 +59,14 @@ pub fn stepped(
     options: &ResponseOptions,
 ) -> Result<(Sweep, Response)> {
     let taken = steps.into_iter().map(|(path, step)| {
-        let taken = step.and_then(|step| Ok((StepReading::of(&step)?, step))).map_err(|e| e.in_file(&path));
+        let taken = step.and_then(|step| Ok((Sine::of(&step)?, step))).map_err(|e| e.in_file(&path));
         (path, taken)
     });
     let (taken, left_out) = answered(taken)?;
-    let (mut taken, steps): (Vec<StepReading>, Vec<StepTraces>) = taken.into_iter().unzip();
+    let (sines, mut steps): (Vec<Sine>, Vec<StepTraces>) = taken.into_iter().unzip();
+    let hums = without_hum(&sines, &mut steps)?;
+    let read_one = |(sine, step)| StepReading::of(sine, step);
+    let mut taken: Vec<StepReading> = sines.into_iter().zip(&steps).map(read_one).collect();
     without_growth(&mut taken);
     let rate = taken.first().map_or(0.0, |step| step.rate);
     if let Some((step, at)) = taken.iter().zip(&steps).find(|(step, _)| (step.rate / rate - 1.0).abs() > 1e-6)
@@ -83,7 +89,10 @@ pub fn stepped(
     let excitations: Vec<Excitation> =
         taken.iter().zip(&steps).map(|(taken, step)| taken.excitation(step)).collect();
     let (mut found, beside) = read(&sweep, options, &excitations)?;
-    for ((point, step), beside) in found.points.iter_mut().zip(&mut taken).zip(beside) {
+    let unit = steps.first().map_or("", |step| step.response.meta.unit.symbol());
+    found.findings.extend(hums.iter().map(|hum| hum.finding(unit)));
+    for (k, ((point, step), beside)) in found.points.iter_mut().zip(&mut taken).zip(beside).enumerate() {
+        let beside = hums.iter().map(|hum| hum.left[k]).fold(beside, f64::hypot);
         step.response.allow(beside);
         step.ratio.allow(beside / step.force.0);
         step.overrule(point, options.times(&sweep), found.unit);
@@ -102,6 +111,9 @@ pub fn stepped(
     Ok((sweep, found.curve(direction)))
 }
 
+/// Rounds in which a common variance settles.
+const ROUNDS: usize = 20;
+
 /// Hint where a force has no sine.
 const SHAKER: &str = "check the channel of the force, and that the shaker ran";
 /// Most steps that a finding names.
@@ -117,8 +129,8 @@ struct StepReading {
     frequency: Estimate,
     /// Amplitude of the force in N, and its standard uncertainty.
     force: (f64, Option<f64>),
-    /// Relative rate in 1/s at which the force grows; 0 where none is seen.
-    growth: f64,
+    /// Relative rate in 1/s at which the force grows, and its standard uncertainty.
+    growth: (f64, f64),
     /// Phasor of the response relative to the phase of the force.
     response: Phasor,
     /// Phasor of response over force.
@@ -168,18 +180,56 @@ fn excitation(force: &Trace, rate: f64) -> Result<(Estimate, f64)> {
     Ok((frequency, periods))
 }
 
+/// The excitation of a step, as its force has it.
+struct Sine {
+    rate: f64,
+    frequency: Estimate,
+    periods: f64,
+    /// Number of clipped samples of the force and of the response.
+    cut: [usize; 2],
+}
+
+impl Sine {
+    fn of(StepTraces { force, response, .. }: &StepTraces) -> Result<Sine> {
+        let rate = rate_of(force, response)?;
+        let (frequency, periods) = excitation(force, rate)?;
+        let cut = [force, response].map(|trace| clipped(&trace.values, rate / frequency.value).len());
+        Ok(Sine { rate, frequency, periods, cut })
+    }
+
+    fn blocks(&self, step: &StepTraces) -> Blocks {
+        Blocks::of(self.periods, self.rate / self.frequency.value, step.force.values.len())
+    }
+}
+
+/// Removes hum from the responses.
+///
+/// # Errors
+/// If a response has no spectrum.
+fn without_hum(sines: &[Sine], steps: &mut [StepTraces]) -> Result<Vec<hum::Hum>> {
+    let parts = sines.iter().zip(steps).map(|(sine, step)| {
+        let blocks = sine.blocks(step);
+        let (growth, _, ratio) = blocks.growing(&step.force, &step.response);
+        hum::Settled {
+            rate: sine.rate,
+            begins: blocks.start(settled(&ratio).0),
+            frequency: sine.frequency.value,
+            growth,
+            response: &mut step.response,
+        }
+    });
+    hum::remove(parts.collect())
+}
+
 impl StepReading {
-    fn of(step: &StepTraces) -> Result<StepReading> {
+    fn of(sine: Sine, step: &StepTraces) -> StepReading {
         let StepTraces { force, response, .. } = step;
         let metas = [&force.meta, &response.meta];
-        let rate = rate_of(force, response)?;
         let samples = force.values.len();
-        let (frequency, periods) = excitation(force, rate)?;
+        let blocks = sine.blocks(step);
+        let Sine { rate, frequency, cut: [cut_force, cut], .. } = sine;
         let about = |code| Finding::doubt(code).number("frequency", frequency.value);
         let mut doubts = Vec::new();
-        let cut = clipped(&response.values, rate / frequency.value).len();
-        let cut_force = clipped(&force.values, rate / frequency.value).len();
-        let blocks = Blocks::of(periods, rate / frequency.value, samples);
         let (growth, f, ratio) = blocks.growing(force, response);
         let (begins, left, stays) = settled(&ratio);
         // While the force still rises, the ratio is right already but amplitudes are not: each has its own
@@ -211,20 +261,9 @@ impl StepReading {
             [&mut response, &mut ratio].doubt();
             force.1 = force.1.filter(|_| cut_force == 0);
         }
-        let growth = growth * rate;
+        let growth = (growth.0 * rate, growth.1 * rate);
         let begins = blocks.start(begins);
-        Ok(StepReading {
-            rate,
-            samples,
-            begins,
-            frequency,
-            force,
-            growth,
-            response,
-            ratio,
-            whiteness,
-            doubts,
-        })
+        StepReading { rate, samples, begins, frequency, force, growth, response, ratio, whiteness, doubts }
     }
 
     fn excitation(&self, step: &StepTraces) -> Excitation {
@@ -317,6 +356,21 @@ impl Phasor {
     }
 }
 
+/// Variance that values have in common beyond their own variances, from their squares and these: the weighted
+/// mean of the differences, with weights for values of a normal distribution about 0; at least 0.
+fn common(squares: &[(f64, f64)]) -> f64 {
+    let mut found = squares.iter().map(|(square, _)| square).sum::<f64>() / squares.len() as f64;
+    for _ in 0..ROUNDS {
+        let known = squares.iter().filter(|(_, own)| *own + found > 0.0);
+        let (over, all) = known.fold((0.0, 0.0), |(over, all), (square, own)| {
+            let weight = (own + found).powi(-2);
+            (over + weight * (square - own), all + weight)
+        });
+        found = if all > 0.0 { (over / all).max(0.0) } else { 0.0 };
+    }
+    found
+}
+
 /// Standard uncertainty (Student) of the mean of independent values; `None` for fewer than four.
 fn scatter_of_mean(values: &[f64]) -> Option<f64> {
     let n = values.len();
@@ -345,9 +399,10 @@ impl Blocks {
         ((block * self.periods) as f64 * self.period).round() as usize
     }
 
-    /// Relative rate in 1/samples at which the force grows while the response is settled; the phasors of the
-    /// force, and those of response over force, fitted with this growth.
-    fn growing(&self, force: &Trace, response: &Trace) -> (f64, Vec<Complex64>, Vec<Complex64>) {
+    /// Relative rate in 1/samples at which the force grows while the response is settled, with its standard
+    /// uncertainty; the phasors of the force, and those of response over force, fitted with this growth where
+    /// it is clear.
+    fn growing(&self, force: &Trace, response: &Trace) -> ((f64, f64), Vec<Complex64>, Vec<Complex64>) {
         let fitted = |growth: f64| {
             let (f, x) = (self.phasors(force, growth), self.phasors(response, growth));
             let ratio: Vec<Complex64> = x.iter().zip(&f).map(|(x, f)| x / f).collect();
@@ -356,8 +411,8 @@ impl Blocks {
         let (f, ratio) = fitted(0.0);
         let begins = settled(&ratio).0.min(f.len());
         let growth = growth(&f[begins..], self.periods as f64 * self.period);
-        // Most forces do not grow: their phasors are those already fitted.
-        let (f, ratio) = if growth == 0.0 { (f, ratio) } else { fitted(growth) };
+        let clear = growth.0.abs() > CLEAR * growth.1;
+        let (f, ratio) = if clear { fitted(growth.0) } else { (f, ratio) };
         (growth, f, ratio)
     }
 
