@@ -75,7 +75,9 @@ fn convert_levels(spectrum: &mut Spectrum) -> Result<()> {
     let Values::Real(values) = &mut spectrum.values else { return Ok(()) };
     let meta = &mut spectrum.meta;
     if let Some(reference) = meta.unit.reference() {
-        values.iter_mut().for_each(|level| *level = above(&reference, *level));
+        for level in values.iter_mut() {
+            *level = above(&reference, *level);
+        }
         meta.findings.retain(|found| found.code != code::LEVELS_IN_DECIBELS);
         meta.step("from_levels", &[("unit", &meta.unit.symbol().to_owned())]);
         let factor = meta.adopt_unit(reference.symbol());
