@@ -93,7 +93,9 @@ fn three_methods_agree_on_measured_modes() {
     for mode in modes.filter(|m| named.iter().any(|f| (number(&m["frequency"]["value"]) - f).abs() < 1.0)) {
         let of = |method| {
             let by = mode["by"].as_array().unwrap().iter().find(|b| b["method"] == method);
-            by.filter(|b| b["frequency"]["value"].is_number() && b["note"] == "")
+            // A mode that shares its lines with another is compared all the same.
+            let no_limit = |b: &&&Value| b["note"] == "" || b["note"] == "method-of-one-mode";
+            by.filter(|b| b["frequency"]["value"].is_number()).filter(|b| no_limit(&b))
         };
         for method in ["circle fit", "half power"] {
             let Some(by) = of(method) else { continue };

@@ -357,7 +357,8 @@ mod tests {
         assert!((mode.modal_constant.value / 2.0 - 1.0).abs() < 1e-4, "{mode:?}");
         // What the blow before left, half of e^(−ζωT), is not known from the lines.
         let left = 0.5 * (-own * zeta * length).exp();
-        assert!(mode.modal_constant.std.unwrap() >= 2.0 * left, "{mode:?}");
+        // The fit is exact but for rounding.
+        assert!(mode.modal_constant.std.unwrap() >= 2.0 * left * (1.0 - 1e-12), "{mode:?}");
         assert!(says(&result, "modal-blow-cut-off"), "{:?}", result.findings);
     }
 

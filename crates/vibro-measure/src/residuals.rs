@@ -71,9 +71,10 @@ impl Whiteness {
         self.rejected_among(1)
     }
 
-    /// Whether white noise is rejected and neighbouring residuals are alike, as where a model lacks a part.
-    pub fn alike(&self) -> bool {
-        self.rejected() && self.inflation > 1.0
+    /// Whether white noise is rejected for one of `many` fits tested and neighbouring residuals are alike, as
+    /// where a model lacks a part.
+    pub fn alike_among(&self, many: usize) -> bool {
+        self.rejected_among(many) && self.inflation > 1.0
     }
 
     /// Whether white noise is rejected for one of `many` records tested. Each may be rejected by chance, so
@@ -148,7 +149,7 @@ mod tests {
         assert!((5..=55).contains(&rejected), "{rejected}");
     }
 
-    /// A polynomial of degree 11 takes twelve of 80 values; without their share the test would reject a tenth.
+    /// A polynomial of degree 11 takes twelve of 80 values. Without their share a tenth is rejected.
     #[test]
     fn white_noise_beside_a_fit_of_many_parameters_is_rejected_as_often_as_stated() {
         let mut noise = Noise::new(12);

@@ -4,6 +4,7 @@ use super::leakage::Leakage;
 use super::noise::{LineNoise, MARGIN, STEPS, of_both, of_segments};
 use super::peak::Peak;
 use super::{Measured, Pole};
+use crate::mean::average;
 use crate::residuals::{Whiteness, aicc, student};
 use nalgebra::{DMatrix, DVector};
 use num_complex::Complex64;
@@ -54,7 +55,7 @@ pub(super) fn residual_sum(
     starts: &[(f64, f64)],
     others: &[Pole],
 ) -> Option<f64> {
-    let scaled = Scaled::of(measured, part, starts, others);
+    let scaled = Scaled::of(measured, part, starts, others).averaged();
     scaled.start(starts.len(), 0.0, &vec![1.0; scaled.x.len()]).map(|(sum, _)| sum)
 }
 
@@ -89,9 +90,32 @@ impl<'a> Scaled<'a> {
     }
 }
 
+/// Lines in the narrowest half bandwidth that are enough for first guesses.
+const ENOUGH: f64 = 16.0;
+
 /// The search over frequencies and damping ratios ends where a step lowers the sum of squares by less than
 /// this fraction; then all parameters are fitted together.
 const NEAR_ENOUGH: f64 = 1e-6;
+
+impl<'a> Scaled<'a> {
+    /// Means of as many lines in a row as leave [`ENOUGH`] in the narrowest half bandwidth of the first
+    /// guesses: these are found from means as from all lines, in less time.
+    fn averaged(&self) -> Scaled<'a> {
+        let half = self.starts.iter().map(|(f, zeta)| f * zeta / self.unit).fold(f64::INFINITY, f64::min);
+        let width = (self.x[self.x.len() - 1] - self.x[0]) / self.x.len() as f64;
+        let row = if self.magnitude_only { 1 } else { ((half / width / ENOUGH) as usize).max(1) };
+        let x: Vec<f64> = self.x.chunks(row).map(average).collect();
+        let mean = |values: &[Complex64]| values.iter().sum::<Complex64>() / values.len() as f64;
+        Scaled {
+            factor: x.iter().map(|x| Complex64::new(0.0, *x).powi(self.power)).collect(),
+            values: self.values.chunks(row).map(mean).collect(),
+            x,
+            leakage: self.leakage.clone(),
+            known: RefCell::new(vec![Default::default(); self.starts.len()]),
+            ..*self
+        }
+    }
+}
 
 impl Scaled<'_> {
     /// Scaled frequency and damping ratio of mode `m`. Its parameters are the shift from the first guess in
@@ -152,7 +176,7 @@ impl Scaled<'_> {
     /// Sets the linear parameters of `p`, constants and residual terms, by least squares for its frequencies
     /// and damping ratios. Returns the sum of squares.
     ///
-    /// The normal equations are summed line by line: a matrix of all lines takes ten times as long.
+    /// The normal equations are summed line by line, without a matrix of all lines.
     fn linear(&self, p: &mut [f64], weight: &[f64]) -> Option<f64> {
         let modes = self.starts.len();
         let mut row = vec![Complex64::ZERO; modes + 2];
@@ -321,14 +345,15 @@ pub(super) fn rational(
         return Err(Error::refused(why).hint("take a wider band").setting("band"));
     }
     let width = (f[f.len() - 1] - f[0]) / (f.len() - 1) as f64;
-    let equal = LineNoise::independent(vec![1.0; lines]);
+    let few = scaled.averaged();
+    let equal = LineNoise::independent(vec![1.0; few.x.len()]);
     let refuse = || Error::refused("no first guess of the modes fits the lines");
     let start = if measured.magnitude_only {
         scaled.guess()
     } else {
-        scaled.start(known, width, &equal.each).ok_or_else(refuse)?.1
+        few.start(known, width, &equal.each).ok_or_else(refuse)?.1
     };
-    let at = scaled.nearer(&start, &equal)?;
+    let at = few.nearer(&start, &equal)?;
     let rivals = rivals(measured, part, &scaled, &at);
     // Minus twice the logarithm of the likelihood.
     let unlikely = |p: &[f64], noise: &LineNoise| {

@@ -89,12 +89,10 @@ impl Candidate<'_> {
         let two = ahead.map(|ahead| Finding::doubt("modal-two-modes").number("ahead", ahead));
         let more = group.pattern.map(|ahead| Finding::doubt("modal-more-modes").number("ahead", ahead));
         let mut mode = self.estimates(&own, std);
-        let beside = self.neighbour().or(ahead.map(|_| at));
-        if let Some(beside) = beside.filter(|_| !measured.magnitude_only) {
-            let one_mode =
-                |by: &&mut ByMethod| by.note.is_none() && matches!(by.method, "circle fit" | "half power");
+        if self.has_neighbour() || two.is_some() || more.is_some() {
+            let one_mode = |by: &&mut ByMethod| matches!(by.method, "circle fit" | "half power");
             let shared = |by: &mut ByMethod| {
-                by.note = Some(Finding::caution("method-of-one-mode").number("frequency", beside))
+                by.note.get_or_insert(Finding::caution("method-of-one-mode"));
             };
             mode.by.iter_mut().filter(one_mode).for_each(shared);
         }
@@ -103,15 +101,13 @@ impl Candidate<'_> {
         Some(mode)
     }
 
-    /// Frequency in Hz of a mode that is fitted beside this one and has lines of its circle, within
-    /// [`CIRCLE`] half bandwidths of each.
-    fn neighbour(&self) -> Option<f64> {
-        let own = &self.fit.modes[self.m];
+    /// Whether another mode of the fit lies on the lines of this one's circle, or this one on those of its.
+    fn has_neighbour(&self) -> bool {
         let half = |mode: &Pole| mode.zeta * mode.frequency;
-        let others = self.fit.modes.iter().enumerate().filter(|(m, _)| *m != self.m).map(|(_, mode)| mode);
-        let mut near =
-            others.filter(|mode| (mode.frequency - own.frequency).abs() < CIRCLE * (half(mode) + half(own)));
-        near.next().map(|mode| mode.frequency)
+        let own = &self.fit.modes[self.m];
+        let near =
+            |other: &Pole| (other.frequency - own.frequency).abs() < CIRCLE * half(other).max(half(own));
+        self.fit.modes.iter().enumerate().any(|(m, other)| m != self.m && near(other))
     }
 
     /// The estimates of a mode by all methods. `own` is its pole without the decay of a window; `std` are

@@ -174,6 +174,10 @@ const BESIDE_A_MODE: [f64; 6] = [-3.0, -1.5, -0.5, 0.5, 1.5, 3.0];
 /// (root mean square).
 const NOISE: f64 = 0.2;
 
+/// Fits with a further mode of a function, each of which chance may leave with a pattern: a weak one speaks
+/// against no mode.
+const CANDIDATES: usize = 100;
+
 /// Two modes closer than this fraction of their mean bandwidth count as one whose shape is not that of the
 /// model.
 const APART: f64 = 0.25;
@@ -238,7 +242,7 @@ pub(super) fn complete(
         let Some(more) = one_more(lines, group, last, others) else { break };
         let better = fit.aicc - more.aicc;
         let left_out = group.leaves_out(lines, &more.modes);
-        if fit.whiteness.alike() && more.whiteness.alike() {
+        if fit.whiteness.alike_among(1) && more.whiteness.alike_among(CANDIDATES) {
             // Residuals that stay coloured support any further mode a little. One that explains much more may
             // be the first of two that are missing. A third is not tried: each takes longer than all before.
             if left_out || coloured.is_some() || better <= SPLIT {
@@ -268,12 +272,6 @@ pub(super) fn complete(
         let ahead = widened(fit, &more, &its, better);
         group.ahead = group.ahead.or(ahead);
         break;
-    }
-    // Modes that explain far more than their pattern are kept; the pattern makes them doubtful.
-    let Some((more, better)) = coloured.zip(group.pattern) else { return sound };
-    let (peaks, its) = more.at_peaks(lines);
-    if more.unclear(&its).is_none() && better > SPLIT * more.whiteness.inflation.powi(2) {
-        (group.peaks, *fit, sound) = (peaks, more, its);
     }
     sound
 }
