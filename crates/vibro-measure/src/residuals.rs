@@ -1,8 +1,11 @@
 //! Whether the residuals of a fit are white noise, and the uncertainties where they are not.
 
 use crate::chance::{chi_squared_above, normal_at, student_at};
+use num_complex::Complex64;
+use std::cell::OnceCell;
 use vibro_math::Fit;
 use vibro_record::Finding;
+use vibro_signal::fft::Transform;
 
 /// Serial correlation of the residuals of a model, and its effect on uncertainties.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -26,7 +29,7 @@ impl Whiteness {
     /// that of white noise of the same variance; the sum ends at the first lag that is not positive
     /// (Geyer 1992, initial positive sequence).
     pub fn of(sequences: &[&[f64]]) -> Whiteness {
-        Whiteness::without(sequences, |_| 0.0)
+        Whiteness::tested(sequences, Vec::new())
     }
 
     /// As [`Whiteness::of`], for the residuals of a fit in sequences of `length`.
@@ -37,26 +40,27 @@ impl Whiteness {
     pub fn of_fit(fit: &Fit, length: usize) -> Whiteness {
         let sequences: Vec<&[f64]> = fit.residuals.chunks(length).collect();
         let Some(root) = fit.cofactor.clone().cholesky() else { return Whiteness::of(&sequences) };
-        // H = WWᵀ.
-        let w = &fit.jacobian * root.l();
-        let variance = fit.variance();
-        let hat = |lag| w.as_slice().chunks(w.nrows()).map(|c| lagged(c.chunks(length), lag)).sum::<f64>();
-        Whiteness::without(&sequences, |lag| -variance * hat(lag))
+        // σ²H = WWᵀ.
+        let w = &fit.jacobian * (root.l() * fit.variance().sqrt());
+        let taken = w.as_slice().chunks(w.nrows()).flat_map(|column| column.chunks(length));
+        Whiteness::tested(&sequences, taken.collect())
     }
 
-    /// Tests sequences; `expected` is the sum of products at a lag of residuals of white noise.
-    fn without(sequences: &[&[f64]], expected: impl Fn(usize) -> f64) -> Whiteness {
+    /// Tests sequences of residuals. The noise `taken` by parameters lowers their sums of products by its
+    /// own.
+    fn tested(sequences: &[&[f64]], taken: Vec<&[f64]>) -> Whiteness {
         let n: usize = sequences.iter().map(|s| s.len()).sum();
         let squares: f64 = sequences.iter().flat_map(|s| s.iter()).map(|r| r * r).sum();
         if n < 12 || squares <= 0.0 || !squares.is_finite() {
             return Whiteness { p_value: None, inflation: 1.0 };
         }
-        let correlation = |lag: usize| (lagged(sequences.iter().copied(), lag) - expected(lag)) / squares;
+        let longest = sequences.iter().map(|s| s.len()).max().unwrap_or(0) / 4;
+        let all = Products { sequences: [sequences, &taken].concat(), longest, far: OnceCell::new() };
+        let correlation = |lag: usize| all.at(lag) / squares;
         let lags = if n < 40 { 4 } else { 10 };
         let total = n as f64;
         let sum: f64 = (1..=lags).map(|k| correlation(k).powi(2) / (total - k as f64)).sum();
         let p = chi_squared_above(total * (total + 2.0) * sum, lags);
-        let longest = sequences.iter().map(|s| s.len()).max().unwrap_or(0) / 4;
         let inflation = if p < REJECTED {
             let positive = (1..=longest).map(correlation).take_while(|r| *r > 0.0);
             (1.0 + 2.0 * positive.sum::<f64>()).sqrt()
@@ -90,9 +94,38 @@ impl Whiteness {
     }
 }
 
-/// Sum of products of values `lag` apart within each of the sequences.
-fn lagged<'a>(sequences: impl Iterator<Item = &'a [f64]>, lag: usize) -> f64 {
-    sequences.flat_map(|s| s.iter().zip(s.iter().skip(lag)).map(|(a, b)| a * b)).sum()
+/// Sums of products of values some lag apart within each of the sequences, up to the lag `longest`.
+struct Products<'a> {
+    sequences: Vec<&'a [f64]>,
+    longest: usize,
+    /// The sums at all lags, once one beyond [`NEAR`] is needed.
+    far: OnceCell<Vec<f64>>,
+}
+
+/// Lags up to which products are summed one by one. A pattern of many lines has thousands of lags, whose sums
+/// the power spectrum gives at once.
+const NEAR: usize = 32;
+
+impl Products<'_> {
+    fn at(&self, lag: usize) -> f64 {
+        if lag > NEAR {
+            return self.far.get_or_init(|| self.by_spectrum())[lag];
+        }
+        let each = self.sequences.iter().flat_map(|s| s.iter().zip(s.iter().skip(lag)));
+        each.map(|(a, b)| a * b).sum()
+    }
+
+    /// The sums at all lags (Wiener–Khinchin), with zeros behind the sequences against wrapping around.
+    fn by_spectrum(&self) -> Vec<f64> {
+        let most = self.sequences.iter().map(|s| s.len()).max().unwrap_or(0);
+        let transform = Transform::new((most + self.longest + 1).next_power_of_two());
+        let mut power = vec![Complex64::ZERO; transform.lines()];
+        for sequence in &self.sequences {
+            let lines = transform.forward(sequence);
+            power.iter_mut().zip(lines).for_each(|(sum, line)| *sum += line.norm_sqr());
+        }
+        transform.inverse(&power)
+    }
 }
 
 /// Factor on a standard uncertainty from an estimated variance with `free` degrees of freedom: the standard
@@ -147,6 +180,21 @@ mod tests {
         // 1 % of 2000 with a standard deviation of 4.4, and Q has a slightly heavier tail than χ² at 100
         // values.
         assert!((5..=55).contains(&rejected), "{rejected}");
+    }
+
+    #[test]
+    fn sums_of_products_by_the_spectrum_are_those_one_by_one() {
+        let mut noise = Noise::new(3);
+        let [one, other] = [300, 170].map(|n| (0..n).map(|_| noise.normal()).collect::<Vec<f64>>());
+        let all = Products { sequences: vec![&one, &other], longest: 75, far: OnceCell::new() };
+        let direct =
+            |s: &[f64], lag: usize| s.iter().zip(s.iter().skip(lag)).map(|(a, b)| a * b).sum::<f64>();
+        for lag in [0, 1, NEAR, NEAR + 1, 75] {
+            let expected = direct(&one, lag) + direct(&other, lag);
+            // Rounding of sums of 470 squares of about 1.
+            assert!((all.at(lag) - expected).abs() < 1e-10, "{lag}");
+            assert!((all.by_spectrum()[lag] - expected).abs() < 1e-10, "{lag}");
+        }
     }
 
     /// A polynomial of degree 11 takes twelve of 80 values. Without their share a tenth is rejected.

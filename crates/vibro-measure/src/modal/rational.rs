@@ -98,17 +98,21 @@ const ENOUGH: f64 = 16.0;
 const NEAR_ENOUGH: f64 = 1e-6;
 
 impl<'a> Scaled<'a> {
-    /// Means of as many lines in a row as leave [`ENOUGH`] in the narrowest half bandwidth of the first
-    /// guesses: these are found from means as from all lines, in less time.
-    fn averaged(&self) -> Scaled<'a> {
+    /// Number of lines in a row whose means leave [`ENOUGH`] in the narrowest half bandwidth of the first
+    /// guesses.
+    fn row(&self) -> usize {
         let half = self.starts.iter().map(|(f, zeta)| f * zeta / self.unit).fold(f64::INFINITY, f64::min);
         let width = (self.x[self.x.len() - 1] - self.x[0]) / self.x.len() as f64;
-        let row = if self.magnitude_only { 1 } else { ((half / width / ENOUGH) as usize).max(1) };
-        let x: Vec<f64> = self.x.chunks(row).map(average).collect();
+        if self.magnitude_only { 1 } else { ((half / width / ENOUGH) as usize).max(1) }
+    }
+
+    /// Means of lines, from which first guesses are found as from all lines, in less time.
+    fn averaged(&self) -> Scaled<'a> {
+        let x: Vec<f64> = self.x.chunks(self.row()).map(average).collect();
         let mean = |values: &[Complex64]| values.iter().sum::<Complex64>() / values.len() as f64;
         Scaled {
             factor: x.iter().map(|x| Complex64::new(0.0, *x).powi(self.power)).collect(),
-            values: self.values.chunks(row).map(mean).collect(),
+            values: self.values.chunks(self.row()).map(mean).collect(),
             x,
             leakage: self.leakage.clone(),
             known: RefCell::new(vec![Default::default(); self.starts.len()]),
@@ -236,11 +240,10 @@ impl Scaled<'_> {
 
     /// Parameters near the minimum: a search over frequency and damping of the modes alone, with all else by
     /// linear least squares for each (Golub & Pereyra 1973).
-    fn nearer(&self, start: &[f64], noise: &LineNoise) -> Result<Vec<f64>> {
+    fn nearer(&self, start: &[f64], weight: &[f64]) -> Result<Vec<f64>> {
         if self.magnitude_only {
-            return Ok(self.fit(start, noise)?.parameters);
+            return Ok(self.fit(start, &LineNoise::independent(weight.to_vec()))?.parameters);
         }
-        let weight = &noise.each;
         let whole = |q: &[f64]| {
             let mut p = start.to_vec();
             q.chunks(2).enumerate().for_each(|(m, shape)| p[4 * m..4 * m + 2].copy_from_slice(shape));
@@ -353,7 +356,7 @@ pub(super) fn rational(
     } else {
         few.start(known, width, &equal.each).ok_or_else(refuse)?.1
     };
-    let at = few.nearer(&start, &equal)?;
+    let at = few.nearer(&start, &equal.each)?;
     let rivals = rivals(measured, part, &scaled, &at);
     // Minus twice the logarithm of the likelihood.
     let unlikely = |p: &[f64], noise: &LineNoise| {
@@ -365,7 +368,8 @@ pub(super) fn rational(
     let mut failed = refuse();
     let mut near = Vec::new();
     for (noise, named) in rivals {
-        match scaled.nearer(&at, &noise) {
+        let weight: Vec<f64> = noise.each.chunks(scaled.row()).map(average).collect();
+        match few.nearer(&at, &weight) {
             Ok(p) => near.push((unlikely(&p, &noise), p, noise, named)),
             Err(error) => failed = error,
         }
