@@ -88,7 +88,7 @@ pub struct Drill {
 }
 
 // Speed and exposure do not depend on the velocity.
-uncertain!(Drill: groups, before, after, phase, energy, energy_given, restitution, displacement);
+uncertain!(Drill: impacts, groups, before, after, phase, energy, energy_given, restitution, displacement);
 
 impl Drill {
     /// Doubt where the velocity, of this range, has clipped samples: they bias the displacement low.
