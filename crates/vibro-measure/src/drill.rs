@@ -135,6 +135,7 @@ pub fn drill_each(
     let reach = around.iter().fold(0.0f64, |reach, v| reach.max(v.abs()));
     let groups = groups::groups(&mut impacts, &residuals, gap, averaged, options, &offset);
     let groups: Vec<Group> = groups.into_iter().map(|group| group.within(reach)).collect();
+    groups::doubt_impacts(&mut impacts, &groups);
     stroke.std = stroke.std.map(|std| std.hypot(lacking(&cycles.blunted, &groups, reach, rate)));
     let strongest = groups.first();
     let speeds: Vec<f64> = whole.iter().map(|t| rate / (t.end - t.start)).collect();

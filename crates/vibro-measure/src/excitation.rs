@@ -114,7 +114,7 @@ fn largest(force: &[f64], window: Option<Window>, first: usize) -> std::result::
 
 /// Largest deviation from the line shape of a sine that noise explains, in standard deviations of its real
 /// or imaginary part.
-const BY_NOISE: f64 = 5.0;
+const BY_NOISE: f64 = 3.5;
 /// Largest deviation from the shape of a sine, over its amplitude, whose effect can be stated as an
 /// uncertainty.
 const SMALL: f64 = 0.02;

@@ -28,29 +28,77 @@ const MEDIANS: [f64; 10] = [1.1774, 0.8636, 0.7516, 0.6273, 0.5972, 0.5848, 0.58
 ///
 /// `None` where fewer than eight lines are left.
 pub fn around(magnitudes: &[f64], centre: usize, reach: usize, window: Option<Window>) -> Option<f64> {
+    let lines = beside(magnitudes, centre, reach, window);
+    (lines.len() >= FEWEST).then(|| floor(&lines))
+}
+
+/// As [`around`], for noise that may fall or rise as a power of the frequency. Its exponent comes from the
+/// floors below and above `centre`, and from what is known of noise: most has one about 0, with a standard
+/// deviation of [`EXPONENT`].
+pub fn sloping(magnitudes: &[f64], centre: usize, reach: usize, window: Option<Window>) -> Option<f64> {
+    let lines = beside(magnitudes, centre, reach, window);
+    if lines.len() < FEWEST {
+        return None;
+    }
+    let all = floor(&lines);
+    let (below, above): (Vec<Line>, Vec<Line>) = lines.iter().partition(|line| line.at < centre);
+    if below.len() < FEW || above.len() < FEW || centre == 0 {
+        return Some(all);
+    }
+    // Logarithm of the middle of some lines.
+    let middle = |lines: &[Line]| lines.iter().map(|l| (l.at as f64).ln()).sum::<f64>() / lines.len() as f64;
+    let width = middle(&above) - middle(&below);
+    let variance = SCATTER * [&below, &above].map(|side| 1.0 / side.len() as f64).iter().sum::<f64>();
+    let known = (EXPONENT * width).powi(2);
+    let exponent = (floor(&above) / floor(&below)).ln() / width * known / (known + variance);
+    let here = (exponent * ((centre as f64).ln() - middle(&lines))).exp();
+    Some(if here.is_finite() { all * here } else { all })
+}
+
+/// Fewest lines of a floor, and of one on each side of a peak.
+const FEWEST: usize = 8;
+const FEW: usize = 4;
+/// Standard deviation of the exponent of the amplitude of noise over frequency: 1/f noise has −½, that of a
+/// drifting offset −1.
+const EXPONENT: f64 = 0.5;
+/// Variance of the logarithm of a floor, times its number of lines: 1/(2 ln 2)² for the median of lines of
+/// noise alone, twice for the correlation of neighbours under a window.
+const SCATTER: f64 = 1.04;
+
+/// A line beside a peak.
+#[derive(Clone, Copy)]
+struct Line {
+    at: usize,
+    /// Leakage of the sine of the peak, and the line's magnitude without it.
+    leakage: f64,
+    rest: f64,
+}
+
+/// Lines `reach` on either side of `centre`, as in [`around`].
+fn beside(magnitudes: &[f64], centre: usize, reach: usize, window: Option<Window>) -> Vec<Line> {
     let low = centre.saturating_sub(reach).max(2);
     let high = centre.saturating_add(reach + 1).min(magnitudes.len());
     let sine = window.zip(sine(magnitudes, centre, window));
-    // Leakage of the sine at each line, and the line's magnitude without it.
-    let lines: Vec<(f64, f64)> = (low..high)
+    (low..high)
         .filter(|k| k.abs_diff(centre) > GUARD && magnitudes[*k].is_finite())
         .map(|k| {
             let leakage = sine.map_or(0.0, |(window, (position, amplitude))| {
                 amplitude * line_shape(window, k as f64 - position).abs()
             });
-            (leakage, (magnitudes[k] - leakage).abs())
+            Line { at: k, leakage, rest: (magnitudes[k] - leakage).abs() }
         })
-        .collect();
-    if lines.len() < 8 {
-        return None;
-    }
+        .collect()
+}
+
+/// Standard deviation of the noise in one component of these lines, by their median.
+fn floor(lines: &[Line]) -> f64 {
     let mut scaled = vec![0.0; lines.len()];
     let mut noise = f64::INFINITY;
     // The expected rest of a line depends weakly on its height over the noise: the slope of the logarithm of
     // the median over that of the height is at most 0.75. So each iteration leaves at most 0.75 of the
     // error, and 40 leave 1e-5.
     for _ in 0..40 {
-        for (scaled, (leakage, rest)) in scaled.iter_mut().zip(&lines) {
+        for (scaled, Line { leakage, rest, .. }) in scaled.iter_mut().zip(lines) {
             *scaled = rest / rice_median(leakage / noise);
         }
         let found = upper_median(&mut scaled);
@@ -60,7 +108,7 @@ pub fn around(magnitudes: &[f64], centre: usize, reach: usize, window: Option<Wi
             break;
         }
     }
-    Some(noise)
+    noise
 }
 
 /// Position and amplitude of the sine whose largest line is beside `centre`.

@@ -29,7 +29,7 @@ impl Whiteness {
     /// that of white noise of the same variance; the sum ends at the first lag that is not positive
     /// (Geyer 1992, initial positive sequence).
     pub fn of(sequences: &[&[f64]]) -> Whiteness {
-        Whiteness::tested(sequences, Vec::new())
+        Whiteness::tested(sequences, &[])
     }
 
     /// As [`Whiteness::of`], for the residuals of a fit in sequences of `length`.
@@ -43,19 +43,19 @@ impl Whiteness {
         // σ²H = WWᵀ.
         let w = &fit.jacobian * (root.l() * fit.variance().sqrt());
         let taken = w.as_slice().chunks(w.nrows()).flat_map(|column| column.chunks(length));
-        Whiteness::tested(&sequences, taken.collect())
+        Whiteness::tested(&sequences, &taken.collect::<Vec<_>>())
     }
 
     /// Tests sequences of residuals. The noise `taken` by parameters lowers their sums of products by its
     /// own.
-    fn tested(sequences: &[&[f64]], taken: Vec<&[f64]>) -> Whiteness {
+    fn tested(sequences: &[&[f64]], taken: &[&[f64]]) -> Whiteness {
         let n: usize = sequences.iter().map(|s| s.len()).sum();
         let squares: f64 = sequences.iter().flat_map(|s| s.iter()).map(|r| r * r).sum();
         if n < 12 || squares <= 0.0 || !squares.is_finite() {
             return Whiteness { p_value: None, inflation: 1.0 };
         }
         let longest = sequences.iter().map(|s| s.len()).max().unwrap_or(0) / 4;
-        let all = Products { sequences: [sequences, &taken].concat(), longest, far: OnceCell::new() };
+        let all = Products { sequences: [sequences, taken].concat(), longest, far: OnceCell::new() };
         let correlation = |lag: usize| all.at(lag) / squares;
         let lags = if n < 40 { 4 } else { 10 };
         let total = n as f64;

@@ -90,7 +90,7 @@ pub(crate) fn drill_impacts(drill: &Drill) -> Table {
     let columns: Vec<(&str, &str)> = names.into_iter().zip(units).collect();
     let mut table = headed("Impacts", &columns);
     for i in &drill.impacts {
-        let estimate = |value, std| Cell::Estimate { value, std: Some(std) };
+        let estimate = |value, std| Cell::Estimate { value, std };
         table.push([
             Cell::from(i.cycle),
             Cell::Number(i.time),

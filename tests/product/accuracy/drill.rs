@@ -217,9 +217,9 @@ fn uncertainties_of_a_drill_are_true(draws: Draws) {
         for impact in &found.impacts {
             let near = |s: &&Struck| (s.time - impact.time).abs() < 1e-4;
             let truth = run.impacts.iter().find(near).unwrap_or_else(|| panic!("seed {seed}: {impact:?}"));
-            single[0].take(impact.before, impact.before_std, truth.before);
-            single[1].take(impact.after, impact.after_std, truth.after);
-            single[2].take(impact.phase, impact.phase_std, truth.phase);
+            single[0].take(impact.before, impact.before_std.unwrap_or(f64::NAN), truth.before);
+            single[1].take(impact.after, impact.after_std.unwrap_or(f64::NAN), truth.after);
+            single[2].take(impact.phase, impact.phase_std.unwrap_or(f64::NAN), truth.phase);
         }
     }
     println!(

@@ -36,7 +36,7 @@ pub const CONCERNS: [(&str, Concern); 73] = [
     ("decay-changes", MODE),
     (
         "drill-velocity-scaled-twice",
-        At(&["groups", "before", "after", "energy", "energy_given", "displacement"]),
+        At(&["impacts", "groups", "before", "after", "energy", "energy_given", "displacement"]),
     ),
     ("drill-over-range", At(&["displacement"])),
     ("drill-impacts-over-range", VELOCITIES),
@@ -150,10 +150,33 @@ impl Concern {
                 let beside =
                     if paths == &[""] { &["phase", "before", "after", "restitution"] } else { *paths };
                 all.extend(if group == 0 { below("", answer, beside) } else { Vec::new() });
+                all.extend(of_impacts(answer, group, found));
                 all
             }
         }
     }
+}
+
+/// The single impacts of a group whose numbers a doubt about the group is about.
+fn of_impacts<'a>(answer: &'a Value, group: usize, found: &Value) -> Vec<(String, &'a Value)> {
+    let velocities: &[&str] = &["first_contact_std", "before_std", "after_std"];
+    let (paths, clipped): (&[&str], bool) = match found["code"].as_str() {
+        Some("drill-impacts-over-range") => (velocities, true),
+        Some("drill-mean-velocity") => (velocities, false),
+        Some("drill-lack-of-fit") => (&["time_std", "phase_std"], false),
+        Some("drill-velocity-impossible" | "drill-ringing") => (&[""], false),
+        // Of means alone.
+        _ => (&[], false),
+    };
+    let impacts = answer["impacts"].as_array().into_iter().flatten().enumerate();
+    let own = impacts.filter(|(_, impact)| {
+        impact["group"] == group && (!clipped || impact["clipped"] == Value::Bool(true))
+    });
+    let below = |(i, impact): (usize, &'a Value)| {
+        let inside = paths.iter().flat_map(move |path| select(impact, path));
+        inside.map(move |(at, value)| (format!("impacts/{i}/{at}"), value)).collect::<Vec<_>>()
+    };
+    own.flat_map(below).collect()
 }
 
 /// Levels and decrement of a decay, where the mode of the finding is the strongest. Levels of a mode that

@@ -6,7 +6,7 @@ use crate::Estimate;
 use crate::mean::Mean;
 use serde::Serialize;
 use std::f64::consts::TAU;
-use vibro_record::{Finding, Uncertain, code, sort_by_number};
+use vibro_record::{Finding, Uncertain, code, sort_by_number, uncertain};
 
 /// Largest bias of a mean, in standard uncertainties, that is ignored: ±1.96 of them then still cover 94 %.
 const BIAS: f64 = 0.3;
@@ -47,26 +47,49 @@ pub struct Impact {
     /// Time from the first sample, in s.
     pub time: f64,
     /// Standard uncertainty of the time, in s.
-    pub time_std: f64,
+    pub time_std: Option<f64>,
     /// Fraction of the turn after its beginning, 0 to 1.
     pub phase: f64,
     /// Standard uncertainty of the phase, in turns.
-    pub phase_std: f64,
+    pub phase_std: Option<f64>,
     /// Velocity at first contact, in m/s.
     pub first_contact: f64,
     /// Standard uncertainty of this velocity, in m/s.
-    pub first_contact_std: f64,
+    pub first_contact_std: Option<f64>,
     /// Velocity of approach, continued to the middle of the contact, in m/s.
     pub before: f64,
     /// Standard uncertainty of this velocity, in m/s.
-    pub before_std: f64,
+    pub before_std: Option<f64>,
     /// Velocity of separation, continued back to the middle of the contact, in m/s.
     pub after: f64,
     /// Standard uncertainty of this velocity, in m/s.
-    pub after_std: f64,
+    pub after_std: Option<f64>,
     /// Whether samples of the fits or of the contact are over-range. The speeds are then biased low, and the
     /// impact is left out of the means.
     pub clipped: bool,
+}
+
+uncertain!(Impact: time_std, phase_std, first_contact_std, before_std, after_std);
+
+impl Impact {
+    /// Time and phase.
+    fn instant(&mut self) -> [&mut Option<f64>; 2] {
+        [&mut self.time_std, &mut self.phase_std]
+    }
+
+    fn velocities(&mut self) -> [&mut Option<f64>; 3] {
+        [&mut self.first_contact_std, &mut self.before_std, &mut self.after_std]
+    }
+}
+
+/// Whether each impact of a group keeps its own uncertainties: a doubt about the group may be one about each.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Kept(bool);
+
+impl Uncertain for Kept {
+    fn doubt(&mut self) {
+        self.0 = false;
+    }
 }
 
 /// Mean velocity over turns in m/s, subtracted from the velocities at impacts. A mass that returns each turn
@@ -124,12 +147,16 @@ pub struct Group {
     /// Whether velocities or phase change so slowly that uncertainties may be too small.
     #[serde(skip)]
     pub(super) wanders: bool,
+    /// Whether its impacts keep the uncertainties of their times and phases, and of their velocities.
+    #[serde(skip)]
+    kept: [Kept; 2],
 }
 
 impl Uncertain for Group {
     fn doubt(&mut self) {
         self.phase.doubt();
         self.velocities().doubt();
+        self.kept.doubt();
     }
 }
 
@@ -215,6 +242,7 @@ impl Group {
         let (before, after) = (self.before.value, self.after.value);
         if offset.value.abs() > LARGEST * before.abs().max(after.abs()) {
             let doubt = Finding::doubt(code::DRILL_MEAN_VELOCITY).number("mean", offset.value);
+            self.kept[1].doubt();
             let found = doubt.of(&mut self.velocities());
             self.findings.push(found);
             return self;
@@ -278,7 +306,9 @@ impl Group {
         let mean = |of: &dyn Fn(&Impact) -> f64| Mean::of(&own.iter().map(|i| of(i)).collect::<Vec<f64>>());
         let (before, after, first) = (mean(&|i| i.before), mean(&|i| i.after), mean(&|i| i.first_contact));
         // The uncertainty of the contact's length is the same for all impacts and does not average out.
-        let shared = |i: &Impact| (i.first_contact_std.powi(2) - i.before_std.powi(2)).max(0.0).sqrt();
+        let std = |of: Option<f64>| of.unwrap_or(f64::NAN);
+        let shared =
+            |i: &Impact| (std(i.first_contact_std).powi(2) - std(i.before_std).powi(2)).max(0.0).sqrt();
         let first = Mean { std: first.std.map(|std| std.hypot(mean(&shared).value)), ..first };
         let sides = [&before, &after];
         let lacks = [0, 1].map(|side| lack_of_fit(&residuals, side, sides[side], gap));
@@ -336,6 +366,7 @@ impl Group {
             restitution,
             findings: Vec::new(),
             wanders,
+            kept: [Kept(true); 2],
         };
         group.findings = group.doubts(&lacks, followed(&own), own.len(), directed);
         group.findings.extend(without);
@@ -360,7 +391,8 @@ impl Group {
             // The uncertainty of the velocity includes the bias. How far the phase is off is not known.
             found.extend(lack.map(|LackOfFit { residual, bias }| {
                 let doubt = Finding::doubt("drill-lack-of-fit").name("side", side);
-                doubt.number("residual", residual).number("bias", bias).of(&mut self.phase)
+                let of_each: &mut [&mut dyn Uncertain] = &mut [&mut self.phase, &mut self.kept[0]];
+                doubt.number("residual", residual).number("bias", bias).of(of_each)
             }));
         }
         if rings > 0 {
@@ -368,6 +400,20 @@ impl Group {
         }
         found.extend((!directed).then(|| Finding::doubt("drill-phase-undirected").of(&mut self.phase)));
         found
+    }
+}
+
+/// Takes the uncertainties of impacts away that doubts about their groups concern, and those of velocities
+/// that are over-range.
+pub(super) fn doubt_impacts(impacts: &mut [Impact], groups: &[Group]) {
+    for impact in impacts {
+        let [instants, velocities] = groups.get(impact.group).map_or([Kept(true); 2], |group| group.kept);
+        if !instants.0 {
+            impact.instant().doubt();
+        }
+        if impact.clipped || !velocities.0 {
+            impact.velocities().doubt();
+        }
     }
 }
 
@@ -422,7 +468,8 @@ fn restitution(
 ) -> Result<Estimate, Finding> {
     let n = impacts.len() as f64;
     let approach = impacts.iter().map(|i| i.before).sum::<f64>() / n;
-    let unclear = impacts.iter().filter(|i| i.before.abs() < CLEAR * i.before_std).count();
+    let unclear =
+        impacts.iter().filter(|i| i.before_std.is_some_and(|std| i.before.abs() < CLEAR * std)).count();
     if 2 * unclear > impacts.len() {
         return Err(Finding::caution("drill-not-striking").number("speed", approach));
     }

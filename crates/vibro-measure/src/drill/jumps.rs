@@ -214,15 +214,15 @@ impl<'a> Jumps<'a> {
                 cycle: j.cycle,
                 group: 0,
                 time: j.at / rate,
-                time_std: time.sqrt() / rate,
+                time_std: Some(time.sqrt() / rate),
                 phase,
-                phase_std: (time + edges).sqrt() / length,
+                phase_std: Some((time + edges).sqrt() / length),
                 first_contact: approach.beside(-half),
-                first_contact_std: before.sqrt().hypot(approach.slope * half_std),
+                first_contact_std: Some(before.sqrt().hypot(approach.slope * half_std)),
                 before: approach.value,
-                before_std: before.sqrt(),
+                before_std: Some(before.sqrt()),
                 after: j.sides[1].value,
-                after_std: after.sqrt(),
+                after_std: Some(after.sqrt()),
                 clipped: j.clipped,
             }
         };
@@ -271,7 +271,7 @@ mod tests {
             // The contact begins three samples before its middle: 7.5 − 0.06 m/s, and a bend of 10⁻⁴ m/s. Its
             // length is known to half a sample.
             assert!(
-                (i.first_contact - 7.44).abs() < i.first_contact_std && i.first_contact_std < 0.01,
+                i.first_contact_std.is_some_and(|std| (i.first_contact - 7.44).abs() < std && std < 0.01),
                 "{i:?}"
             );
             // The cubic between samples of the sine is off by (π/6)⁴·4.5·9/16/24 = 0.008 m/s, at a slope of

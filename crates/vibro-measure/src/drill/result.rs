@@ -90,10 +90,20 @@ pub struct Drill {
 // Speed and exposure do not depend on the velocity.
 impl Uncertain for Drill {
     fn doubt(&mut self) {
-        let Drill { groups, before, after, phase, energy, energy_given, restitution, displacement, .. } =
-            self;
-        let of_velocity: [&mut dyn Uncertain; 8] =
-            [groups, before, after, phase, energy, energy_given, restitution, displacement];
+        let Drill {
+            impacts,
+            groups,
+            before,
+            after,
+            phase,
+            energy,
+            energy_given,
+            restitution,
+            displacement,
+            ..
+        } = self;
+        let of_velocity: [&mut dyn Uncertain; 9] =
+            [impacts, groups, before, after, phase, energy, energy_given, restitution, displacement];
         of_velocity.into_iter().for_each(Uncertain::doubt);
     }
 
@@ -101,12 +111,6 @@ impl Uncertain for Drill {
         self.doubt();
         self.speed.doubt();
         self.exposure.doubt();
-        for impact in &mut self.impacts {
-            let Impact { time_std, phase_std, first_contact_std, before_std, after_std, .. } = impact;
-            for std in [time_std, phase_std, first_contact_std, before_std, after_std] {
-                *std = f64::NAN;
-            }
-        }
     }
 }
 

@@ -64,7 +64,8 @@ impl TurnImpacts {
         if chosen.len() < FEWEST {
             return refused(format!("{} impacts have no common period: there are no turns", own.len()));
         }
-        let squares: f64 = chosen.iter().map(|k| (own[*k].time_std * rate).powi(2)).sum();
+        let squares: f64 =
+            chosen.iter().filter_map(|k| own[*k].time_std).map(|std| (std * rate).powi(2)).sum();
         Ok(TurnImpacts {
             at: chosen.iter().map(|k| events[*k].0).collect(),
             std: (squares / chosen.len() as f64).sqrt(),
@@ -152,15 +153,15 @@ mod tests {
             cycle: 0,
             group: 0,
             time,
-            time_std: 0.5,
+            time_std: Some(0.5),
             phase: 0.0,
-            phase_std: 0.0,
+            phase_std: Some(0.0),
             first_contact: 0.0,
-            first_contact_std: 0.0,
+            first_contact_std: Some(0.0),
             before: 0.0,
-            before_std: 0.0,
+            before_std: Some(0.0),
             after,
-            after_std: 0.0,
+            after_std: Some(0.0),
             clipped: false,
         };
         TurnImpacts::of(&of.into_iter().map(impact).collect::<Vec<_>>(), 1.0)

@@ -69,7 +69,7 @@ impl Taker<'_> {
     /// Standard deviation of one component of the lines at `position`: of the noise around line `k`, and of
     /// steady lines.
     fn floor(&self, measured: &[f64], position: f64, k: usize, window: Option<Window>) -> Option<f64> {
-        let noise = noise::around(measured, k, noise::REACH, window)?;
+        let noise = noise::sloping(measured, k, noise::REACH, window)?;
         Some(noise.hypot(self.beside(position, window)))
     }
 
@@ -139,7 +139,7 @@ impl Taker<'_> {
         let k = self.position(excitation).round().max(0.0) as usize;
         let (x, f) = (*response.get(k)?, *force.get(k)?);
         let window = point.response.window;
-        let noise = |values: &Values| noise::around(&values.magnitudes(), k, noise::REACH, window);
+        let noise = |values: &Values| noise::sloping(&values.magnitudes(), k, noise::REACH, window);
         // The analyser's division at the frequency of the line is replaced by one at the frequency of the
         // sine.
         let undone =
