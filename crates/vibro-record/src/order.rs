@@ -46,11 +46,11 @@ pub fn upper_median(values: &mut [f64]) -> f64 {
     *values.select_nth_unstable_by(middle, f64::total_cmp).1
 }
 
-/// Sorts `items` by a number of each, the smallest first. Items of equal numbers keep their order; 0 comes behind
-/// -0, NaN at the end.
+/// Sorts `items` by a number of each, the smallest first. Items of equal numbers keep their order; 0 comes
+/// behind -0, NaN at the end.
 ///
-/// The numbers are sorted apart from the items: this is one sort for all types of items, where `sort_by` is built
-/// anew for each.
+/// The numbers are sorted apart from the items: this is one sort for all types of items, where `sort_by` is
+/// built anew for each.
 ///
 /// ```
 /// let mut masses = [("striker", 0.14), ("bit", 0.08)];

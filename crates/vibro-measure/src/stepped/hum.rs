@@ -12,7 +12,7 @@ use crate::noise;
 use nalgebra::{DMatrix, DVector};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
-use vibro_record::{Axis, Finding, Result, Scaling, Trace, Window, median};
+use vibro_record::{Axis, Finding, Result, Scaling, Trace, Window, median, sort_by_number};
 use vibro_signal::spectrum;
 
 /// Nominal frequencies of the mains in Hz, and largest deviation of the fundamental.
@@ -122,7 +122,7 @@ fn candidates(steps: &[Settled], all: &[Spectral]) -> Vec<(f64, f64)> {
         if seen.is_empty() { VISIBLE } else { average(&seen) }
     };
     let mut lines: Vec<_> = lines.map(|line| (height(line), line)).filter(|(h, _)| *h >= VISIBLE).collect();
-    lines.sort_by(|a, b| b.0.total_cmp(&a.0));
+    sort_by_number(&mut lines, |line| -line.0);
     lines.into_iter().map(|(_, line)| line).collect()
 }
 
@@ -251,8 +251,8 @@ impl Settled<'_> {
     }
 }
 
-/// Normal equations of the amplitudes of `pairs` over `n` samples, in noise of this variance. Rows: cosine and
-/// sine of each pair; a mean has a cosine alone.
+/// Normal equations of the amplitudes of `pairs` over `n` samples, in noise of this variance. Rows: cosine
+/// and sine of each pair; a mean has a cosine alone.
 fn equations(pairs: &[&Pair], n: usize, noise: f64) -> (DMatrix<f64>, DVector<f64>) {
     let of = |pair: usize| [(pair, false), (pair, true)];
     let rows: Vec<(usize, bool)> =
@@ -308,8 +308,8 @@ impl<'a> Fitter<'a> {
         Fitter { rate: step.rate, values, own, noise }
     }
 
-    /// Adds to the noise what leaks from lines elsewhere to the line at `frequency` in Hz, which the window of
-    /// the spectrum holds back: the power beside the line, with the line itself fitted.
+    /// Adds to the noise what leaks from lines elsewhere to the line at `frequency` in Hz, which the window
+    /// of the spectrum holds back: the power beside the line, with the line itself fitted.
     fn allow_leakage(&mut self, frequency: f64) {
         let spacing = self.rate / self.values.len() as f64;
         let z = Complex64::new(0.0, TAU * frequency / self.rate);
