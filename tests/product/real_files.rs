@@ -50,8 +50,8 @@ fn resonances_of_a_hammer_test() {
     for f in [62.0, 81.5, 96.5, 125.0, 140.5, 175.0] {
         assert!(near(&found, 0, f, 0.5), "{f}: {:?}", found["frf"][0]["findings"]);
     }
-    // Beside the peak at 41 Hz lies a dip that no single mode explains. A finding reports the peak among those
-    // without a mode, and no mode is fitted there.
+    // Beside the peak at 41 Hz lies a dip that no single mode explains. A finding reports the peak among
+    // those without a mode, and no mode is fitted there.
     let warnings = found["warnings"].to_string();
     let mut findings = found["findings"].as_array().unwrap().iter();
     let lines = |f: &Value| f["numbers"]["lines"].as_array().is_some_and(|at| at.contains(&json!(41.0)));
