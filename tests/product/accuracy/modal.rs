@@ -223,8 +223,9 @@ fn stands(lines: &[f64], clean: &[Complex64], f: f64) -> bool {
 /// covers the error.
 fn structures_in_a_band(with_coherence: bool, banded: bool, from: u64, draws: Draws) {
     let (mut frequency, mut zeta, mut constant) = <(Score, Score, Score)>::default();
-    // One structure has three modes or more and takes seconds in a debug build.
-    let cases = if draws == Draws::Few { 1 } else { 60 };
+    // One structure has three modes or more and takes seconds in a debug build. Of 120 structures, the
+    // coverage of some 530 modes has a chance error of 0.9 %.
+    let cases = if draws == Draws::Few { 1 } else { 120 };
     println!("seeds {from} to {}", from + cases);
     let (mut missed, mut false_ones, mut modes) = (0, 0, 0);
     for seed in from..from + cases {
