@@ -249,8 +249,8 @@ impl Settled<'_> {
     }
 }
 
-/// Normal equations of the amplitudes of `pairs` over `n` samples, in noise of this variance. Rows: cosine and
-/// sine of each pair; a mean has a cosine alone.
+/// Normal equations of the amplitudes of `pairs` over `n` samples, in noise of this variance. Rows: cosine
+/// and sine of each pair; a mean has a cosine alone.
 fn equations(pairs: &[&Pair], n: usize, noise: f64) -> (DMatrix<f64>, DVector<f64>) {
     let of = |pair: usize| [(pair, false), (pair, true)];
     let rows: Vec<(usize, bool)> =
