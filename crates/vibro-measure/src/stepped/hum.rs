@@ -83,7 +83,9 @@ pub(super) fn remove(mut steps: Vec<Settled>) -> Result<Vec<Hum>> {
         let mut fits: Vec<Fitter> =
             steps.iter().zip(&all).map(|(step, s)| Fitter::of(step, s, nominal)).collect();
         let (frequency, tried) = strongest(&fits, nominal, tolerance);
-        fits.iter_mut().for_each(|fit| fit.allow_leakage(frequency));
+        for fit in &mut fits {
+            fit.allow_leakage(frequency);
+        }
         let alone: Vec<Option<Fitted>> = fits.iter().map(|fit| fit.at(frequency, None)).collect();
         let power = alone.iter().flatten().map(|fitted| fitted.power).sum();
         if chi_squared_above(power, 2 * fits.len()) > BY_CHANCE / tried as f64 {
