@@ -308,8 +308,8 @@ impl<'a> Fitter<'a> {
         Fitter { rate: step.rate, values, own, noise }
     }
 
-    /// Adds to the noise what leaks from lines elsewhere to the line at `frequency` in Hz, which the window of
-    /// the spectrum holds back: the power beside the line, with the line itself fitted.
+    /// Adds to the noise what leaks from lines elsewhere to the line at `frequency` in Hz, which the window
+    /// of the spectrum holds back: the power beside the line, with the line itself fitted.
     fn allow_leakage(&mut self, frequency: f64) {
         let spacing = self.rate / self.values.len() as f64;
         let z = Complex64::new(0.0, TAU * frequency / self.rate);
