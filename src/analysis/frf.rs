@@ -19,7 +19,7 @@ use crate::campaign::{Campaign, Entry, KeyRange, channel};
 use crate::error::{Error, Result};
 use crate::measure::modal::{Measured, ModalOptions, ModalResult, modal, stabilisation};
 use crate::record::code;
-use crate::record::{Axis, Meta, Record, Severity, Trace, Traces, Uncertain, Window, shown};
+use crate::record::{Axis, Finding, Meta, Record, Trace, Traces, Uncertain, Window, shown};
 use crate::report::Cell;
 use crate::report::files;
 use crate::report::files::Names;
@@ -172,7 +172,7 @@ impl Keys {
             // A single blow has no coherence.
             let measured = if records.len() > 1 { measured.with_coherence_of(&records)? } else { measured };
             return Ok(vec![Function {
-                in_doubt: found.findings.iter().any(|found| found.severity() == Severity::Doubt),
+                in_doubt: found.findings.iter().any(Finding::is_doubt),
                 records: records.clone(),
                 ..Function::new(frf.meta.clone(), measured)
             }]);
@@ -193,7 +193,7 @@ impl Keys {
                 measured.values.iter_mut().for_each(|v| *v *= factor);
             }
             let mut all = recording.findings.iter().chain(&meta.findings);
-            let in_doubt = all.any(|found| found.severity() == Severity::Doubt);
+            let in_doubt = all.any(Finding::is_doubt);
             Ok(Function { in_doubt, ..Function::new(meta, measured) })
         };
         all.into_iter().map(function).collect()

@@ -1,6 +1,6 @@
 //! Headlines of a report: the main numbers of each kind of record.
 
-use crate::record::{Finding, Severity};
+use crate::record::Finding;
 use crate::report::layout::{Shown, table};
 use crate::report::{Cell, Table};
 
@@ -33,7 +33,7 @@ pub fn of_record<'a>(
     name: &str,
     findings: impl IntoIterator<Item = &'a Finding>,
 ) -> Table {
-    let doubtful = findings.into_iter().any(|finding| finding.severity() == Severity::Doubt);
+    let doubtful = findings.into_iter().any(Finding::is_doubt);
     let column = Table::new("").column("record", "").columns;
     headline.columns.splice(0..0, column);
     for row in &mut headline.rows {

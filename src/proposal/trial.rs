@@ -1,6 +1,5 @@
 //! Identifies records of unknown kind by trying one analysis after another. The first table with a
-//! plausible answer is proposed: one without a finding of severity [`Severity::Doubt`], and with the
-//! evidence of its kind.
+//! plausible answer is proposed: one without a doubt about the analysis, and with the evidence of its kind.
 //!
 //! A key of a proposed table has one of four states ([`KeyStatus`]). *found*: the files state its value.
 //! *guessed*: it was inferred, with a reason. *missing*: required, a person must add it. *open*: optional,
@@ -17,7 +16,7 @@ use crate::campaign::Reading;
 use crate::measure::restitution::Train;
 use crate::read::{Folder, Header};
 use crate::record::code::{self, READER_DOUBTS};
-use crate::record::{Fact, Finding, Record, Severity};
+use crate::record::{Fact, Finding, Record};
 use rayon::prelude::*;
 use std::ops::Range;
 use std::slice::from_ref;
@@ -31,7 +30,7 @@ const LONGEST_CONTACT: f64 = 0.1;
 /// Whether a finding is a doubt about the analysis, and not about how the file is read: that holds for every
 /// analysis of the record.
 fn doubts_analysis(found: &Finding) -> bool {
-    found.severity() == Severity::Doubt && !READER_DOUBTS.contains(&&*found.code)
+    found.is_doubt() && !READER_DOUBTS.contains(&&*found.code)
 }
 
 /// Codes of the doubts about a friction-damped decay, whose amplitude falls by a constant step per swing.
@@ -135,7 +134,7 @@ impl Trial<'_> {
         tables.iter().find(is_friction_decay).cloned()
     }
 
-    /// The answers of the tables, if they are plausible and no finding has the severity [`Severity::Doubt`].
+    /// The answers of the tables, if they are plausible and no finding is a doubt about the analysis.
     fn plausible_answer(&self, tables: &[Table]) -> Option<Answer> {
         let is_plausible = |answer: &Answer| {
             answer.findings.iter().all(|(_, f)| !doubts_analysis(f)) && fits_kind(tables, answer)

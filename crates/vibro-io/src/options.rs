@@ -75,6 +75,7 @@ impl Options {
         }
         Ok(found)
     }
+
     /// Checks that this many values fit into memory, with the results computed from them.
     ///
     /// # Errors

@@ -15,12 +15,12 @@ mod interval;
 mod onset;
 mod rises;
 
+pub use crate::mains::Hum;
 pub(crate) use bands::{chosen, octaves};
 pub(crate) use detect::{Choose, Sound, detect_among};
 pub use detect::{Detected, ImpactsOptions, detect};
 pub(crate) use echoes::QUIETER;
 pub use excitation::{PerCycle, Phase};
-pub use hum::Hum;
 pub use interval::{Interval, interval};
 
 use super::Estimate;
@@ -29,7 +29,7 @@ use crate::swings::Swings;
 use echoes::echoes;
 use interval::{CountedImpacts, count, evened, pattern};
 use serde::Serialize;
-use vibro_record::{Doubt, Error, Finding, Result, Severity, Trace, median, uncertain};
+use vibro_record::{Doubt, Error, Finding, Result, Trace, median, uncertain};
 
 /// Intervals that spread by less than this fraction of their median are regular.
 pub const REGULAR: f64 = 0.05;
@@ -128,7 +128,7 @@ fn rings(trace: &Trace) -> bool {
 /// Whether the impacts of a further search are regular, mostly complete and without a finding of doubt.
 fn repeats(found: &Impacts) -> bool {
     let steady = found.spread.is_some_and(|spread| spread < REGULAR * found.median_interval);
-    let sure = found.findings.iter().all(|f| f.severity() < Severity::Doubt);
+    let sure = found.findings.iter().all(|f| !f.is_doubt());
     steady && sure && MISSING * found.missed < found.n
 }
 

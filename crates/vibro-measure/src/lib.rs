@@ -22,6 +22,7 @@ pub mod jump;
 pub mod legacy;
 
 mod line;
+mod mains;
 mod mean;
 pub mod modal;
 mod noise;

@@ -90,9 +90,9 @@ pub fn stepped(
         taken.iter().zip(&steps).map(|(taken, step)| taken.excitation(step)).collect();
     let (mut found, beside) = read(&sweep, options, &excitations)?;
     let unit = steps.first().map_or("", |step| step.response.meta.unit.symbol());
-    found.findings.extend(hums.iter().map(|hum| hum.finding(unit)));
+    found.findings.extend(hums.iter().map(|line| line.hum.removed(unit)));
     for (k, ((point, step), beside)) in found.points.iter_mut().zip(&mut taken).zip(beside).enumerate() {
-        let beside = hums.iter().map(|hum| hum.left[k]).fold(beside, f64::hypot);
+        let beside = hums.iter().map(|line| line.left[k]).fold(beside, f64::hypot);
         step.response.allow(beside);
         step.ratio.allow(beside / step.force.0);
         step.overrule(point, options.times(&sweep), found.unit);
@@ -206,7 +206,7 @@ impl Sine {
 ///
 /// # Errors
 /// If a response has no spectrum.
-fn without_hum(sines: &[Sine], steps: &mut [StepTraces]) -> Result<Vec<hum::Hum>> {
+fn without_hum(sines: &[Sine], steps: &mut [StepTraces]) -> Result<Vec<hum::Removed>> {
     let parts = sines.iter().zip(steps).map(|(sine, step)| {
         let blocks = sine.blocks(step);
         let (growth, _, ratio) = blocks.growing(&step.force, &step.response);

@@ -1,6 +1,6 @@
 //! Doubts: a finding that a number may be wrong, which cannot be made without taking its uncertainty away.
 
-use super::{Estimate, Finding, Severity};
+use super::{Estimate, Finding};
 use std::collections::BTreeMap;
 
 /// Numbers with standard uncertainties, which a [`Doubt`] about them takes away.
@@ -128,7 +128,7 @@ pub fn doubt_with_record<'a>(
     findings: impl IntoIterator<Item = &'a Finding>,
     numbers: &mut (impl Uncertain + ?Sized),
 ) {
-    if findings.into_iter().any(|found| found.severity() == Severity::Doubt) {
+    if findings.into_iter().any(Finding::is_doubt) {
         numbers.doubt_all();
     }
 }
@@ -145,7 +145,7 @@ mod tests {
         let named: &mut [&mut dyn Uncertain] = &mut [&mut one, &mut listed, &mut std];
         let found = Finding::doubt("x").number("part", 0.5).about("laser").of(named);
         assert_eq!((found.get("part"), found.subject.as_deref()), (Some(0.5), Some("laser")));
-        assert_eq!(found.severity(), Severity::Doubt);
+        assert_eq!(found.severity(), crate::Severity::Doubt);
         assert!(one.iter().chain(&listed).all(|e| e.std.is_none() && e.value > 0.0) && std.is_none());
         assert_eq!(other.std, Some(0.1));
         let mut named = BTreeMap::from([("other", &mut other)]);

@@ -117,6 +117,11 @@ impl Finding {
         self.severity
     }
 
+    /// Whether a number that it is about may be wrong by more than any uncertainty would say.
+    pub fn is_doubt(&self) -> bool {
+        self.severity == Severity::Doubt
+    }
+
     /// Adds a number in SI units, or a count.
     pub fn number(mut self, name: &'static str, value: f64) -> Finding {
         self.facts.push((name.into(), Fact::Number(value)));

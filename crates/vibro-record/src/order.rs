@@ -93,6 +93,7 @@ mod tests {
             assert_eq!(items, expected);
         }
     }
+
     #[test]
     fn not_a_number_comes_last_and_a_negative_zero_first() {
         let mut items = [f64::NAN, 1.0, 0.0, -0.0, f64::NEG_INFINITY];

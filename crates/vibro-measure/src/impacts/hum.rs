@@ -1,26 +1,12 @@
 //! Mains hum: a sine of 50 or 60 Hz with its harmonics, fitted between the impacts and removed.
 
 use super::background::{background, bursts};
+use crate::mains::{HARMONICS, Hum, MAINS};
 use nalgebra::{DMatrix, DVector};
 use num_complex::Complex64;
-use serde::Serialize;
 use std::f64::consts::TAU;
 use vibro_record::{Finding, median};
 
-/// A fitted mains sine.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-#[non_exhaustive]
-pub struct Hum {
-    /// Frequency in Hz, the mean where the record was fitted in pieces.
-    pub frequency: f64,
-    /// Amplitude of the fundamental, in the unit of the trace.
-    pub amplitude: f64,
-    /// Number of fitted harmonics, the fundamental included.
-    pub harmonics: usize,
-}
-
-/// Highest harmonic that is fitted.
-const HARMONICS: usize = 7;
 /// Largest deviation of a mains frequency from its nominal value, in Hz.
 const TOLERANCE: f64 = 0.5;
 /// Mains frequencies wander, so longer records are fitted in pieces of this length, in s.
@@ -64,8 +50,7 @@ pub fn remove(values: &mut [f64], (rate, unit): (f64, &str), findings: &mut Vec<
         return None;
     }
     values.copy_from_slice(&cleaned);
-    let removed = Finding::note("mains-hum-removed").number("frequency", found.frequency).name("unit", unit);
-    findings.push(removed.number("amplitude", found.amplitude).count("harmonics", harmonics));
+    findings.push(found.removed(unit));
     Some(found)
 }
 
@@ -87,7 +72,7 @@ fn fitted(values: &[f64], rate: f64) -> Option<(Hum, Vec<f64>)> {
     let limit = 3.0 * before.sigma;
     let limited: Vec<f64> = values.iter().map(|v| (v - before.level).clamp(-limit, limit)).collect();
     let steps = (TOLERANCE * 4.0 * values.len() as f64 / rate).ceil().max(1.0) as i64;
-    let (frequency, power) = [50.0, 60.0]
+    let (frequency, power) = MAINS
         .into_iter()
         .filter(|nominal| nominal + TOLERANCE < 0.5 * rate)
         .flat_map(|nominal| (-steps..=steps).map(move |k| nominal + TOLERANCE * k as f64 / steps as f64))

@@ -349,14 +349,14 @@ pub(super) fn rational(
     }
     let width = (f[f.len() - 1] - f[0]) / (f.len() - 1) as f64;
     let few = scaled.averaged();
-    let equal = LineNoise::independent(vec![1.0; few.x.len()]);
+    let equal = vec![1.0; few.x.len()];
     let refuse = || Error::refused("no first guess of the modes fits the lines");
     let start = if measured.magnitude_only {
         scaled.guess()
     } else {
-        few.start(known, width, &equal.each).ok_or_else(refuse)?.1
+        few.start(known, width, &equal).ok_or_else(refuse)?.1
     };
-    let at = few.nearer(&start, &equal.each)?;
+    let at = few.nearer(&start, &equal)?;
     let rivals = rivals(measured, part, &scaled, &at);
     // Minus twice the logarithm of the likelihood.
     let unlikely = |p: &[f64], noise: &LineNoise| {

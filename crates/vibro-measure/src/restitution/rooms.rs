@@ -5,7 +5,7 @@ use super::*;
 use crate::impacts::ImpactsOptions;
 use rayon::prelude::*;
 use vibro_record::units::Unit;
-use vibro_record::{Axis, Meta, Severity, Trace};
+use vibro_record::{Axis, Meta, Trace};
 
 /// R of a series; `None` where it is refused or doubted.
 fn answer(drops: &Drops) -> Option<Restitution> {
@@ -20,7 +20,7 @@ fn answer(drops: &Drops) -> Option<Restitution> {
     let trains: Vec<Train> = drops.records.iter().filter_map(train).collect();
     let drop = Some(drop.beginning(&trains)).filter(|_| !trains.is_empty());
     let measured = Measured { drop, trains, velocities: None, contact_time: drops.contact };
-    let sure = |found: &Restitution| found.findings.iter().all(|f| f.severity() < Severity::Doubt);
+    let sure = |found: &Restitution| found.findings.iter().all(|f| !f.is_doubt());
     restitution(&measured).ok().filter(sure)
 }
 

@@ -7,19 +7,17 @@
 
 use super::common;
 use crate::chance::chi_squared_above;
+use crate::mains::{HARMONICS, Hum, MAINS};
 use crate::mean::average;
 use crate::noise;
 use nalgebra::{DMatrix, DVector};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
-use vibro_record::{Axis, Finding, Result, Scaling, Trace, Window, median, sort_by_number};
+use vibro_record::{Axis, Result, Scaling, Trace, Window, median, sort_by_number};
 use vibro_signal::spectrum;
 
-/// Nominal frequencies of the mains in Hz, and largest deviation of the fundamental.
-const MAINS: [f64; 2] = [50.0, 60.0];
+/// Largest deviation of the fundamental of the mains from its nominal frequency, in Hz.
 const TOLERANCE: f64 = 0.2;
-/// Highest harmonic of the mains that is searched.
-const HARMONICS: usize = 7;
 /// Harmonics of the excitation that are fitted, itself included.
 const OWN: usize = 4;
 /// Lines on either side of the excitation or a harmonic that belong to it.
@@ -42,22 +40,12 @@ const SLOW: f64 = 0.1;
 /// Variance of an unknown amplitude over that of the response.
 const UNKNOWN: f64 = 1e6;
 
-/// A line of hum.
-pub(super) struct Hum {
-    /// Frequency in Hz.
-    pub frequency: f64,
-    /// Amplitude common to all steps, in the unit of the response.
-    pub amplitude: f64,
+/// A line of hum that was removed.
+pub(super) struct Removed {
+    /// The line, with the amplitude that is common to all steps.
+    pub hum: Hum,
     /// Standard uncertainty of one component of the response that it leaves in each step.
     pub left: Vec<f64>,
-}
-
-impl Hum {
-    /// Note that it was removed, in the `unit` of the response.
-    pub fn finding(&self, unit: &str) -> Finding {
-        let removed = Finding::note("mains-hum-removed").number("frequency", self.frequency);
-        removed.number("amplitude", self.amplitude).name("unit", unit).count("harmonics", 1)
-    }
 }
 
 /// The settled part of the response of a step.
@@ -76,7 +64,7 @@ pub(super) struct Settled<'a> {
 ///
 /// # Errors
 /// If a response has no spectrum.
-pub(super) fn remove(mut steps: Vec<Settled>) -> Result<Vec<Hum>> {
+pub(super) fn remove(mut steps: Vec<Settled>) -> Result<Vec<Removed>> {
     let all: Vec<Spectral> = steps.iter().map(Spectral::of).collect::<Result<_>>()?;
     let mut found = Vec::new();
     for (nominal, tolerance) in candidates(&steps, &all) {
@@ -105,7 +93,7 @@ pub(super) fn remove(mut steps: Vec<Settled>) -> Result<Vec<Hum>> {
             }
         }
         let left = known.iter().map(|hum| hum.as_ref().map_or(0.0, |hum| hum.left)).collect();
-        found.push(Hum { frequency, amplitude, left });
+        found.push(Removed { hum: Hum { frequency, amplitude, harmonics: 1 }, left });
     }
     Ok(found)
 }
@@ -223,6 +211,10 @@ struct Fitter<'a> {
     values: &'a [f64],
     /// The excitation and its harmonics, its growth, and the mean.
     own: Vec<Pair>,
+    /// Products of their cosines and sines, the same for all frequencies of hum.
+    products: DMatrix<f64>,
+    /// Variance with which hum of unknown amplitude lies about 0.
+    unknown: f64,
     /// Variance of the noise of a sample near the line of hum.
     noise: f64,
 }
@@ -251,30 +243,29 @@ impl Settled<'_> {
     }
 }
 
-/// Normal equations of the amplitudes of `pairs` over `n` samples, in noise of this variance. Rows: cosine
-/// and sine of each pair; a mean has a cosine alone.
-fn equations(pairs: &[&Pair], n: usize, noise: f64) -> (DMatrix<f64>, DVector<f64>) {
-    let of = |pair: usize| [(pair, false), (pair, true)];
-    let rows: Vec<(usize, bool)> =
-        (0..pairs.len()).flat_map(of).filter(|(pair, sine)| pairs[*pair].turns() || !sine).collect();
-    let product = |a: (usize, bool), b: (usize, bool)| {
-        let [sum, difference] = pairs[a.0].products(pairs[b.0], n);
-        0.5 * match (a.1, b.1) {
+/// A cosine, or a sine, of a pair.
+type Row<'a> = (&'a Pair, bool);
+
+/// Cosine and sine of each pair; a mean has a cosine alone.
+fn rows<'a>(pairs: impl IntoIterator<Item = &'a Pair>) -> Vec<Row<'a>> {
+    let both = pairs.into_iter().flat_map(|pair| [(pair, false), (pair, true)]);
+    both.filter(|(pair, sine)| pair.turns() || !sine).collect()
+}
+
+/// Sums over `n` samples of the products of rows; those of the first rows are `known`.
+fn products(rows: &[Row], n: usize, known: &DMatrix<f64>) -> DMatrix<f64> {
+    DMatrix::from_fn(rows.len(), rows.len(), |i, k| {
+        if i.max(k) < known.nrows() {
+            return known[(i, k)];
+        }
+        let [sum, difference] = rows[i].0.products(rows[k].0, n);
+        0.5 * match (rows[i].1, rows[k].1) {
             (false, false) => sum.re + difference.re,
             (true, true) => difference.re - sum.re,
             (false, true) => sum.im - difference.im,
             (true, false) => sum.im + difference.im,
         }
-    };
-    let mut normal = DMatrix::from_fn(rows.len(), rows.len(), |i, k| product(rows[i], rows[k]));
-    for (i, (pair, _)) in rows.iter().enumerate() {
-        normal[(i, i)] += pairs[*pair].prior.map_or(0.0, |prior| noise / prior.max(f64::MIN_POSITIVE));
-    }
-    let right = |(pair, sine): &(usize, bool)| {
-        let sum = pairs[*pair].sum;
-        if *sine { sum.im } else { sum.re }
-    };
-    (normal, DVector::from_iterator(rows.len(), rows.iter().map(right)))
+    })
 }
 
 /// Σ v e^{zt} over the samples v, with t from their middle.
@@ -303,9 +294,11 @@ impl<'a> Fitter<'a> {
         let size = 2.0 * own[0].sum.norm() / values.len() as f64;
         let grows = vec![(0.5 / h, z + h), (-0.5 / h, z - h)];
         own.push(Pair::of(values, grows, Some((size * step.growth.1).powi(2))));
+        let products = products(&rows(&own), values.len(), &DMatrix::zeros(0, 0));
+        let unknown = values.iter().map(|v| v * v).sum::<f64>() / values.len() as f64 * UNKNOWN;
         // A line of a Hann window has the noise of three samples over their number.
         let noise = spectral.floor(line).map_or(0.0, |floor| floor * floor * values.len() as f64 / 3.0);
-        Fitter { rate: step.rate, values, own, noise }
+        Fitter { rate: step.rate, values, own, products, unknown, noise }
     }
 
     /// Adds to the noise what leaks from lines elsewhere to the line at `frequency` in Hz, which the window
@@ -314,21 +307,28 @@ impl<'a> Fitter<'a> {
         let spacing = self.rate / self.values.len() as f64;
         let z = Complex64::new(0.0, TAU * frequency / self.rate);
         self.own.push(Pair::of(self.values, vec![(1.0, z)], None));
+        let with_line = products(&rows(&self.own), self.values.len(), &self.products);
+        let without_line = std::mem::replace(&mut self.products, with_line);
         let beside = BESIDE.iter().filter_map(|lines| self.at(frequency + lines * spacing, None));
         let above = median(beside.map(|fitted| fitted.power)) / TYPICAL;
         self.own.pop();
+        self.products = without_line;
         self.noise *= if above > 1.0 { above } else { 1.0 };
     }
 
     /// Fits hum of `frequency` in Hz with this amplitude; with any, where it is not known.
     fn at(&self, frequency: f64, amplitude: Option<f64>) -> Option<Fitted> {
-        let n = self.values.len();
         let z = Complex64::new(0.0, TAU * frequency / self.rate);
-        let scale = self.values.iter().map(|v| v * v).sum::<f64>() / n as f64 * UNKNOWN;
-        let hum = Pair::of(self.values, vec![(1.0, z)], Some(amplitude.map_or(scale, |a| 0.5 * a * a)));
-        let pairs: Vec<&Pair> = self.own.iter().chain([&hum]).collect();
-        let (normal, right) = equations(&pairs, n, self.noise);
-        let size = right.len();
+        let prior = amplitude.map_or(self.unknown, |a| 0.5 * a * a);
+        let hum = Pair::of(self.values, vec![(1.0, z)], Some(prior));
+        let rows = rows(self.own.iter().chain([&hum]));
+        // Normal equations of the amplitudes.
+        let mut normal = products(&rows, self.values.len(), &self.products);
+        for (i, (pair, _)) in rows.iter().enumerate() {
+            normal[(i, i)] += pair.prior.map_or(0.0, |prior| self.noise / prior.max(f64::MIN_POSITIVE));
+        }
+        let right = rows.iter().map(|(pair, sine)| if *sine { pair.sum.im } else { pair.sum.re });
+        let (size, right) = (rows.len(), DVector::from_iterator(rows.len(), right));
         let without = normal.view((0, 0), (size - 2, size - 2)).into_owned().cholesky()?.inverse();
         let inverse = normal.cholesky()?.inverse();
         let solved = &inverse * right;

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use vibro_math::Noise;
 use vibro_measure::Estimate;
 use vibro_record::units::Unit;
-use vibro_record::{Axis, Finding, Meta, Result, Severity, Trace, median};
+use vibro_record::{Axis, Finding, Meta, Result, Trace, median};
 
 /// Answer of a method.
 pub struct EstimatorAnswer {
@@ -22,7 +22,7 @@ pub struct EstimatorAnswer {
 impl EstimatorAnswer {
     /// An estimate with its findings.
     pub fn found(estimate: &Estimate, findings: &[Finding]) -> EstimatorAnswer {
-        let doubt = findings.iter().find(|f| f.severity() == Severity::Doubt).map(|f| f.code.clone());
+        let doubt = findings.iter().find(|f| f.is_doubt()).map(|f| f.code.clone());
         EstimatorAnswer { value: estimate.value, std: estimate.std, doubt }
     }
 }
