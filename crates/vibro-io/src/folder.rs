@@ -10,6 +10,7 @@ pub use manifest::{Manifest, Owner, listed};
 pub use staged::Staged;
 pub use walk::Walk;
 
+use crate::recording::Recording;
 use crate::source::Source;
 use sha2::{Digest as _, Sha256};
 use std::collections::{BTreeMap, BTreeSet};
@@ -42,6 +43,8 @@ pub struct Folder {
     side: Side,
     /// Files opened as measurements, by an identity that is the same under all their names.
     opened: Arc<Mutex<BTreeSet<PathBuf>>>,
+    /// Records made in memory, by the paths under which they are read.
+    recordings: Arc<BTreeMap<PathBuf, Arc<Recording>>>,
 }
 
 /// Files in memory by their paths.
@@ -94,6 +97,24 @@ impl Folder {
     /// Another folder of the same disk or memory. Both share the record of opened files.
     pub fn at(&self, root: impl Into<PathBuf>) -> Folder {
         Folder { root: root.into(), ..self.clone() }
+    }
+
+    /// Adds records made in memory: they are read, each recording under its path, in place of files.
+    ///
+    /// ```
+    /// use vibro_io::{Folder, Format, Reader, Recording};
+    /// use vibro_record::{Axis, Meta, Record, Trace, units::Unit};
+    /// let meta = Meta::new("laser", Unit::parse("m/s").unwrap());
+    /// let trace = Trace { meta, axis: Axis::time(0.0, 1e-3, 2), values: vec![0.1, 0.2] };
+    /// let (path, findings) = ("array".into(), Vec::new());
+    /// let made = Recording { path, format: Format::Memory, records: vec![Record::Trace(trace)], findings };
+    /// let folder = Folder::default().with_recordings([made.clone()]);
+    /// assert_eq!(Reader::new().within(&folder).from_path("array")?, made);
+    /// # Ok::<(), vibro_record::Error>(())
+    /// ```
+    pub fn with_recordings(self, made: impl IntoIterator<Item = Recording>) -> Folder {
+        let made = made.into_iter().map(|recording| (plain(&recording.path), Arc::new(recording)));
+        Folder { recordings: Arc::new(made.collect()), ..self }
     }
 
     /// States whether names may lead outside the folder. Default: they are refused.
@@ -152,6 +173,9 @@ impl Folder {
     }
 
     fn occupant_by(&self, path: &Path, look: fn(&Path) -> io::Result<fs::Metadata>) -> Occupant {
+        if self.recordings.contains_key(&plain(path)) {
+            return Occupant::File;
+        }
         match &self.side {
             Side::Disk => match look(path) {
                 Ok(meta) if meta.is_file() => Occupant::File,
@@ -287,6 +311,9 @@ impl Folder {
     /// # Errors
     /// As [`Source::file`].
     pub(crate) fn source(&self, path: &Path) -> Result<Source> {
+        if let Some(made) = self.recordings.get(&plain(path)) {
+            return Ok(Source::recording(made.clone()));
+        }
         self.reads(path);
         match &self.side {
             Side::Disk => Source::file(path),

@@ -21,6 +21,8 @@ pub enum Format {
     Ascii,
     /// A sheet of a workbook, with named columns or columns of numbers.
     Workbook,
+    /// Records that were made in memory.
+    Memory,
 }
 
 impl Format {
@@ -36,6 +38,7 @@ impl Format {
             Format::Csv => "csv",
             Format::Ascii => "ascii",
             Format::Workbook => "workbook",
+            Format::Memory => "memory",
         }
     }
 }

@@ -62,6 +62,7 @@ mod number;
 mod options;
 mod packed;
 mod reader;
+mod recording;
 mod registry;
 mod source;
 mod span;
@@ -81,7 +82,8 @@ pub use folder::{Digest, Folder, Lock, Manifest, Occupant, Owner, Staged, Walk, 
 pub use format::Format;
 pub use limit::Limit;
 pub use magnitude::MAGNITUDE;
-pub use reader::{Header, Reader, Recording};
+pub use reader::{Header, Reader};
+pub use recording::Recording;
 pub use steps::Steps;
 pub use sweep::SweepReader;
 pub use sweep_list::SweepList;

@@ -8,6 +8,7 @@ use super::registry::{Entry, TABLE};
 use crate::folder::Folder;
 use crate::format::Format;
 use crate::limit::Limit;
+use crate::recording::Recording;
 use crate::source::Source;
 use crate::sweep_list::SweepList;
 use crate::{foreign, level, magnitude, packed, span};
@@ -17,30 +18,6 @@ use std::path::{Path, PathBuf};
 use vibro_record::lanes::Extremes;
 use vibro_record::units::Unit;
 use vibro_record::{AxisKind, Error, Finding, Meta, Place, RATE_OVER_BASE_BAND, Record, Result};
-
-/// Everything a file holds.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Recording {
-    /// Path of the file.
-    pub path: PathBuf,
-    /// Its format.
-    pub format: Format,
-    /// Its records, in the order of the file.
-    pub records: Vec<Record>,
-    /// Findings on the file as a whole: what was skipped or assumed.
-    pub findings: Vec<Finding>,
-}
-
-impl Recording {
-    /// All findings: the file's, then those of the records, see [`Finding::gathered`].
-    pub fn all_findings(&self) -> Vec<Finding> {
-        let mut all = self.findings.clone();
-        let records: Vec<_> =
-            self.records.iter().map(|r| (r.meta().name.as_str(), r.meta().findings.as_slice())).collect();
-        all.extend(Finding::gathered(&records));
-        all
-    }
-}
 
 /// Reads measurement files of any known format.
 #[derive(Debug, Clone, Default)]

@@ -38,10 +38,22 @@ pub const TABLE: &[Entry] = &[
     },
 ];
 
+/// Records that were made in memory: no format of a file.
+const MEMORY: Entry = Entry {
+    format: Format::Memory,
+    endings: &[],
+    whole: false,
+    sniff: |_, source| source.in_records().is_some(),
+    read: |source, _, _| {
+        let all = source.in_records().map(|made| Contents::of(made.records.clone(), made.findings.clone()));
+        Ok(all.unwrap_or_default())
+    },
+};
+
 impl Entry {
     /// The first format that the first bytes of a source fit.
     pub fn of(source: &Source) -> Option<&'static Entry> {
-        TABLE.iter().find(|e| (e.sniff)(source.head(), source))
+        [&MEMORY].into_iter().chain(TABLE).find(|e| (e.sniff)(source.head(), source))
     }
 }
 

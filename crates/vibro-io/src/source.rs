@@ -1,10 +1,11 @@
 //! Source of the bytes of a measurement: a file on disk or a buffer in memory.
 
+use crate::recording::Recording;
 use std::borrow::Cow;
 use std::fs::File;
 use std::io::{Cursor, Read, Seek};
 use std::path::{Path, PathBuf};
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError};
 use vibro_record::{Error, Place, Result};
 
 /// Largest number of bytes that [`Source::head`] returns: enough to tell every format apart.
@@ -25,6 +26,8 @@ pub(crate) struct Source {
     bytes: Vec<u8>,
     /// For the text of a workbook's sheet: the sheet's first column, counted from 0.
     sheet: Option<u32>,
+    /// Records that were made in memory; there are no bytes then.
+    recording: Option<Arc<Recording>>,
 }
 
 /// An input that can be read and positioned (`Seek`).
@@ -66,7 +69,7 @@ impl Source {
             .and_then(|file| file.take(HEAD as u64).read_to_end(&mut bytes))
             .map_err(|e| Error::io("read", path, e))?;
         let len = if bytes.len() < HEAD { bytes.len() as u64 } else { info.len() };
-        Source { path: path.to_owned(), len, bytes, sheet: None }.not_empty()
+        Source { path: path.to_owned(), len, bytes, sheet: None, recording: None }.not_empty()
     }
 
     /// Bytes in memory; `name` stands for the path in messages.
@@ -75,7 +78,18 @@ impl Source {
     /// If there are none.
     pub fn memory(name: impl Into<PathBuf>, bytes: impl Into<Vec<u8>>) -> Result<Source> {
         let bytes = bytes.into();
-        Source { path: name.into(), len: bytes.len() as u64, bytes, sheet: None }.not_empty()
+        Source { path: name.into(), len: bytes.len() as u64, bytes, sheet: None, recording: None }.not_empty()
+    }
+
+    /// Records that were made in memory.
+    pub fn recording(recording: Arc<Recording>) -> Source {
+        let (path, bytes) = (recording.path.clone(), Vec::new());
+        Source { path, len: 0, bytes, sheet: None, recording: Some(recording) }
+    }
+
+    /// The records, if they were made in memory.
+    pub fn in_records(&self) -> Option<&Recording> {
+        self.recording.as_deref()
     }
 
     /// Marks the text as the sheet of a workbook whose cells begin in column `first`, counted from 0.

@@ -3,7 +3,8 @@
 use crate::folder::Folder;
 use crate::format::Format;
 use crate::level;
-use crate::reader::{Reader, Recording};
+use crate::reader::Reader;
+use crate::recording::Recording;
 use crate::sweep_list::SweepList;
 use vibro_record::code;
 use vibro_record::units::{Quantity, Unit};

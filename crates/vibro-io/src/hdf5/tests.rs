@@ -1,5 +1,6 @@
 use super::*;
-use crate::reader::{Reader, Recording};
+use crate::reader::Reader;
+use crate::recording::Recording;
 use crate::tests::{has_finding, read_both_ways, texts};
 use num_complex::Complex64;
 use proptest::prelude::*;

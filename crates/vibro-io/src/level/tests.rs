@@ -1,5 +1,6 @@
 use super::*;
-use crate::reader::{Reader, Recording};
+use crate::reader::Reader;
+use crate::recording::Recording;
 use vibro_record::units::Unit;
 
 /// A LabVIEW spectrum of 40 lines, 0.5 Hz apart, labelled as time by its writer: levels of −60 to −21 dB.

@@ -1,5 +1,5 @@
 use super::*;
-use crate::reader::Recording;
+use crate::recording::Recording;
 use crate::tests::{has_finding, texts};
 use proptest::prelude::*;
 use vibro_record::Trace;

@@ -1,7 +1,7 @@
 use super::*;
 use crate::format::Format;
 use crate::reader::Reader;
-use crate::reader::Recording;
+use crate::recording::Recording;
 use crate::tests::{has_finding, texts};
 use num_complex::Complex64;
 use proptest::prelude::*;

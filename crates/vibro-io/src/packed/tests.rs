@@ -2,7 +2,8 @@
 
 use crate::folder::Folder;
 use crate::limit::Limit;
-use crate::reader::{Reader, Recording};
+use crate::reader::Reader;
+use crate::recording::Recording;
 use crate::tests::has_finding;
 use sha2::{Digest as _, Sha256};
 use std::io::{Cursor, Write};

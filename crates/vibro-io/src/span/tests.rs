@@ -1,4 +1,5 @@
-use crate::reader::{Reader, Recording};
+use crate::reader::Reader;
+use crate::recording::Recording;
 use crate::write::{Storage, Target};
 use vibro_record::units::Unit;
 use vibro_record::{Axis, Meta, Record, Result, Trace};

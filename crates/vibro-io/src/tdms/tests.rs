@@ -1,5 +1,5 @@
 use super::*;
-use crate::reader::Recording;
+use crate::recording::Recording;
 use crate::tests::{has_finding, read_both_ways};
 use proptest::prelude::*;
 use vibro_record::{AxisKind, Record, Trace};

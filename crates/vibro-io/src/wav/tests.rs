@@ -1,7 +1,8 @@
 use super::*;
 use crate::format::Format;
+use crate::reader::Header;
 use crate::reader::Reader;
-use crate::reader::{Header, Recording};
+use crate::recording::Recording;
 use crate::tests::has_finding;
 use proptest::prelude::*;
 use vibro_record::units::Quantity;
