@@ -10,23 +10,31 @@ mod init;
 mod model;
 mod precision;
 mod print;
+mod question;
 mod record;
 mod respelt;
 mod shell;
 mod stdout;
 mod sweep;
+mod typed;
 
-use crate::analysis::{self, FileCommand};
-use crate::campaign::KeyRange;
+use crate::analysis::{self, Answer, FileCommand, Progress};
+use crate::campaign::{KeyRange, Reading};
 use crate::error::{Error, Result};
-use crate::read::Limit;
+use crate::read::{Folder, Limit};
 use crate::record::Kind;
 use crate::record::kind::{number, whole};
 use crate::report::Medium;
 use crate::report::files::Names;
 use crate::report::words::Voice;
-use clap::{Arg, ArgAction, ArgMatches, Args, Command as Typed};
+use clap::{ArgMatches, Args, Command as Typed};
+
+pub use campaign::RunResults;
+pub use clap::builder::StyledStr;
+pub use clap::{Arg, ArgAction, Command};
+use question::{Asked, Question};
 use std::any::TypeId;
+use std::ffi::OsString;
 use std::path::PathBuf;
 
 /// All commands by purpose, in the order of the help. Each row states an example, without `vibro`, and what
@@ -61,39 +69,39 @@ const GROUPS: &[(&str, &[CommandRow])] = &[
     (
         MEASURE,
         &[
-            CommandRow::of::<sweep::ResponseArgs>(
+            CommandRow::asking::<sweep::ResponseArgs>(
                 "response step*.csv --out figures",
                 "Response of a sweep at the excitation frequency, with resonances and jumps",
             ),
-            CommandRow::of::<sweep::WaterfallArgs>(
+            CommandRow::asking::<sweep::WaterfallArgs>(
                 "waterfall LIST.TXT --unit mm/s --out figures",
                 "Waterfall of all response spectra of a sweep",
             ),
-            CommandRow::of::<sweep::ExcitationArgs>(
+            CommandRow::asking::<sweep::ExcitationArgs>(
                 "excitation LIST.TXT",
                 "Excitation frequency of every point of a sweep",
             ),
-            CommandRow::of::<record::Spectrum>(
+            CommandRow::asking::<record::Spectrum>(
                 "spectrum trace.csv --channel velocity --out figures",
                 "Spectrum of a channel, or frequency response function between two",
             ),
-            CommandRow::of::<record::Modal>(
+            CommandRow::asking::<record::Modal>(
                 "modal blows.csv --reference force --hammer",
                 "Natural frequency, damping and modal constant of the modes of a frequency response function",
             ),
-            CommandRow::of::<record::Impacts>(
+            CommandRow::asking::<record::Impacts>(
                 "impacts contact.csv --excitation 11.2",
                 "Impacts in a contact signal: interval, frequency, impacts per cycle",
             ),
-            CommandRow::of::<record::Restitution>(
+            CommandRow::asking::<record::Restitution>(
                 "restitution drop1.csv drop2.csv --height 0.57 --height-std 0.001",
                 "Coefficient of restitution from drops, bounces or velocities, every method side by side",
             ),
-            CommandRow::of::<record::Pulse>(
+            CommandRow::asking::<record::Pulse>(
                 "pulse contact.csv --low-pass none",
                 "Damping ratio, frequency and restitution of a contact from its pulse",
             ),
-            CommandRow::of::<record::Drill>(
+            CommandRow::asking::<record::Drill>(
                 "drill drill.wav --velocity striker --beam-angle 0 --beam-from axis --sensitivity 2",
                 "Speed, impacts and average turn of a hammer drill",
             ),
@@ -102,14 +110,15 @@ const GROUPS: &[(&str, &[CommandRow])] = &[
     (
         "Model",
         &[
-            CommandRow::of::<model::Model>(
+            CommandRow::asking::<model::Model>(
                 "model orbit --frequency 11.2 --force 0.5",
                 "Model of a rig: periodic motions, simulation, sweep, map, choice of a model",
             ),
-            CommandRow::of::<campaign::Compare>(
+            CommandRow::asking::<campaign::Compare>(
                 "compare campaign.toml --fit gap,restitution",
                 "Compare the measured responses of a campaign with the model; fit parameters of the rig",
-            ),
+            )
+            .of_campaigns(),
             CommandRow::of::<precision::Precision>(
                 "precision --quick",
                 "Speed and accuracy of every method on scenes with a known truth",
@@ -171,7 +180,12 @@ enum CommandSource {
     Args { options: fn(Typed) -> Typed, run: fn(&ArgMatches, bool) -> Result<u8> },
     /// With the kind of record that it measures, whose results have these names.
     Kind(FileCommand, Names),
+    /// In this folder; the command gives one answer.
+    Question { options: fn(Typed) -> Typed, of: fn(&ArgMatches) -> Read },
 }
+
+/// A question read from typed options.
+type Read = std::result::Result<Box<dyn Question>, clap::Error>;
 
 impl CommandRow {
     const fn of<T: CommandArgs>(example: &'static str, about: &'static str) -> CommandRow {
@@ -183,6 +197,18 @@ impl CommandRow {
         CommandRow { example, about, voice: T::VOICE, source }
     }
 
+    /// A command that gives one answer.
+    const fn asking<T: Args + Question + 'static>(example: &'static str, about: &'static str) -> CommandRow {
+        let of = |typed: &ArgMatches| -> Read { Ok(Box::new(T::from_arg_matches(typed)?)) };
+        let source = CommandSource::Question { options: T::augment_args, of };
+        CommandRow { example, about, voice: Voice::Command, source }
+    }
+
+    /// The same command, with messages to the author of a campaign.
+    const fn of_campaigns(self) -> CommandRow {
+        CommandRow { voice: Voice::Campaign, ..self }
+    }
+
     /// The command of a kind of record.
     fn of_kind(command: FileCommand, names: Names) -> CommandRow {
         let FileCommand { example, about, .. } = command;
@@ -192,16 +218,29 @@ impl CommandRow {
     /// The command line with its options.
     fn options(&self, line: Typed) -> Typed {
         match self.source {
-            CommandSource::Args { options, .. } => options(line),
+            CommandSource::Args { options, .. } | CommandSource::Question { options, .. } => options(line),
             CommandSource::Kind(command, _) => record::with_file(line, command),
+        }
+    }
+
+    /// The question that the typed options ask; `None` for a command that does other work.
+    fn question(&self, typed: &ArgMatches) -> Option<Read> {
+        match self.source {
+            CommandSource::Args { .. } => None,
+            CommandSource::Question { of, .. } => Some(of(typed)),
+            CommandSource::Kind(command, names) => {
+                Some(record::OfKind::of(typed, command, names).map(|question| Box::new(question) as _))
+            }
         }
     }
 
     /// Runs the command and returns the exit code.
     fn run(&self, typed: &ArgMatches, json: bool) -> Result<u8> {
-        match self.source {
-            CommandSource::Args { run, .. } => run(typed, json),
-            CommandSource::Kind(command, names) => record::measure_file(typed, command, names, json),
+        match (self.question(typed), self.source) {
+            (Some(Ok(question)), _) => question::printed(&*question, json),
+            (Some(Err(error)), _) => Ok(complain::usage(&error, json)),
+            (None, CommandSource::Args { run, .. }) => run(typed, json),
+            (None, _) => Ok(0),
         }
     }
 
@@ -255,10 +294,7 @@ fn command() -> Typed {
     let memory =
         Arg::new("max_memory").long("max-memory").value_name("SIZE").global(true).help_heading(OUTPUT);
     let memory = memory.value_parser(size).help(MEMORY);
-    let commands = rows().map(|row| {
-        let example = format!("Example:\n  vibro {}", row.example);
-        row.options(Typed::new(row.name())).about(row.about).after_help(example)
-    });
+    let commands = rows().map(|row| command_of(&row));
     let all = Typed::new("vibro")
         .version(env!("CARGO_PKG_VERSION"))
         .about(ABOUT)
@@ -269,14 +305,15 @@ fn command() -> Typed {
     options(all.subcommands(commands))
 }
 
-/// Parses and runs the command line and returns the exit code: 0 done, 1 no answer possible, 2 wrong usage
+/// Parses and runs a command line, which begins with the name of the program, and returns the exit code: 0 done, 1 no answer possible, 2 wrong usage
 /// or unreadable input.
-pub fn main() -> u8 {
+pub fn main(words: impl IntoIterator<Item = OsString>) -> u8 {
+    typed::state(words);
     let typed = match command().try_get_matches_from(respelt::args()) {
         Ok(typed) => typed,
         // A command line that cannot be parsed may still ask for JSON.
         Err(error) => {
-            let json = std::env::args_os().take_while(|a| a != "--").any(|a| a == "--json");
+            let json = typed::words().take_while(|a| *a != "--").any(|a| a == "--json");
             return complain::usage(&error, json);
         }
     };
@@ -306,6 +343,60 @@ pub fn main() -> u8 {
         return complain::nothing(&short(), json);
     };
     row.run(typed, json).unwrap_or_else(|error| complain::error(&error, row.voice, json))
+}
+
+/// Answers what a program asks by the words of a command line, without `vibro`: a question of [`commands`].
+/// Files are opened through `folder`.
+///
+/// # Errors
+/// If the words are no question, or the data allow no answer.
+pub fn answer(words: &[String], folder: &Folder, progress: &dyn Progress) -> Result<Answer> {
+    let unknown = || Error::usage(format!("{} asks nothing", words.join(" ")), "a command with an answer");
+    let row = rows().find(|row| words.first().is_some_and(|word| word == row.name())).ok_or_else(unknown)?;
+    let typed =
+        options(command_of(&row)).try_get_matches_from(words).map_err(|error| complain::plain(&error))?;
+    let last = std::iter::successors(Some(&typed), |at| Some(at.subcommand()?.1)).last();
+    numbers(last.unwrap_or(&typed))?;
+    let question = row.question(&typed).ok_or_else(unknown)?.map_err(|error| complain::plain(&error))?;
+    let folder = &folder.clone().allow_outside(question.allow_outside());
+    question.answer(&Asked { folder, progress })
+}
+
+/// Runs a campaign by the words of `vibro run`, without these two, and writes its results.
+///
+/// # Errors
+/// If the words are none of its options, the campaign cannot be read, or results cannot be written.
+pub fn run(words: &[String], progress: &dyn Progress) -> Result<RunResults> {
+    of_words::<campaign::Run>("run", words)?.results(progress)
+}
+
+/// How a file is read, by words of a command line.
+///
+/// # Errors
+/// If the words are no options for reading.
+pub fn reading(words: &[String]) -> Result<Reading> {
+    of_words::<Reading>("read", words)
+}
+
+/// Options of a kind by words of a command line.
+fn of_words<T: Args>(name: &'static str, words: &[String]) -> Result<T> {
+    let line = options(T::augment_args(Typed::new(name)));
+    let words = std::iter::once(name).chain(words.iter().map(String::as_str));
+    let typed = line.try_get_matches_from(words).map_err(|error| complain::plain(&error))?;
+    numbers(&typed)?;
+    T::from_arg_matches(&typed).map_err(|error| complain::plain(&error))
+}
+
+/// The commands that [`answer`] takes, with their options.
+pub fn questions() -> Vec<Typed> {
+    let asks = |row: &CommandRow| !matches!(row.source, CommandSource::Args { .. });
+    rows().filter(asks).map(|row| options(command_of(&row))).collect()
+}
+
+/// The definition of one command.
+fn command_of(row: &CommandRow) -> Typed {
+    let example = format!("Example:\n  vibro {}", row.example);
+    row.options(Typed::new(row.name())).about(row.about).after_help(example)
 }
 
 /// Checks that each number typed after a command is in the range of its option: a single number, one in a

@@ -8,6 +8,10 @@ pub trait Progress: Sync {
     fn step(&self);
     /// `done` of `all` steps are done.
     fn at(&self, done: usize, all: usize);
+    /// Lets `print` write lines, which the display of progress does not overwrite.
+    fn aside(&self, print: &mut dyn FnMut()) {
+        print();
+    }
 }
 
 /// Ignores the progress.

@@ -1,9 +1,10 @@
 //! `vibro run` and `vibro compare`: runs a campaign, and compares its responses with the model.
 
 use super::print::folder_of;
+use super::question::{Asked, Question};
 use super::{complain, init, print, stdout};
 use crate::analysis::sweep::modelled;
-use crate::analysis::{self, AnswerCache, CampaignOutcome, REPORT};
+use crate::analysis::{self, Answer, AnswerCache, CampaignOutcome, Progress, REPORT};
 use crate::campaign::{Campaign, FitEntry, Reading};
 use crate::error::Result;
 use crate::proposal::Proposal;
@@ -64,16 +65,28 @@ fn opened(within: &Folder, path: &Path) -> Result<Campaign> {
 }
 
 /// The campaign itself; if it has no file, the campaign proposed for the recordings of its folder.
-fn proposed(campaign: Campaign, kept: &AnswerCache, json: bool) -> Result<Campaign> {
+fn proposed(campaign: Campaign, kept: &AnswerCache, progress: &dyn Progress) -> Result<Campaign> {
     if campaign.is_file() {
         return Ok(campaign);
     }
     let (folder, within) = (campaign.folder(), campaign.within());
-    let look = |bar: &ProgressBar| Proposal::of(within, &Reading::default(), None, kept, bar);
-    let proposal = print::busy(json, "looking at files", look)?;
-    init::print_tables(&proposal);
-    complain::line(&format!("to change any of it: vibro init {}", typed(folder)));
+    progress.start("looking at files", 0);
+    let proposal = Proposal::of(within, &Reading::default(), None, kept, progress)?;
+    progress.aside(&mut || {
+        init::print_tables(&proposal);
+        complain::line(&format!("to change any of it: vibro init {}", typed(folder)));
+    });
     proposal.campaign()
+}
+
+/// What a run of a campaign wrote, and where.
+pub struct RunResults {
+    /// The answer, and the files that were written.
+    pub outcome: CampaignOutcome,
+    /// Folder of the results.
+    pub folder: PathBuf,
+    /// Whether the campaign has no records.
+    pub empty: bool,
 }
 
 impl Run {
@@ -133,18 +146,28 @@ impl Run {
         all.map(|path| (path.clone(), within.stamp(&path))).collect()
     }
 
-    /// Runs the campaign once. Returns the exit code: 1 if no record gives an answer.
-    fn once(&self, json: bool) -> Result<u8> {
+    /// Runs the campaign once and writes its results.
+    ///
+    /// # Errors
+    /// If the campaign or one of its files cannot be read, or results cannot be written.
+    pub fn results(&self, progress: &dyn Progress) -> Result<RunResults> {
         let campaign = opened(&self.within(), &self.campaign)?;
         let folder = self.out.clone().unwrap_or_else(|| campaign.out());
         let results = campaign.within().at(&folder);
         let kept = if self.again { AnswerCache::none(&results) } else { AnswerCache::of(&results) };
         let elsewhere = format!("--out {}", typed(print::unused(&folder)));
         let mut output = print::output(results, Owner::Run, elsewhere)?;
-        let campaign = proposed(campaign, &kept, json)?;
-        let run = |bar: &ProgressBar| analysis::run(&campaign, &kept, &mut output, bar);
-        let CampaignOutcome { answer, files, answered, again } = print::busy(json, "campaign", run)?;
+        let campaign = proposed(campaign, &kept, progress)?;
+        let outcome = analysis::run(&campaign, &kept, &mut output, progress)?;
         output.commit()?;
+        Ok(RunResults { outcome, folder, empty: campaign.is_empty() })
+    }
+
+    /// Runs the campaign once. Returns the exit code: 1 if no record gives an answer.
+    fn once(&self, json: bool) -> Result<u8> {
+        let run = |bar: &ProgressBar| self.results(bar);
+        let RunResults { outcome, folder, empty } = print::busy(json, "campaign", run)?;
+        let CampaignOutcome { answer, files, answered, again } = outcome;
         if again > 0 {
             let kept = counted(again, "answer");
             complain::line(&format!(
@@ -164,27 +187,36 @@ impl Run {
             let files = files.len();
             stdout::text(&format!("{tables}\n{files} files in {}; open {REPORT} there\n", shown(&folder)))?;
         }
-        Ok(u8::from(!answered && !campaign.is_empty()))
+        Ok(u8::from(!answered && !empty))
     }
 }
 
-impl super::CommandArgs for Compare {
-    const VOICE: Voice = Voice::Campaign;
+impl Question for Compare {
+    fn names(&self) -> Names {
+        Names::Numbered(&["overlay", "pairs", "peaks", "fit", "fit_points"])
+    }
 
-    /// Prints measured responses against the model.
-    fn run(&self, json: bool) -> Result<u8> {
-        let within = Folder::default().allow_outside(self.allow_outside);
-        let output = print::results(&within, self.out.as_deref(), COMPARISON)?;
-        let mut campaign = proposed(opened(&within, &self.campaign)?, &AnswerCache::default(), json)?;
+    fn out(&self) -> Option<&Path> {
+        self.out.as_deref()
+    }
+
+    fn allow_outside(&self) -> bool {
+        self.allow_outside
+    }
+
+    fn work(&self) -> &'static str {
+        "comparing"
+    }
+
+    /// Measured responses against the model.
+    fn answer(&self, asked: &Asked<'_>) -> Result<Answer> {
+        let campaign = opened(asked.folder, &self.campaign)?;
+        let mut campaign = proposed(campaign, &AnswerCache::default(), asked.progress)?;
         if !self.fit.is_empty() {
             let names = self.fit.iter().map(|name| FitEntry::parameter(name.trim()));
             campaign.fit.parameters = names.collect::<Result<_>>()?;
             campaign.fit.usable()?;
         }
-        let answer = print::busy(json, "comparing", |bar| modelled::compared(&campaign, bar))?;
-        print::answer(answer, output, json)
+        modelled::compared(&campaign, asked.progress)
     }
 }
-
-/// Names of the files that `vibro compare` writes.
-const COMPARISON: Names = Names::Numbered(&["overlay", "pairs", "peaks", "fit", "fit_points"]);

@@ -1,5 +1,6 @@
 //! Errors and findings on standard error, in one form. A closed standard error is ignored.
 
+use super::typed::words as typed_words;
 use super::{CommandRow, rows, stdout};
 use crate::error::{Error, Hint};
 use crate::record::{Kind, Severity, nearest, typed};
@@ -61,7 +62,7 @@ pub fn usage(complaint: &clap::Error, json: bool) -> u8 {
 
 /// The hint of an error, with the words that were typed filled in.
 fn spelt(hint: &Hint, error: &Error) -> String {
-    let words = || std::env::args_os().skip(1);
+    let words = || typed_words().skip(1).cloned();
     match hint {
         Hint::OfFile(command) => match file_of(error, words().skip(1)) {
             Some(file) => format!("{command} {}", typed(file)),
@@ -94,7 +95,7 @@ struct TypedCommand {
 
 impl TypedCommand {
     fn of_args() -> TypedCommand {
-        let words = std::env::args_os().skip(1).map(|word| word.to_string_lossy().into_owned());
+        let words = typed_words().skip(1).map(|word| word.to_string_lossy().into_owned());
         let words: Vec<String> = words.filter(|word| !word.starts_with('-')).collect();
         let row = rows().find(|row| words.first().is_some_and(|word| word == row.name()));
         let mut found = TypedCommand { command: "vibro".to_owned(), row, definition: super::command() };
@@ -159,7 +160,7 @@ fn commands_with(option: &str) -> Vec<String> {
 }
 
 /// Turns an error of clap into an [`Error`], by its kind and context; its text is not used.
-fn plain(complaint: &clap::Error) -> Error {
+pub fn plain(complaint: &clap::Error) -> Error {
     let context = |kind| complaint.get(kind).map(ToString::to_string).unwrap_or_default();
     let words = TypedCommand::of_args();
     let command = &words.command;
@@ -220,7 +221,7 @@ fn unknown_command(words: &TypedCommand, name: &str) -> Error {
     let own = words.names();
     let near = called.or_else(|| nearest(name, own.iter().map(String::as_str)));
     // The hint keeps the arguments that were typed after the command.
-    let behind = std::env::args_os().skip_while(|word| *word != *name).skip(1);
+    let behind = typed_words().skip_while(|word| **word != *name).skip(1);
     let rest = || behind.map(typed).collect::<Vec<_>>().join(" ");
     let hint = match near {
         _ if Path::new(name).is_file() => format!("vibro info {}", typed(name)),

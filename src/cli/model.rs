@@ -1,22 +1,21 @@
 //! `vibro model`: predicted motion of a rig.
 
-use super::{CommandArgs, print};
+use super::question::{Asked, Question};
 use crate::analysis::Answer;
 use crate::analysis::model::{backbone, branch, choose, map, orbit, response, simulate, sweep};
 use crate::error::Result;
-use crate::read::Folder;
+use crate::report::files::Names;
 use clap::{Args, Subcommand};
-use indicatif::ProgressBar;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 #[derive(Debug, Args)]
 pub struct Model {
     #[command(subcommand)]
-    question: Question,
+    question: Which,
 }
 
 #[derive(Debug, Subcommand)]
-enum Question {
+enum Which {
     /// All motions with one impact a period at one frequency, or those found with several, with existence and
     /// stability
     Orbit(ModelArgs<orbit::Keys>),
@@ -47,22 +46,47 @@ pub struct ModelArgs<K: Args> {
     out: Option<PathBuf>,
 }
 
-impl CommandArgs for Model {
-    /// Computes and prints the answer.
-    fn run(&self, json: bool) -> Result<u8> {
-        type Ask<'a> = Box<dyn FnOnce(&ProgressBar) -> Result<Answer> + 'a>;
-        let (out, names, ask): (_, _, Ask<'_>) = match &self.question {
-            Question::Orbit(of) => (&of.out, orbit::Keys::FILES, Box::new(|_| of.keys.answer())),
-            Question::Simulate(of) => (&of.out, simulate::Keys::FILES, Box::new(|_| of.keys.answer())),
-            Question::Response(of) => (&of.out, response::Keys::FILES, Box::new(|_| of.keys.answer())),
-            Question::Backbone(of) => (&of.out, backbone::Keys::FILES, Box::new(|_| of.keys.answer())),
-            Question::Continue(of) => (&of.out, branch::Keys::FILES, Box::new(|_| of.keys.answer())),
-            Question::Sweep(of) => (&of.out, sweep::Keys::FILES, Box::new(|_| of.keys.answer())),
-            Question::Choose(of) => (&of.out, choose::Keys::FILES, Box::new(|_| of.keys.answer())),
-            Question::Map(of) => (&of.out, map::Keys::FILES, Box::new(|bar| of.keys.answer(bar))),
-        };
-        let output = print::results(&Folder::default(), out.as_deref(), names)?;
-        let answer = print::busy(json, "computing", ask)?;
-        print::answer(answer, output, json)
+impl Question for Model {
+    fn work(&self) -> &'static str {
+        "computing"
+    }
+
+    fn names(&self) -> Names {
+        match &self.question {
+            Which::Orbit(_) => orbit::Keys::FILES,
+            Which::Simulate(_) => simulate::Keys::FILES,
+            Which::Response(_) => response::Keys::FILES,
+            Which::Backbone(_) => backbone::Keys::FILES,
+            Which::Continue(_) => branch::Keys::FILES,
+            Which::Sweep(_) => sweep::Keys::FILES,
+            Which::Choose(_) => choose::Keys::FILES,
+            Which::Map(_) => map::Keys::FILES,
+        }
+    }
+
+    fn out(&self) -> Option<&Path> {
+        match &self.question {
+            Which::Orbit(of) => of.out.as_deref(),
+            Which::Simulate(of) => of.out.as_deref(),
+            Which::Response(of) => of.out.as_deref(),
+            Which::Backbone(of) => of.out.as_deref(),
+            Which::Continue(of) => of.out.as_deref(),
+            Which::Sweep(of) => of.out.as_deref(),
+            Which::Choose(of) => of.out.as_deref(),
+            Which::Map(of) => of.out.as_deref(),
+        }
+    }
+
+    fn answer(&self, asked: &Asked<'_>) -> Result<Answer> {
+        match &self.question {
+            Which::Orbit(of) => of.keys.answer(),
+            Which::Simulate(of) => of.keys.answer(),
+            Which::Response(of) => of.keys.answer(),
+            Which::Backbone(of) => of.keys.answer(),
+            Which::Continue(of) => of.keys.answer(),
+            Which::Sweep(of) => of.keys.answer(),
+            Which::Choose(of) => of.keys.answer(),
+            Which::Map(of) => of.keys.answer(asked.progress),
+        }
     }
 }

@@ -194,4 +194,8 @@ impl Progress for ProgressBar {
         self.set_length(all as u64);
         self.set_position(done as u64);
     }
+
+    fn aside(&self, print: &mut dyn FnMut()) {
+        self.suspend(print);
+    }
 }

@@ -1,7 +1,8 @@
 //! Commands on one measurement file: `vibro spectrum`, `impacts`, `modal`, `pulse`, `restitution`, `drill`.
 
+use super::question::{Asked, Question};
 use super::sweep::{SweepPlace, of_script};
-use super::{CommandArgs, complain, print};
+use super::{complain, print};
 use crate::analysis::drill::cycles;
 use crate::analysis::sweep::{Files, Listed, StoredResponseKeys, named};
 use crate::analysis::{
@@ -14,7 +15,6 @@ use crate::measure::response::ResponseOptions;
 use crate::measure::{Estimate, legacy};
 use crate::read::{Folder, Owner, SweepList, SweepReader};
 use crate::record::{Finding, Trace, shown};
-use crate::report::Output;
 use crate::report::files::Names;
 use crate::report::layout::{headed, table};
 use clap::{ArgMatches, Args, Command, FromArgMatches as _};
@@ -109,40 +109,25 @@ pub struct Restitution {
 }
 
 impl RecordArgs {
-    /// Registers the files that are read, and opens the folder for results, which must not replace them.
-    fn results<'a>(
-        &self,
-        files: impl IntoIterator<Item = &'a PathBuf>,
-        names: Names,
-    ) -> Result<(Folder, Option<Output>)> {
-        let folder = Folder::default().allow_outside(true);
-        files.into_iter().for_each(|file| folder.reads(file));
-        let output = print::results(&folder, self.out.as_deref(), names)?;
-        Ok((folder, output))
-    }
-
-    /// Measures the record of a file, with a progress bar.
+    /// Measures the record of a file.
     fn measured<T>(
         &self,
-        folder: &Folder,
+        asked: &Asked<'_>,
         file: &Path,
-        json: bool,
         measure: impl FnOnce(&Source<'_>) -> Result<T>,
     ) -> Result<T> {
         let name = match file.file_stem().map_or_else(String::new, shown) {
             pipe if pipe == "-" => "standard input".to_owned(),
             name => name,
         };
-        print::busy(json, "samples", |bar| {
-            measure(&Source {
-                name: &name,
-                path: file,
-                folder,
-                channel: &self.channel,
-                reading: &self.reading,
-                beside: &|_, file| Ok(file.to_owned()),
-                progress: bar,
-            })
+        measure(&Source {
+            name: &name,
+            path: file,
+            folder: asked.folder,
+            channel: &self.channel,
+            reading: &self.reading,
+            beside: &|_, file| Ok(file.to_owned()),
+            progress: asked.progress,
         })
     }
 }
@@ -152,21 +137,50 @@ pub(super) fn with_file(line: Command, command: FileCommand) -> Command {
     RecordArgs::augment_args((command.options)(MeasurementFile::augment_args(line)))
 }
 
-/// Runs the command of a kind: prints the answer of one record.
-///
-/// # Errors
-/// If the file cannot be read, or its record allows no answer.
-pub(super) fn measure_file(typed: &ArgMatches, command: FileCommand, names: Names, json: bool) -> Result<u8> {
-    let of_clap = || {
+/// The command of a kind with its typed options.
+pub(super) struct OfKind {
+    file: PathBuf,
+    keys: Box<dyn OfFile>,
+    record: RecordArgs,
+    names: Names,
+}
+
+impl OfKind {
+    /// Reads the typed options.
+    ///
+    /// # Errors
+    /// If they are not those of the command.
+    pub(super) fn of(
+        typed: &ArgMatches,
+        command: FileCommand,
+        names: Names,
+    ) -> std::result::Result<OfKind, clap::Error> {
         let file = MeasurementFile::from_arg_matches(typed)?.file;
-        Ok((file, (command.keys)(typed)?, RecordArgs::from_arg_matches(typed)?))
-    };
-    let (file, keys, record) = match of_clap() {
-        Ok(all) => all,
-        Err(error) => return Ok(complain::usage(&error, json)),
-    };
-    let (folder, output) = record.results([&file], names)?;
-    print::answer(record.measured(&folder, &file, json, |source| keys.measure(source))?, output, json)
+        let record = RecordArgs::from_arg_matches(typed)?;
+        Ok(OfKind { file, keys: (command.keys)(typed)?, record, names })
+    }
+}
+
+impl Question for OfKind {
+    fn names(&self) -> Names {
+        self.names
+    }
+
+    fn out(&self) -> Option<&Path> {
+        self.record.out.as_deref()
+    }
+
+    fn files(&self) -> Vec<PathBuf> {
+        vec![self.file.clone()]
+    }
+
+    fn allow_outside(&self) -> bool {
+        true
+    }
+
+    fn answer(&self, asked: &Asked<'_>) -> Result<Answer> {
+        self.record.measured(asked, &self.file, |source| self.keys.measure(source))
+    }
 }
 
 impl Spectrum {
@@ -213,41 +227,67 @@ impl Spectrum {
     }
 }
 
-impl CommandArgs for Spectrum {
-    /// Prints the answer of one record, or of several beside each other.
-    fn run(&self, json: bool) -> Result<u8> {
+impl Question for Spectrum {
+    fn names(&self) -> Names {
+        spectrum::Keys::FILES
+    }
+
+    fn out(&self) -> Option<&Path> {
+        self.record.out.as_deref()
+    }
+
+    fn files(&self) -> Vec<PathBuf> {
+        self.files.iter().map(|typed| self.place(typed).0).collect()
+    }
+
+    fn allow_outside(&self) -> bool {
+        true
+    }
+
+    /// The answer of one record, or of several beside each other.
+    fn answer(&self, asked: &Asked<'_>) -> Result<Answer> {
         let places: Vec<(PathBuf, Channel)> = self.files.iter().map(|file| self.place(file)).collect();
         self.check(&places)?;
-        let files = places.iter().map(|(file, _)| file);
-        let (folder, output) = self.record.results(files, spectrum::Keys::FILES)?;
         if let [(file, channel)] = places.as_slice() {
-            let answer = self
+            return self
                 .record
-                .measured(&folder, file, json, |source| self.keys.measure(&Source { channel, ..*source }))?;
-            return print::answer(answer, output, json);
+                .measured(asked, file, |source| self.keys.measure(&Source { channel, ..*source }));
         }
         let mut found = Vec::new();
         for (typed, (file, channel)) in self.files.iter().zip(&places) {
             let lines = self
                 .record
-                .measured(&folder, file, json, |source| self.keys.lines(&Source { channel, ..*source }))?;
+                .measured(asked, file, |source| self.keys.lines(&Source { channel, ..*source }))?;
             found.push((self.name(typed), lines));
         }
-        print::answer(spectrum::compared(&found)?, output, json)
+        spectrum::compared(&found)
     }
 }
 
-impl CommandArgs for Impacts {
-    /// Prints the impacts.
-    fn run(&self, json: bool) -> Result<u8> {
-        let (folder, output) = self.record.results([&self.of.file], impacts::Keys::FILES)?;
-        let answer = self.record.measured(&folder, &self.of.file, json, |source| {
+impl Question for Impacts {
+    fn names(&self) -> Names {
+        impacts::Keys::FILES
+    }
+
+    fn out(&self) -> Option<&Path> {
+        self.record.out.as_deref()
+    }
+
+    fn files(&self) -> Vec<PathBuf> {
+        vec![self.of.file.clone()]
+    }
+
+    fn allow_outside(&self) -> bool {
+        true
+    }
+
+    fn answer(&self, asked: &Asked<'_>) -> Result<Answer> {
+        self.record.measured(asked, &self.of.file, |source| {
             if self.legacy {
                 return of_timeav(&source.trace(&source.recording()?)?);
             }
             self.keys.measure(source).map_err(|e| e.of_record(&source.path.display().to_string()))
-        })?;
-        print::answer(answer, output, json)
+        })
     }
 }
 
@@ -299,13 +339,27 @@ impl Modal {
     }
 }
 
-impl CommandArgs for Modal {
-    /// Prints the modes.
-    fn run(&self, json: bool) -> Result<u8> {
-        let (folder, output) = self.record.results([&self.of.file], frf::Keys::FILES)?;
-        let mut answers = match self.sweep(&folder)? {
+impl Question for Modal {
+    fn names(&self) -> Names {
+        frf::Keys::FILES
+    }
+
+    fn out(&self) -> Option<&Path> {
+        self.record.out.as_deref()
+    }
+
+    fn files(&self) -> Vec<PathBuf> {
+        vec![self.of.file.clone()]
+    }
+
+    fn allow_outside(&self) -> bool {
+        true
+    }
+
+    fn answer(&self, asked: &Asked<'_>) -> Result<Answer> {
+        let mut answers = match self.sweep(asked.folder)? {
             Some(function) => vec![self.keys.modes(&function.meta.name, &function)?],
-            None => self.record.measured(&folder, &self.of.file, json, |source| self.keys.measure(source))?,
+            None => self.record.measured(asked, &self.of.file, |source| self.keys.measure(source))?,
         };
         if answers.len() > 1 {
             let names: Vec<&str> = answers.iter().map(|answer| answer.channel.as_str()).collect();
@@ -314,45 +368,86 @@ impl CommandArgs for Modal {
             return Err(error.set("channel", format!("{:?}", names.first().unwrap_or(&"1"))));
         }
         let mut answer = answers.pop().ok_or_else(|| Error::refused("no frequency response function"))?;
-        answer.refused.take().map_or(Ok(()), Err)?;
-        print::answer(answer, output, json)
+        answer.refused.take().map_or(Ok(answer), Err)
     }
 }
 
-impl CommandArgs for Pulse {
-    /// Prints damping ratio and frequency of a contact.
-    fn run(&self, json: bool) -> Result<u8> {
+impl Question for Pulse {
+    fn names(&self) -> Names {
+        pulse::Keys::FILES
+    }
+
+    fn out(&self) -> Option<&Path> {
+        self.record.out.as_deref()
+    }
+
+    fn files(&self) -> Vec<PathBuf> {
+        self.file.iter().cloned().collect()
+    }
+
+    fn allow_outside(&self) -> bool {
+        true
+    }
+
+    fn answer(&self, asked: &Asked<'_>) -> Result<Answer> {
         self.keys.usable(self.file.is_some())?;
-        let (folder, output) = self.record.results(&self.file, pulse::Keys::FILES)?;
-        let answer = match &self.file {
-            Some(file) => self.record.measured(&folder, file, json, |source| self.keys.measure(source))?,
-            None => self.keys.times("")?,
-        };
-        print::answer(answer, output, json)
+        match &self.file {
+            Some(file) => self.record.measured(asked, file, |source| self.keys.measure(source)),
+            None => self.keys.times(""),
+        }
     }
 }
 
-impl CommandArgs for Restitution {
-    /// Prints the restitution by every method that the data allow.
-    fn run(&self, json: bool) -> Result<u8> {
+impl Question for Restitution {
+    fn names(&self) -> Names {
+        drop::Keys::FILES
+    }
+
+    fn out(&self) -> Option<&Path> {
+        self.record.out.as_deref()
+    }
+
+    fn files(&self) -> Vec<PathBuf> {
+        self.files.clone()
+    }
+
+    fn allow_outside(&self) -> bool {
+        true
+    }
+
+    /// The restitution by every method that the data allow.
+    fn answer(&self, asked: &Asked<'_>) -> Result<Answer> {
         self.keys.usable(!self.files.is_empty())?;
-        let (folder, output) = self.record.results(&self.files, drop::Keys::FILES)?;
         let mut series = drop::Series::new(&self.keys);
         series.add_numbers(&self.keys);
         for file in &self.files {
-            let added =
-                self.record.measured(&folder, file, json, |source| series.add_record(&self.keys, source));
+            let added = self.record.measured(asked, file, |source| series.add_record(&self.keys, source));
             added.or_else(|error| series.leave_out(file, error))?;
         }
-        print::answer(series.answer("")?, output, json)
+        series.answer("")
     }
 }
 
-impl CommandArgs for Drill {
-    /// Prints speed, impacts and the average turn.
-    fn run(&self, json: bool) -> Result<u8> {
-        let (folder, output) = self.record.results([&self.of.file], drill::Keys::FILES)?;
-        let of_cycles = |path: &PathBuf| print::File::of(&folder, path, Owner::Results);
+impl Question for Drill {
+    fn names(&self) -> Names {
+        drill::Keys::FILES
+    }
+
+    fn out(&self) -> Option<&Path> {
+        self.record.out.as_deref()
+    }
+
+    fn files(&self) -> Vec<PathBuf> {
+        vec![self.of.file.clone()]
+    }
+
+    fn allow_outside(&self) -> bool {
+        true
+    }
+
+    /// Speed, impacts and the average turn; every turn goes into a file of its own if one is named.
+    fn answer(&self, asked: &Asked<'_>) -> Result<Answer> {
+        let of_cycles = |path: &PathBuf| print::File::of(asked.folder, path, Owner::Results);
         let file = self.each_cycle.as_ref().map(of_cycles).transpose()?;
         let mut turns = String::new();
         let mut each = |cycle: &Cycle<'_>| -> Result<()> {
@@ -364,14 +459,13 @@ impl CommandArgs for Drill {
             }
             Ok(())
         };
-        let mut answer = self
-            .record
-            .measured(&folder, &self.of.file, json, |source| self.keys.measure(source, &mut each))?;
+        let mut answer =
+            self.record.measured(asked, &self.of.file, |source| self.keys.measure(source, &mut each))?;
         if let Some(file) = file {
             let written = file.write(turns)?;
             complain::line(&format!("wrote {written}"));
             answer.result.insert("each_cycle".to_owned(), written.into());
         }
-        print::answer(answer, output, json)
+        Ok(answer)
     }
 }

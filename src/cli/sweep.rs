@@ -1,7 +1,8 @@
 //! `vibro response`, `vibro waterfall`, `vibro excitation`: the work of the thesis' scripts sinesw3, sinesw
 //! and sineswpf.
 
-use super::{CommandArgs, init, print};
+use super::question::{Asked, Question};
+use super::{init, print};
 use crate::analysis::AnswerCache;
 use crate::analysis::sweep::{Files, Listed, StoredResponseKeys, figures, named, tables};
 use crate::analysis::{self, Answer, in_order, is_pattern, matching};
@@ -104,16 +105,12 @@ impl SweepSource {
         })
     }
 
-    /// Access to files, with or without names that lead outside the folder of the list.
-    fn folder(&self) -> Folder {
-        Folder::default().allow_outside(self.allow_outside)
-    }
-
     /// The files of the sweep and their reader.
-    fn listed(&self, folder: &Folder) -> Result<Listed> {
+    fn listed(&self, asked: &Asked<'_>) -> Result<Listed> {
+        let Asked { folder, progress } = *asked;
         let SweepPlace { path, name, campaign } = SweepPlace::of(&self.paths[0]);
         let mut listed = if let Some(proposal) = self.proposed(folder)? {
-            init::print_tables(&proposal);
+            progress.aside(&mut || init::print_tables(&proposal));
             let mut listed = named(&proposal.campaign()?, None)?;
             if let Files::Traces(steps) = &listed.files {
                 listed.findings.extend(more_steps(&folder.clone().allow_outside(true), &steps.files));
@@ -153,31 +150,38 @@ impl SweepPlace<'_> {
     }
 }
 
-impl CommandArgs for ResponseArgs {
-    /// Prints the response.
-    fn run(&self, json: bool) -> Result<u8> {
-        let folder = self.sweep.folder();
-        let output = print::results(&folder, self.out.as_deref(), RESPONSE)?;
-        let listed = self.sweep.listed(&folder)?;
-        let answer = if self.sweep.legacy {
-            largest_lines(&listed.spectra()?.1)?
-        } else {
-            let (_, found) = listed.sweep_and_response(&self.options())?;
-            let all = std::slice::from_ref(&found);
-            let mut answer = Answer::of(&found)?;
-            answer.add("", &found.findings);
-            figures::responses(&mut answer, &found.name, all);
-            answer.csv("response", &tables::response(&found));
-            answer.tables = vec![tables::curve(&found), tables::resonances(all), tables::jumps(all)];
-            answer
-        };
-        print::answer(answer, output, json)
+impl Question for ResponseArgs {
+    fn names(&self) -> Names {
+        Names::Numbered(&["response", "receptance", "force"])
+    }
+
+    fn out(&self) -> Option<&Path> {
+        self.out.as_deref()
+    }
+
+    fn allow_outside(&self) -> bool {
+        self.sweep.allow_outside
+    }
+
+    fn work(&self) -> &'static str {
+        "spectra"
+    }
+
+    fn answer(&self, asked: &Asked<'_>) -> Result<Answer> {
+        let listed = self.sweep.listed(asked)?;
+        if self.sweep.legacy {
+            return largest_lines(&listed.spectra()?.1);
+        }
+        let (_, found) = listed.sweep_and_response(&self.options())?;
+        let all = std::slice::from_ref(&found);
+        let mut answer = Answer::of(&found)?;
+        answer.add("", &found.findings);
+        figures::responses(&mut answer, &found.name, all);
+        answer.csv("response", &tables::response(&found));
+        answer.tables = vec![tables::curve(&found), tables::resonances(all), tables::jumps(all)];
+        Ok(answer)
     }
 }
-
-/// Names of the files that `vibro response` and `vibro waterfall` write.
-const RESPONSE: Names = Names::Numbered(&["response", "receptance", "force"]);
-const WATERFALL: Names = Names::Numbered(&["waterfall", "map"]);
 
 impl ResponseArgs {
     fn options(&self) -> ResponseOptions {
@@ -212,12 +216,26 @@ fn largest_lines(sweep: &Sweep) -> Result<Answer> {
     Ok(answer)
 }
 
-impl CommandArgs for WaterfallArgs {
-    /// Prints the matrix of spectra.
-    fn run(&self, json: bool) -> Result<u8> {
-        let folder = self.taken.sweep.folder();
-        let output = print::results(&folder, self.taken.out.as_deref(), WATERFALL)?;
-        let listed = self.taken.sweep.listed(&folder)?;
+impl Question for WaterfallArgs {
+    fn names(&self) -> Names {
+        Names::Numbered(&["waterfall", "map"])
+    }
+
+    fn out(&self) -> Option<&Path> {
+        self.taken.out.as_deref()
+    }
+
+    fn allow_outside(&self) -> bool {
+        self.taken.sweep.allow_outside
+    }
+
+    fn work(&self) -> &'static str {
+        "spectra"
+    }
+
+    /// The matrix of spectra.
+    fn answer(&self, asked: &Asked<'_>) -> Result<Answer> {
+        let listed = self.taken.sweep.listed(asked)?;
         let matrix = if self.taken.sweep.legacy {
             let (_, sweep) = listed.spectra()?;
             let excitation = legacy::rounded(&legacy::excitation(&sweep)?);
@@ -254,17 +272,35 @@ impl CommandArgs for WaterfallArgs {
         let shape = headed("Waterfall", &[("spectra", ""), ("lines", ""), ("quantity", ""), ("unit", "")]);
         let (quantity, unit) = (matrix.quantity.name(), matrix.unit.as_str());
         answer.tables.push(shape.row([points.into(), lines.into(), quantity.into(), unit.into()]));
-        print::answer(answer, output, json)
+        Ok(answer)
     }
 }
 
-impl CommandArgs for ExcitationArgs {
-    /// Prints the excitation frequency of each point.
-    fn run(&self, json: bool) -> Result<u8> {
-        let folder = self.sweep.folder();
-        folder.reads(Path::new(SweepPlace::of(&self.sweep.paths[0]).path));
-        let lists = self.lists(&folder)?;
-        let listed = self.sweep.listed(&folder)?;
+impl Question for ExcitationArgs {
+    fn names(&self) -> Names {
+        Names::Named(&[])
+    }
+
+    fn out(&self) -> Option<&Path> {
+        None
+    }
+
+    fn files(&self) -> Vec<PathBuf> {
+        vec![SweepPlace::of(&self.sweep.paths[0]).path.into()]
+    }
+
+    fn allow_outside(&self) -> bool {
+        self.sweep.allow_outside
+    }
+
+    fn work(&self) -> &'static str {
+        "spectra"
+    }
+
+    /// The excitation frequency of each point.
+    fn answer(&self, asked: &Asked<'_>) -> Result<Answer> {
+        let lists = self.lists(asked.folder)?;
+        let listed = self.sweep.listed(asked)?;
         let (points, findings) = if self.sweep.legacy {
             let (_, sweep) = listed.spectra()?;
             let found = legacy::excitation(&sweep)?.into_iter().zip(&sweep.points);
@@ -303,7 +339,7 @@ impl CommandArgs for ExcitationArgs {
                 ("force", "N", &|p| p.force.map(|force| pair(force, p.force_std)).into()),
             ],
         ));
-        print::answer(answer, None, json)
+        Ok(answer)
     }
 }
 

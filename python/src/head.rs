@@ -1,0 +1,259 @@
+//! Records between Rust and Python: the values are an array of NumPy, all else is a [`Head`].
+
+use crate::refused::exception;
+use crate::value::object;
+use crate::watched::watched;
+use num_complex::Complex64;
+use numpy::{PyArray1, PyReadonlyArray1};
+use pyo3::prelude::*;
+use std::path::PathBuf;
+use vibroimpact::Error;
+use vibroimpact::cli;
+use vibroimpact::read::write::{Precision, Storage, Target};
+use vibroimpact::read::{Folder, Owner, Reader};
+use vibroimpact::record::{
+    Axis, AxisKind, Finding, Frf, Grid, Meta, Record, Scaling, Spectrum, Trace, Values,
+};
+use vibroimpact::report::Output;
+use vibroimpact::report::words::{Voice, sentence};
+use vibroimpact::units::Unit;
+
+/// A record without its values.
+#[pyclass(frozen, module = "vibroimpact._native")]
+pub struct Head(Record);
+
+/// A record as Python holds it: all but the values, and the values.
+type Held<'py> = (Head, Bound<'py, PyAny>);
+
+/// A finding: severity, code, sentence.
+pub type Told = (&'static str, String, String);
+
+/// A finding in words.
+pub fn told(finding: &Finding) -> Told {
+    (finding.severity().name(), finding.code.to_string(), sentence(finding, Voice::Campaign))
+}
+
+impl Head {
+    /// The record, with an empty list of values.
+    pub fn record(&self) -> &Record {
+        &self.0
+    }
+
+    /// Splits a record; the values are moved, not copied.
+    fn split(py: Python<'_>, mut record: Record) -> Held<'_> {
+        let values = match &mut record {
+            Record::Trace(Trace { values, .. })
+            | Record::Spectrum(Spectrum { values: Values::Real(values), .. }) => {
+                PyArray1::from_vec(py, std::mem::take(values)).into_any()
+            }
+            Record::Frf(Frf { values, .. })
+            | Record::Spectrum(Spectrum { values: Values::Complex(values), .. }) => {
+                PyArray1::from_vec(py, std::mem::take(values)).into_any()
+            }
+        };
+        (Head(record), values)
+    }
+
+    /// The record with these values.
+    pub fn with(&self, values: &Bound<'_, PyAny>) -> PyResult<Record> {
+        let real = || -> PyResult<Vec<f64>> {
+            Ok(values.extract::<PyReadonlyArray1<'_, f64>>()?.as_array().to_vec())
+        };
+        let complex = || -> PyResult<Vec<Complex64>> {
+            Ok(values.extract::<PyReadonlyArray1<'_, Complex64>>()?.as_array().to_vec())
+        };
+        let mut record = self.0.clone();
+        let n = match &mut record {
+            Record::Trace(trace) => {
+                trace.values = real()?;
+                trace.values.len()
+            }
+            Record::Frf(frf) => {
+                frf.values = complex()?;
+                frf.values.len()
+            }
+            Record::Spectrum(spectrum) => {
+                spectrum.values = match &spectrum.values {
+                    Values::Real(_) => Values::Real(real()?),
+                    Values::Complex(_) => Values::Complex(complex()?),
+                };
+                spectrum.values.len()
+            }
+        };
+        if n != record.axis().len() {
+            let found = format!("{n} values over an axis of {}", record.axis().len());
+            return Err(exception(values.py(), &Error::usage(found, "one value for each instant or line")));
+        }
+        Ok(record)
+    }
+}
+
+#[pymethods]
+impl Head {
+    /// A head for `n` values: a trace over time, a spectrum of peak values or a response function over
+    /// frequency, by `kind`. The axis begins at `start` with `step`, or has the values `at`; without both it
+    /// counts. Returned with the factor that takes values of `unit` to SI.
+    #[staticmethod]
+    #[pyo3(signature = (kind, n, name, unit, start, step, at))]
+    fn made(
+        py: Python<'_>,
+        kind: &str,
+        n: usize,
+        name: String,
+        unit: &str,
+        start: f64,
+        step: Option<f64>,
+        at: Option<Vec<f64>>,
+    ) -> PyResult<(Head, f64)> {
+        let unknown = || {
+            let expected = "a unit such as m, mm/s, g, m/s², V, (m/s²)/N";
+            exception(py, &Error::usage(format!("the unit {unit:?} is not known"), expected).setting("unit"))
+        };
+        let unit = if unit.is_empty() { Unit::opaque("") } else { Unit::parse(unit).ok_or_else(unknown)? };
+        let (meta, factor) = (Meta::new(name, unit.si()), unit.factor());
+        let of = if kind == "trace" { AxisKind::Time } else { AxisKind::Frequency };
+        let axis = match (step, at) {
+            (Some(step), _) => Axis { kind: of, grid: Grid::Even { start, step, n } },
+            // Numbers of a program have all digits; one in the last is the error of a step added up.
+            (None, Some(at)) => Axis::from_values(of, at, 0.0),
+            (None, None) => Axis::index(n),
+        };
+        let record = match kind {
+            "trace" => Record::Trace(Trace { meta, axis, values: Vec::new() }),
+            "frf" => Record::Frf(Frf { meta, axis, values: Vec::new() }),
+            complex => {
+                let values = if complex == "complex spectrum" {
+                    Values::Complex(Vec::new())
+                } else {
+                    Values::Real(Vec::new())
+                };
+                let scaling = Scaling::Peak;
+                Record::Spectrum(Spectrum { meta, axis, values, scaling, window: None, enbw: None })
+            }
+        };
+        Ok((Head(record), factor))
+    }
+
+    /// `trace`, `spectrum` or `frf`.
+    #[getter]
+    fn kind(&self) -> &'static str {
+        self.0.kind()
+    }
+
+    /// Name of the channel.
+    #[getter]
+    fn name(&self) -> &str {
+        &self.0.meta().name
+    }
+
+    /// Name of the quantity.
+    #[getter]
+    fn quantity(&self) -> &'static str {
+        self.0.meta().quantity.name()
+    }
+
+    /// SI unit of the values.
+    #[getter]
+    fn unit(&self) -> &str {
+        self.0.meta().unit.symbol()
+    }
+
+    /// Number of values.
+    #[getter]
+    fn n(&self) -> usize {
+        self.0.axis().len()
+    }
+
+    /// Unit of the axis: `s`, `Hz`, or empty.
+    #[getter]
+    pub fn x_unit(&self) -> &'static str {
+        match self.0.axis().kind {
+            AxisKind::Time => "s",
+            AxisKind::Frequency => "Hz",
+            AxisKind::Index | AxisKind::Other(_) => "",
+        }
+    }
+
+    /// First value of the axis.
+    #[getter]
+    fn start(&self) -> f64 {
+        self.0.axis().start()
+    }
+
+    /// Step of the axis; `None` if it is uneven.
+    #[getter]
+    fn step(&self) -> Option<f64> {
+        self.0.axis().step()
+    }
+
+    /// Values of the axis.
+    fn axis<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        PyArray1::from_vec(py, self.0.axis().values())
+    }
+
+    /// Whether the values are complex.
+    #[getter]
+    fn complex(&self) -> bool {
+        self.0.is_complex()
+    }
+
+    /// Header lines and steps that made the record.
+    fn meta<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let meta = self.0.meta();
+        let notes: serde_json::Map<_, _> =
+            meta.notes.iter().map(|(key, value)| (key.clone(), value.clone().into())).collect();
+        let history = serde_json::to_value(&meta.history).unwrap_or_default();
+        object(py, serde_json::json!({ "notes": notes, "history": history }))
+    }
+
+    /// Findings: severity, code, sentence.
+    fn findings(&self) -> Vec<Told> {
+        self.0.meta().findings.iter().map(told).collect()
+    }
+}
+
+/// Reads a file with options of a command line: its format, findings on the file, and its records.
+#[pyfunction]
+pub fn read<'py>(
+    py: Python<'py>,
+    path: PathBuf,
+    words: Vec<String>,
+    show: Option<&Bound<'py, PyAny>>,
+) -> PyResult<(&'static str, Vec<Told>, Vec<Held<'py>>)> {
+    let reading = cli::reading(&words).map_err(|error| exception(py, &error))?;
+    let recording = watched(py, show, move |_| {
+        let reader: Reader = reading.reader()?;
+        reader.rate_of_base_band().from_path(path)
+    })?;
+    let findings = recording.findings.iter().map(told).collect();
+    let records = recording.records.into_iter().map(|record| Head::split(py, record)).collect();
+    Ok((recording.format.name(), findings, records))
+}
+
+/// Writes records into a file, in the format of its ending. A file that vibro did not write is replaced only
+/// with `replace`.
+#[pyfunction]
+pub fn write(
+    py: Python<'_>,
+    path: PathBuf,
+    records: Vec<(Bound<'_, Head>, Bound<'_, PyAny>)>,
+    single: bool,
+    binary: bool,
+    replace: bool,
+) -> PyResult<()> {
+    let records =
+        records.iter().map(|(head, values)| head.get().with(values)).collect::<PyResult<Vec<_>>>()?;
+    watched(py, None, move |_| {
+        let target = Target::of(&path)?;
+        let precision = if single { Precision::Single } else { Precision::Double };
+        let mut bytes = Vec::new();
+        target.write(&records, Storage { binary, precision }, &mut bytes)?;
+        let name = path.file_name().map(|name| name.to_string_lossy().into_owned());
+        let name = name.ok_or_else(|| Error::usage("no file name", "a file"))?;
+        let parent = path.parent().unwrap_or(&path);
+        let mut output = Output::new(Folder::from(parent), Owner::Recordings)?.replace(replace);
+        output.expect(|known| known == name)?;
+        output.write(&name, &bytes)?;
+        output.commit().map(drop)
+    })
+}

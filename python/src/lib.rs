@@ -1,0 +1,23 @@
+//! The module `vibroimpact._native` of the Python package: records, answers, figures and refusals between
+//! Rust and Python. The functions for users are Python's, in `vibroimpact/`.
+
+mod answer;
+mod command;
+mod drawing;
+mod head;
+mod refused;
+mod value;
+mod watched;
+
+/// The module.
+#[pyo3::pymodule]
+mod _native {
+    #[pymodule_export]
+    use crate::answer::{ask, questions, run};
+    #[pymodule_export]
+    use crate::command::{main, version};
+    #[pymodule_export]
+    use crate::drawing::Drawing;
+    #[pymodule_export]
+    use crate::head::{Head, read, write};
+}

@@ -1,0 +1,134 @@
+"""Answers of measurements and models, and how long work is stopped."""
+
+import _thread
+import math
+import threading
+import time
+
+import numpy as np
+import pytest
+
+import vibroimpact as vi
+
+RATE = 2000.0
+
+
+def ringing(frequency=50.0, zeta=0.02, seconds=2.0, noise=1e-3):
+    """A free decay whose frequency and damping ratio are known."""
+    t = np.arange(int(seconds * RATE)) / RATE
+    omega = 2 * math.pi * frequency
+    made = np.exp(-zeta * omega * t) * np.cos(omega * math.sqrt(1 - zeta**2) * t)
+    return made + noise * np.random.default_rng(7).standard_normal(t.size)
+
+
+def test_a_decay_of_an_array_holds_its_truth():
+    answer = vi.decay(ringing(), rate=RATE, unit="mm/s")
+    mode = answer.modes[0]
+    assert isinstance(mode.frequency, vi.Estimate) and mode.frequency.unit == "Hz"
+    # Four standard uncertainties: 6 in 100 000 records are beyond.
+    assert abs(mode.frequency.value - 50.0) < 4 * mode.frequency.std
+    assert abs(float(mode.zeta) - 0.02) < 4 * mode.zeta.std
+    low, high = mode.frequency.interval()
+    assert low < mode.frequency.value < high
+    assert "Modes" in str(answer) and answer["modes"] is answer.modes
+
+
+def test_array_record_and_file_give_one_answer(tmp_path):
+    values = ringing()
+    record = vi.Record.of(values, rate=RATE, unit="mm/s", name="v")
+    vi.write(tmp_path / "v.uff", record, binary=True)
+    answers = [
+        vi.decay(values, rate=RATE, unit="mm/s"),
+        vi.decay(record),
+        vi.decay([record]),
+        vi.decay(tmp_path / "v.uff"),
+        vi.decay(vi.read(tmp_path / "v.uff")),
+    ]
+    frequencies = {answer.modes[0].frequency.value for answer in answers}
+    # A step of 0.5 ms is printed exactly, so all digits agree.
+    assert len(frequencies) == 1
+
+
+def test_a_frequency_response_and_its_modes():
+    rng = np.random.default_rng(3)
+    n, omega, zeta = 40_000, 2 * math.pi * 100.0, 0.02
+    force = rng.standard_normal(n)
+    # One mode by its exact response to a force held over a step.
+    a = np.exp((-zeta + 1j * math.sqrt(1 - zeta**2)) * omega / RATE)
+    x, state = np.empty(n), 0j
+    for k, f in enumerate(force):
+        state = a * state + f
+        x[k] = state.imag
+    both = [vi.Record.of(force, rate=RATE, unit="N", name="force"), vi.Record.of(x, rate=RATE, unit="um", name="x")]
+    found = vi.modal(both, reference="force")
+    mode = found.modes[0]
+    assert abs(mode.frequency.value - 100.0) < 4 * mode.frequency.std
+    assert "lines" in vi.frf(both, "force", channel="x") or vi.frf(both, "force").figures
+
+
+def test_a_refusal_has_its_reason():
+    with pytest.raises(vi.Refused) as refused:
+        vi.decay(np.zeros(500) + 1e-12, rate=RATE)
+    assert str(refused.value) and isinstance(refused.value.code, (str, type(None)))
+    with pytest.raises(vi.BadInput, match="rate"):
+        vi.decay(ringing())
+    with pytest.raises(vi.BadInput, match="its own"):
+        vi.decay(vi.Record.of(ringing(), rate=RATE), rate=RATE)
+    with pytest.raises(vi.BadInput, match="in memory"):
+        vi.decay(vi.Record.of(ringing(), rate=RATE), format="uff")
+    with pytest.raises(TypeError):
+        vi.decay(ringing(), rate=RATE, colour="red")
+
+
+def test_a_rig_answers_with_orbits_and_figures():
+    rig = vi.Rig(gap=0.5e-3)
+    answer = rig.orbits(frequency=11.2, force=0.5)
+    assert len(answer.orbits) >= 1 and "orbit_1" in answer.figures
+    assert "<svg" in answer._repr_html_()
+    other = vi.Rig(gap=1e-3).orbits(frequency=11.2, force=0.5)
+    assert [o.approach_velocity for o in other.orbits] != [o.approach_velocity for o in answer.orbits]
+    with pytest.raises(vi.BadInput, match="gap"):
+        vi.Rig(gapp=0.5e-3).orbits(frequency=11.2, force=0.5)
+    import matplotlib
+
+    matplotlib.use("agg")
+    assert answer.plot() is not None
+
+
+def test_tables_are_frames():
+    frame = vi.decay(ringing(), rate=RATE, unit="mm/s").tables[0].to_pandas()
+    assert frame["frequency [Hz]"][0] == pytest.approx(50.0, abs=0.1)
+    assert frame["frequency [Hz] std"][0] > 0
+
+
+def test_long_work_stops_at_ctrl_c():
+    rig = vi.Rig()
+    pressed = []
+
+    def press():
+        time.sleep(0.5)
+        pressed.append(time.monotonic())
+        _thread.interrupt_main()
+
+    threading.Thread(target=press).start()
+    with pytest.raises(KeyboardInterrupt):
+        rig.map(x=("frequency", 3, 14, 600), y=("gap", 1e-4, 1e-3, 600), force=0.5)
+    assert time.monotonic() - pressed[0] < 0.2
+
+
+def test_other_threads_run_meanwhile():
+    ticks = []
+    done = threading.Event()
+
+    def tick():
+        while not done.wait(0.005):
+            ticks.append(time.monotonic())
+
+    thread = threading.Thread(target=tick)
+    thread.start()
+    began = time.monotonic()
+    vi.Rig().map(x=("frequency", 3, 14, 60), y=("gap", 1e-4, 1e-3, 60), force=0.5)
+    took = time.monotonic() - began
+    done.set()
+    thread.join()
+    assert took < 0.05 or len(ticks) > 2

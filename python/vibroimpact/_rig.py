@@ -1,0 +1,58 @@
+"""The rig: two sprung masses that strike each other across a gap."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from os import PathLike, fspath
+from typing import Any
+
+from ._answer import Answer
+from ._ask import ask
+from ._rig_questions import RigQuestions
+from ._words import word
+
+
+class Rig(RigQuestions):
+    """Two sprung masses that strike each other across a gap.
+
+    ``Rig(m1=2.0, gap=0.5e-3)`` states masses ``m1``, ``m2`` in kg, springs ``k1``, ``k2`` in N/m, dampers ``c1``,
+    ``c2`` in N s/m, ``gap`` in m and ``restitution``; tables such as ``contact={"stiffness": 1e6}`` are
+    dictionaries. Keys that are left out are those of the thesis' rig. ``Rig.from_file`` reads a TOML file.
+    """
+
+    def __init__(self, **keys: float | str | Mapping[str, float | str]) -> None:
+        self.keys = keys
+        """The keys that were stated."""
+        self._file: str | None = None
+
+    @classmethod
+    def from_file(cls, path: str | PathLike[str], **keys: float | str | Mapping[str, float | str]) -> Rig:
+        """The rig of a TOML file, with some keys replaced."""
+        rig = cls(**keys)
+        rig._file = fspath(path)
+        return rig
+
+    def _ask(self, command: Sequence[str], options: Mapping[str, Any]) -> Answer:
+        stated = [f"{key}={_toml(value)}" for key, value in _flat(self.keys)]
+        return ask(command, [self._file] if self._file else [], {"set": stated, **options})
+
+    def __repr__(self) -> str:
+        stated = [repr(self._file)] if self._file else []
+        return f"Rig({', '.join(stated + [f'{key}={value!r}' for key, value in self.keys.items()])})"
+
+
+def _flat(keys: Mapping[str, Any], before: str = "") -> list[tuple[str, Any]]:
+    """Keys with those of tables behind a dot."""
+    flat: list[tuple[str, Any]] = []
+    for key, value in keys.items():
+        flat += _flat(value, f"{before}{key}.") if isinstance(value, Mapping) else [(before + key, value)]
+    return flat
+
+
+def _toml(value: Any) -> str:
+    """A value as TOML."""
+    if isinstance(value, str):
+        return f'"{value}"'
+    if isinstance(value, (list, tuple)):
+        return "[" + ", ".join(_toml(item) for item in value) + "]"
+    return word(value)
