@@ -32,6 +32,7 @@ use clap::{ArgMatches, Args, Command as Typed};
 pub use campaign::RunResults;
 pub use clap::builder::StyledStr;
 pub use clap::{Arg, ArgAction, Command};
+pub use demo::written as demo;
 use question::{Asked, Question};
 use std::any::TypeId;
 use std::ffi::OsString;

@@ -1,7 +1,7 @@
 //! Answers: of a question with its options, and of a campaign.
 
 use crate::drawing::Drawing;
-use crate::head::{Head, Told, told};
+use crate::head::{Passed, Told, told};
 use crate::refused::class;
 use crate::value::object;
 use crate::watched::watched;
@@ -16,17 +16,17 @@ use vibroimpact::read::{Folder, Format, Recording};
 use vibroimpact::report::Table;
 
 /// Records made in memory, by the word that stands for them among the words of a question.
-type Made<'py> = Vec<(PathBuf, Vec<(Bound<'py, Head>, Bound<'py, PyAny>)>)>;
+type Made<'py> = (PathBuf, Vec<Passed<'py>>);
 
 /// Answers a question by the words of a command line, without `vibro`. `made` are records in memory.
 #[pyfunction]
 pub fn ask<'py>(
     py: Python<'py>,
     words: Vec<String>,
-    made: Made<'py>,
+    made: Vec<Made<'py>>,
     show: Option<&Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyAny>> {
-    let recording = |(path, records): &(PathBuf, Vec<(Bound<'py, Head>, Bound<'py, PyAny>)>)| {
+    let recording = |(path, records): &Made<'py>| {
         let records = records.iter().map(|(head, values)| head.get().with(values));
         let records = records.collect::<PyResult<Vec<_>>>()?;
         Ok(Recording { path: path.clone(), format: Format::Memory, records, findings: Vec::new() })
@@ -86,7 +86,7 @@ fn described(command: &cli::Command) -> Value {
             "name": arg.get_id().as_str(),
             "option": arg.get_long(),
             "help": text(arg.get_long_help().or(arg.get_help())),
-            "placeholder": arg.get_value_names().and_then(|names| names.first()).map(|name| name.as_str()),
+            "placeholder": arg.get_value_names().and_then(|names| names.first()).map(ToString::to_string),
             "values": arg.get_possible_values().iter().map(|value| value.get_name().to_owned()).collect::<Vec<_>>(),
             "takes_value": arg.get_action().takes_values(),
             "many": matches!(arg.get_action(), cli::ArgAction::Append),

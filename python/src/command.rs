@@ -1,7 +1,9 @@
 //! The command `vibro`, which the package brings.
 
+use crate::watched::watched;
 use pyo3::prelude::*;
 use std::ffi::OsString;
+use std::path::PathBuf;
 
 /// Runs a command line, which begins with the name of the program, and gives the exit code.
 #[pyfunction]
@@ -13,4 +15,10 @@ pub fn main(py: Python<'_>, words: Vec<OsString>) -> u8 {
 #[pyfunction]
 pub fn version() -> &'static str {
     env!("CARGO_PKG_VERSION")
+}
+
+/// Writes an example with its recordings into a folder, and returns the folder.
+#[pyfunction]
+pub fn demo(py: Python<'_>, name: String, folder: Option<PathBuf>) -> PyResult<PathBuf> {
+    watched(py, None, move |_| vibroimpact::cli::demo(&name, folder))
 }

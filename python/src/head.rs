@@ -1,4 +1,4 @@
-//! Records between Rust and Python: the values are an array of NumPy, all else is a [`Head`].
+//! Records between Rust and Python: the values are an array of `NumPy`, all else is a [`Head`].
 
 use crate::refused::exception;
 use crate::value::object;
@@ -24,6 +24,9 @@ pub struct Head(Record);
 
 /// A record as Python holds it: all but the values, and the values.
 type Held<'py> = (Head, Bound<'py, PyAny>);
+
+/// A record as Python passes it.
+pub type Passed<'py> = (Bound<'py, Head>, Bound<'py, PyAny>);
 
 /// A finding: severity, code, sentence.
 pub type Told = (&'static str, String, String);
@@ -91,18 +94,17 @@ impl Head {
 #[pymethods]
 impl Head {
     /// A head for `n` values: a trace over time, a spectrum of peak values or a response function over
-    /// frequency, by `kind`. The axis begins at `start` with `step`, or has the values `at`; without both it
+    /// frequency, by `kind`. The axis is `even`, with its start and step, or has the values `at`; without both it
     /// counts. Returned with the factor that takes values of `unit` to SI.
     #[staticmethod]
-    #[pyo3(signature = (kind, n, name, unit, start, step, at))]
+    #[pyo3(signature = (kind, n, name, unit, even, at))]
     fn made(
         py: Python<'_>,
         kind: &str,
         n: usize,
         name: String,
         unit: &str,
-        start: f64,
-        step: Option<f64>,
+        even: Option<(f64, f64)>,
         at: Option<Vec<f64>>,
     ) -> PyResult<(Head, f64)> {
         let unknown = || {
@@ -112,8 +114,8 @@ impl Head {
         let unit = if unit.is_empty() { Unit::opaque("") } else { Unit::parse(unit).ok_or_else(unknown)? };
         let (meta, factor) = (Meta::new(name, unit.si()), unit.factor());
         let of = if kind == "trace" { AxisKind::Time } else { AxisKind::Frequency };
-        let axis = match (step, at) {
-            (Some(step), _) => Axis { kind: of, grid: Grid::Even { start, step, n } },
+        let axis = match (even, at) {
+            (Some((start, step)), _) => Axis { kind: of, grid: Grid::Even { start, step, n } },
             // Numbers of a program have all digits; one in the last is the error of a step added up.
             (None, Some(at)) => Axis::from_values(of, at, 0.0),
             (None, None) => Axis::index(n),
@@ -223,7 +225,7 @@ pub fn read<'py>(
     let reading = cli::reading(&words).map_err(|error| exception(py, &error))?;
     let recording = watched(py, show, move |_| {
         let reader: Reader = reading.reader()?;
-        reader.rate_of_base_band().from_path(path)
+        reader.from_path(path)
     })?;
     let findings = recording.findings.iter().map(told).collect();
     let records = recording.records.into_iter().map(|record| Head::split(py, record)).collect();
@@ -236,7 +238,7 @@ pub fn read<'py>(
 pub fn write(
     py: Python<'_>,
     path: PathBuf,
-    records: Vec<(Bound<'_, Head>, Bound<'_, PyAny>)>,
+    records: Vec<Passed<'_>>,
     single: bool,
     binary: bool,
     replace: bool,

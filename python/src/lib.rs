@@ -1,6 +1,9 @@
 //! The module `vibroimpact._native` of the Python package: records, answers, figures and refusals between
 //! Rust and Python. The functions for users are Python's, in `vibroimpact/`.
 
+// PyO3 hands arguments over.
+#![allow(clippy::needless_pass_by_value)]
+
 mod answer;
 mod command;
 mod drawing;
@@ -15,7 +18,7 @@ mod _native {
     #[pymodule_export]
     use crate::answer::{ask, questions, run};
     #[pymodule_export]
-    use crate::command::{main, version};
+    use crate::command::{demo, main, version};
     #[pymodule_export]
     use crate::drawing::Drawing;
     #[pymodule_export]

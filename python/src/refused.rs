@@ -22,7 +22,7 @@ pub fn exception(py: Python<'_>, error: &Error) -> PyErr {
     static REFUSED: PyOnceLock<Py<PyType>> = PyOnceLock::new();
     static INPUT: PyOnceLock<Py<PyType>> = PyOnceLock::new();
     let (cell, name) = if error.exit_code() == 1 { (&REFUSED, "Refused") } else { (&INPUT, "BadInput") };
-    let text = error.text_with(|key, value| keyword(key, value), Hint::to_string);
+    let text = error.text_with(keyword, Hint::to_string);
     let made = class(py, cell, "vibroimpact._errors", name)
         .and_then(|class| class.call1((text, error.code(), error.advice())));
     made.map_or_else(|failed| failed, PyErr::from_value)

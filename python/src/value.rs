@@ -14,7 +14,12 @@ const ESTIMATE: [&str; 5] = ["value", "std", "unit", "n", "method"];
 ///
 /// # Errors
 /// If Python has no memory left.
-pub fn object<'py>(py: Python<'py>, value: Value) -> PyResult<Bound<'py, PyAny>> {
+pub fn object(py: Python<'_>, value: Value) -> PyResult<Bound<'_, PyAny>> {
+    within(py, value, "")
+}
+
+/// As [`object`], inside an object that states `unit` for its amplitudes.
+fn within<'py>(py: Python<'py>, value: Value, unit: &str) -> PyResult<Bound<'py, PyAny>> {
     Ok(match value {
         Value::Null => py.None().into_bound(py),
         Value::Bool(yes) => yes.into_pyobject(py)?.to_owned().into_any(),
@@ -23,31 +28,51 @@ pub fn object<'py>(py: Python<'py>, value: Value) -> PyResult<Bound<'py, PyAny>>
             Some(whole) => whole.into_pyobject(py)?.into_any(),
             None => number.as_f64().into_pyobject(py)?.into_any(),
         },
-        Value::Array(items) => list(py, items)?,
-        Value::Object(fields) => fields_of(py, fields)?,
+        Value::Array(items) => list(py, items, unit)?,
+        Value::Object(fields) => fields_of(py, fields, unit)?,
     })
 }
 
-/// Named values as an object of the class `Fields`, or as an `Estimate`.
-fn fields_of<'py>(py: Python<'py>, fields: Map<String, Value>) -> PyResult<Bound<'py, PyAny>> {
+/// Unit of a number with a standard uncertainty beside it, `frequency` with `frequency_std`; `amplitude` is in
+/// the unit of the object around it.
+fn unit_of<'a>(name: &str, unit: &'a str) -> &'a str {
+    match name {
+        "frequency" | "excitation" => "Hz",
+        "force" => "N",
+        "phase" => "rad",
+        "interval" => "s",
+        name if name.starts_with("amplitude") => unit,
+        _ => "",
+    }
+}
+
+/// Named values as an object of the class `Fields`, or as an `Estimate`. A number with its uncertainty beside
+/// it, under the same name with `_std`, is an `Estimate`, too.
+fn fields_of<'py>(py: Python<'py>, fields: Map<String, Value>, unit: &str) -> PyResult<Bound<'py, PyAny>> {
     static FIELDS: PyOnceLock<Py<PyType>> = PyOnceLock::new();
     static OF_ESTIMATE: PyOnceLock<Py<PyType>> = PyOnceLock::new();
-    let estimate = fields.len() == ESTIMATE.len() && ESTIMATE.iter().all(|key| fields.contains_key(*key));
-    if estimate {
-        let fields = ESTIMATE.map(|key| object(py, fields[key].clone()));
-        let [value, std, unit, n, method] = fields;
-        let class = class(py, &OF_ESTIMATE, "vibroimpact._estimate", "Estimate")?;
-        return class.call1((value?, std?, unit?, n?, method?));
+    let estimate = || class(py, &OF_ESTIMATE, "vibroimpact._estimate", "Estimate");
+    if fields.len() == ESTIMATE.len() && ESTIMATE.iter().all(|key| fields.contains_key(*key)) {
+        let [value, std, unit, n, method] = ESTIMATE.map(|key| object(py, fields[key].clone()));
+        return estimate()?.call1((value?, std?, unit?, n?, method?));
     }
+    let unit = fields.get("unit").and_then(Value::as_str).unwrap_or(unit).to_owned();
     let made = PyDict::new(py);
-    for (key, value) in fields {
-        made.set_item(key, object(py, value)?)?;
+    let is_std = |std: &&Value| std.is_number() || std.is_null();
+    let beside = |name: &String| fields.get(&format!("{name}_std")).filter(is_std).map(Value::as_f64);
+    let stds: Vec<Option<Option<f64>>> = fields.keys().map(beside).collect();
+    for ((name, value), std) in fields.into_iter().zip(stds) {
+        let of_value = match (value.as_f64(), std) {
+            (Some(value), Some(std)) => estimate()?.call1((value, std, unit_of(&name, &unit)))?,
+            _ => within(py, value, &unit)?,
+        };
+        made.set_item(name, of_value)?;
     }
     class(py, &FIELDS, "vibroimpact._fields", "Fields")?.call1((made,))
 }
 
 /// A list: of numbers as an array, NaN where one is missing; of equally long lists of numbers as a matrix.
-fn list<'py>(py: Python<'py>, items: Vec<Value>) -> PyResult<Bound<'py, PyAny>> {
+fn list<'py>(py: Python<'py>, items: Vec<Value>, unit: &str) -> PyResult<Bound<'py, PyAny>> {
     if let Some(numbers) = numbers(&items) {
         return Ok(PyArray1::from_vec(py, numbers).into_any());
     }
@@ -55,7 +80,7 @@ fn list<'py>(py: Python<'py>, items: Vec<Value>) -> PyResult<Bound<'py, PyAny>> 
         let shape = [items.len(), width];
         return Ok(PyArray1::from_vec(py, numbers).reshape(shape)?.into_any());
     }
-    let objects = items.into_iter().map(|item| object(py, item));
+    let objects = items.into_iter().map(|item| within(py, item, unit));
     Ok(PyList::new(py, objects.collect::<PyResult<Vec<_>>>()?)?.into_any())
 }
 

@@ -14,7 +14,7 @@ from __future__ import annotations
 
 from . import _progress
 from ._answer import Answer, Finding, Table
-from ._campaign import Campaign, CampaignRun
+from ._campaign import Campaign, CampaignRun, demo
 from ._errors import BadInput, Refused, VibroError
 from ._estimate import Estimate
 from ._fields import Fields
@@ -63,6 +63,7 @@ __all__ = [
     "VibroError",
     "compare",
     "decay",
+    "demo",
     "drill",
     "excitation",
     "frf",

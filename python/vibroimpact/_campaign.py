@@ -7,6 +7,7 @@ from pathlib import Path
 
 from ._answer import Answer
 from ._errors import BadInput
+from ._native import demo as _demo
 from ._native import run as _run
 from ._progress import Bar
 from ._words import words
@@ -67,3 +68,13 @@ class Campaign:
 
     def __repr__(self) -> str:
         return f"Campaign({str(self.path)!r})"
+
+
+def demo(name: str, folder: str | PathLike[str] | None = None) -> Campaign:
+    """Writes an example with its recordings into ``folder``, by default one of its name: its campaign.
+
+    There are ``two_mass_rig``, ``bench``, ``drop_test`` and ``hammer_drill``.
+
+    Raises ``BadInput`` where there is no such example, or a file of it is there with other content.
+    """
+    return Campaign(_demo(name, None if folder is None else fspath(folder)))

@@ -36,7 +36,7 @@ def read(
         format: File format, instead of detecting it.
         allow_missing: Keep NaN, Inf and blank values as missing, instead of refusing them.
         rate: Sampling rate in Hz: the values are a time trace.
-        base_band: Base band in Hz: a spectrum from 0 to it, or a trace sampled at 2.56 times it.
+        base_band: Base band in Hz: the values are the lines of a spectrum from 0 to it.
         unit: Unit of the values, such as ``"mm/s"``; of one channel ``"NAME=UNIT"``.
         decimal: Decimal mark, where the file leaves it open.
         complex: Two columns of values are real and imaginary part.

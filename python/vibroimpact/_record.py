@@ -80,8 +80,8 @@ class Record:
             raise BadInput("complex values over time; expected real ones, or frequency=")
         if rate is not None and not (np.isfinite(rate) and rate > 0):
             raise BadInput(f"rate is {rate} Hz; expected a number above 0")
-        step = None if rate is None else 1.0 / rate
-        head, factor = Head.made(kind, len(array), name, unit, start, step, None if at is None else at.tolist())
+        even = None if rate is None else (start, 1.0 / rate)
+        head, factor = Head.made(kind, len(array), name, unit, even, None if at is None else at.tolist())
         if factor != 1.0:
             array *= factor
         return cls(head, array)

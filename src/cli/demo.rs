@@ -49,13 +49,7 @@ impl super::CommandArgs for Demo {
             }
             return Ok(0);
         };
-        let demo = DEMOS.iter().find(|demo| demo.name == *name).ok_or_else(|| {
-            let known: Vec<&str> = DEMOS.iter().map(|demo| demo.name).collect();
-            let near = nearest(name, known.iter().copied()).unwrap_or(DEMOS[0].name);
-            let error = Error::usage(format!("no example is named {name:?}"), known.join(", "));
-            error.hint(format!("vibro demo {near}"))
-        })?;
-        let folder = self.out.clone().unwrap_or_else(|| PathBuf::from(demo.name));
+        let (demo, folder) = chosen(name, self.out.clone())?;
         print::busy(json, "making recordings", |_| write(demo, &folder))?;
         if self.no_run {
             let written = folder.display().to_string();
@@ -69,6 +63,26 @@ impl super::CommandArgs for Demo {
         complain::line(&format!("wrote the recordings and campaign.toml into {}", shown(&folder)));
         Run::of(folder.join(Proposal::FILE)).run(json)
     }
+}
+
+/// The example of this name, and the folder for it.
+fn chosen(name: &str, out: Option<PathBuf>) -> Result<(&'static Example, PathBuf)> {
+    let demo = DEMOS.iter().find(|demo| demo.name == name).ok_or_else(|| {
+        let known: Vec<&str> = DEMOS.iter().map(|demo| demo.name).collect();
+        let near = nearest(name, known.iter().copied()).unwrap_or(DEMOS[0].name);
+        let error = Error::usage(format!("no example is named {name:?}"), known.join(", "));
+        error.hint(format!("vibro demo {near}"))
+    })?;
+    Ok((demo, out.unwrap_or_else(|| PathBuf::from(demo.name))))
+}
+
+/// Writes the example of this name with its recordings, and returns its folder.
+///
+/// # Errors
+/// If there is no such example, or a file of it exists with other content.
+pub fn written(name: &str, out: Option<PathBuf>) -> Result<PathBuf> {
+    let (demo, folder) = chosen(name, out)?;
+    write(demo, &folder).map(|()| folder)
 }
 
 /// Writes the files of an example, all or none. A file that exists with other content is kept and named in
