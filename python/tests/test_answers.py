@@ -78,6 +78,12 @@ def test_a_refusal_has_its_reason():
         vi.decay(vi.Record.of(ringing(), rate=RATE), format="uff")
     with pytest.raises(TypeError):
         vi.decay(ringing(), rate=RATE, colour="red")
+    gap = ringing()
+    gap[5] = math.nan
+    with pytest.raises(vi.BadInput, match="allow_missing="):
+        vi.decay(gap, rate=RATE)
+    with pytest.raises(vi.BadInput, match="no values"):
+        vi.decay([], rate=RATE)
 
 
 def test_a_rig_answers_with_orbits_and_figures():

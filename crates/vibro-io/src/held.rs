@@ -103,6 +103,18 @@ pub fn rises(values: &[f64]) -> bool {
 /// Findings on gaps between samples. They no longer hold once a single stretch is kept.
 const GAP_FINDINGS: [&str; 2] = [code::SAMPLES_LOST, code::AXIS_BACKWARDS];
 
+/// Multiplies the values of a record.
+///
+/// # Errors
+/// If a value overflows a double.
+pub fn scale(record: &mut Record, factor: f64) -> Result<()> {
+    match record {
+        Record::Trace(trace) => units::scale(&mut trace.values, factor),
+        Record::Spectrum(spectrum) => assemble::to_si(&mut spectrum.values, factor),
+        Record::Frf(frf) => units::scale(frf.values.iter_mut().flat_map(|v| [&mut v.re, &mut v.im]), factor),
+    }
+}
+
 /// Records of a file, each with its summary if its values were not kept in full, and findings on the file.
 #[derive(Debug, Default)]
 pub struct Contents {
@@ -128,13 +140,7 @@ impl Contents {
         for (channel, unit) in stated {
             let (record, summary) = &mut self.records[channel];
             let factor = record.meta_mut().restate_unit(unit, options.unit.is_none());
-            match record {
-                Record::Trace(trace) => units::scale(&mut trace.values, factor)?,
-                Record::Spectrum(spectrum) => assemble::to_si(&mut spectrum.values, factor)?,
-                Record::Frf(frf) => {
-                    units::scale(frf.values.iter_mut().flat_map(|v| [&mut v.re, &mut v.im]), factor)?;
-                }
-            }
+            scale(record, factor)?;
             for values in summary.iter_mut().flat_map(Extremes::values_mut) {
                 units::scale(values, factor)?;
             }

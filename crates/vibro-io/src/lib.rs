@@ -57,6 +57,7 @@ mod limit;
 mod lvm;
 mod magnitude;
 mod mat;
+mod memory;
 mod missing;
 mod number;
 mod options;

@@ -44,10 +44,7 @@ const MEMORY: Entry = Entry {
     endings: &[],
     whole: false,
     sniff: |_, source| source.in_records().is_some(),
-    read: |source, _, _| {
-        let all = source.in_records().map(|made| Contents::of(made.records.clone(), made.findings.clone()));
-        Ok(all.unwrap_or_default())
-    },
+    read: crate::memory::read,
 };
 
 impl Entry {
