@@ -2,6 +2,7 @@
 
 import _thread
 import math
+import multiprocessing
 import threading
 import time
 
@@ -138,3 +139,17 @@ def test_other_threads_run_meanwhile():
     done.set()
     thread.join()
     assert took < 0.05 or len(ticks) > 2
+
+
+def mode_of(seed):
+    """The frequency of one decay, in a process of its own."""
+    return vi.decay(ringing(40.0 + seed), rate=RATE).modes[0].frequency.value
+
+
+@pytest.mark.skipif("fork" not in multiprocessing.get_all_start_methods(), reason="no fork here")
+@pytest.mark.filterwarnings("ignore:.*fork:DeprecationWarning")
+def test_a_forked_process_measures_too():
+    assert mode_of(0) == pytest.approx(40.0, abs=0.05)
+    with multiprocessing.get_context("fork").Pool(2) as pool:
+        found = pool.map_async(mode_of, range(4)).get(timeout=30)
+    assert found == pytest.approx([40.0, 41.0, 42.0, 43.0], abs=0.05)

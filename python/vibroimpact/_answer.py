@@ -78,9 +78,6 @@ class Answer(Fields):
             text,
         )
 
-    def __setattr__(self, name: str, value: Any) -> None:
-        object.__setattr__(self, name, value)
-
     @property
     def findings(self) -> list[Finding]:
         """What must be known before the numbers are trusted."""
