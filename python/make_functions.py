@@ -87,7 +87,7 @@ def hint(option: dict[str, Any]) -> str:
     one = {"NUMBER": "float", "N": "int", "FILE": "str | PathLike[str]"}.get(shown)
     if one is None and option["values"]:
         one = "Literal[" + ", ".join(f'"{value}"' for value in option["values"]) + "]"
-    one = one or "str | float"
+    one = one or ("str | int" if option["name"] in ("channel", "reference", "speed_reference") else "str")
     return f"{one} | Sequence[{one}]" if option["many"] else one
 
 
@@ -140,7 +140,7 @@ def function(question: dict[str, Any], name: str, place: str, command: list[str]
     lines = [f"{pythonic(question['about'])}.", ""]
     if not method and called not in FILES_ONLY:
         lines += [f"``{place}`` is a file, a record, a list of records of one length, or an array with ``rate`` and ``unit``.", ""]
-    if called in FILES_ONLY and FILES_ONLY[called] == "sweep":
+    if not method and FILES_ONLY.get(called) == "sweep":
         lines += ["``sweep`` is a list file, campaign.toml#name, a folder, or the files of its steps.", ""]
     lines += ["Numbers are in SI units. Raises ``Refused`` where the data allow no answer, and ``BadInput`` where a", "file or an argument is not what it should be.", ""]
     for heading, group in groups:

@@ -308,8 +308,8 @@ fn command() -> Typed {
     options(all.subcommands(commands))
 }
 
-/// Parses and runs a command line, which begins with the name of the program, and returns the exit code: 0 done, 1 no answer possible, 2 wrong usage
-/// or unreadable input.
+/// Parses and runs a command line, which begins with the name of the program, and returns the exit code: 0
+/// done, 1 no answer possible, 2 wrong usage or unreadable input.
 pub fn main(words: impl IntoIterator<Item = OsString>) -> u8 {
     typed::state(words);
     let typed = match command().try_get_matches_from(respelt::args()) {

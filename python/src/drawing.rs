@@ -2,7 +2,9 @@
 
 use crate::head::Head;
 use numpy::PyReadonlyArray1;
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
+use pyo3::types::PyType;
 use vibroimpact::figure::{AxisSpec, Figure, Plot, Series};
 
 /// Parts into which a long record is cut; of each, the smallest and the largest value are drawn.
@@ -14,6 +16,18 @@ pub struct Drawing(pub Figure);
 
 #[pymethods]
 impl Drawing {
+    /// The figure of its data as JSON.
+    #[new]
+    fn new(json: &str) -> PyResult<Drawing> {
+        let figure = serde_json::from_str(json);
+        figure.map(Drawing).map_err(|error| PyValueError::new_err(error.to_string()))
+    }
+
+    /// What makes the same figure again, for pickle.
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> (Bound<'py, PyType>, (String,)) {
+        (slf.get_type(), (slf.get().json(),))
+    }
+
     /// The values of a record over its axis.
     #[staticmethod]
     fn of_record(head: &Head, values: PyReadonlyArray1<'_, f64>) -> PyResult<Drawing> {

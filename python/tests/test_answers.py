@@ -87,6 +87,49 @@ def test_a_refusal_has_its_reason():
         vi.decay([], rate=RATE)
 
 
+def test_messages_speak_of_functions_and_arguments(tmp_path):
+    for asked, said in [
+        (lambda: vi.decay(ringing(), rate=RATE, modes=2.5), "modes=2.5|modes= is 2.5"),
+        (lambda: vi.decay(ringing(), rate=RATE, band=12), "band"),
+        (lambda: vi.spectrum(ringing(), rate=RATE, method="welsh"), "method='welch'"),
+        (lambda: vi.Rig().simulate(force=0.5, frequency=11, model="kv"), "model"),
+        (lambda: vi.decay(ringing(), rate="1024"), "rate is '1024'"),
+        (lambda: vi.decay([[1.0], [1.0, 2.0]], rate=RATE), "different lengths"),
+        (lambda: vi.decay(5), "expected a file"),
+        (lambda: vi.write(tmp_path / "x.csv", ringing()), "Record.of"),
+        (lambda: vi.decay(tmp_path), r"Campaign\("),
+    ]:
+        with pytest.raises(vi.BadInput, match=said) as bad:
+            asked()
+        assert "--" not in str(bad.value) and "vibro " not in str(bad.value), str(bad.value)
+
+
+def test_an_answer_is_pickled():
+    import pickle
+
+    answer = vi.Rig().orbits(frequency=11.2, force=0.5)
+    again = pickle.loads(pickle.dumps(answer))
+    assert str(again) == str(answer) and again.figure().svg() == answer.figure().svg()
+    assert again.orbits[0].impulse == answer.orbits[0].impulse
+    with pytest.raises(KeyError, match="there are"):
+        answer["freq"]
+
+
+def test_estimates_are_compared_by_value():
+    answer = vi.decay(ringing(), rate=RATE)
+    assert answer.modes[0].frequency > 49 and answer.modes[0].frequency < 51
+    assert max(answer.modes, key=lambda mode: mode.amplitude) is answer.modes[0]
+
+
+def test_several_files_and_series_are_taken(tmp_path):
+    record = vi.Record.of(ringing(), rate=RATE, unit="mm/s", name="v")
+    assert vi.decay(record.to_pandas()).modes[0].frequency.value == pytest.approx(50.0, abs=0.05)
+    paths = [tmp_path / "a.uff", tmp_path / "b.uff"]
+    for path in paths:
+        vi.write_uff(path, record)
+    assert len(vi.spectrum(paths).figures) >= 1
+
+
 def test_a_rig_answers_with_orbits_and_figures():
     rig = vi.Rig(gap=0.5e-3)
     answer = rig.orbits(frequency=11.2, force=0.5)

@@ -6,6 +6,7 @@ import html
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from ._errors import spoken
 from ._fields import Fields
 from ._figure import Figure
 from ._native import Drawing
@@ -28,6 +29,12 @@ class Finding(NamedTuple):
 
     def __str__(self) -> str:
         return f"{self.severity}: {self.record + ': ' if self.record else ''}{self.text}"
+
+
+def finding(told: tuple[str, str, str], record: str = "") -> Finding:
+    """A finding from its severity, code and sentence."""
+    severity, code, text = told
+    return Finding(severity, code, spoken(text), record)
 
 
 @dataclass(frozen=True)
@@ -72,11 +79,14 @@ class Answer(Fields):
     ) -> None:
         super().__init__(result)
         self._kept = (
-            [Finding(*told, record) for record, told in findings],
+            [finding(told, record) for record, told in findings],
             [_table(table) for table in tables],
             {name: Figure(name, drawing) for name, drawing in figures},
-            text,
+            spoken(text),
         )
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _again, (dict(self), self._kept)
 
     @property
     def findings(self) -> list[Finding]:
@@ -109,7 +119,7 @@ class Answer(Fields):
         return self.figure().plot(ax)
 
     def __str__(self) -> str:
-        told = [str(finding) for finding in self.findings if finding.severity != "note"]
+        told = [str(found) for found in self.findings if found.severity != "note"]
         return "\n".join([self._kept[3].rstrip(), *told]).strip()
 
     def __repr__(self) -> str:
@@ -118,6 +128,13 @@ class Answer(Fields):
     def _repr_html_(self) -> str:
         figures = "".join(figure._repr_html_() for figure in self.figures.values())
         return f"<pre>{html.escape(str(self))}</pre>{figures}"
+
+
+def _again(result: dict[str, Any], kept: tuple[Any, ...]) -> Answer:
+    """An answer that was pickled."""
+    answer = Answer(result, [], [], "", [])
+    answer._kept = kept
+    return answer
 
 
 def _table(data: dict[str, Any]) -> Table:

@@ -30,13 +30,14 @@ def ask(command: Sequence[str], sources: Sequence[Any], options: Mapping[str, An
     """The answer of a command on files and records, with its options."""
     given = dict(options)
     made: Made = []
-    places = [_place(source, given, made) for source in sources]
+    flat = [part for source in sources for part in (source if _are_files(source) else [source])]
+    places = [_place(source, given, made) for source in flat]
     if made:
         stated = [name for name in OF_FILES if given.get(name)]
         if stated:
             raise BadInput(f"{stated[0]}= says how a file is read, and this record is in memory")
         given.pop("rate", None)
-        if any(isinstance(source, np.ndarray) or _is_numbers(source) for source in sources):
+        if any(_is_numbers(source) for source in flat):
             given.pop("unit", None)
     typed = [*command, *words(given)] + (["--", *places] if places else [])
     bar = Bar()
@@ -47,7 +48,15 @@ def ask(command: Sequence[str], sources: Sequence[Any], options: Mapping[str, An
     return answer
 
 
+def _are_files(source: Any) -> bool:
+    """Whether a source is a list of files, each a source of its own."""
+    is_list = isinstance(source, (list, tuple)) and len(source) > 0
+    return is_list and all(isinstance(part, (str, PathLike)) for part in source)
+
+
 def _is_numbers(source: Any) -> bool:
+    if isinstance(source, (list, tuple)) and any(isinstance(part, Record) for part in source):
+        return False
     return not isinstance(source, (str, PathLike, Record, Recording))
 
 
@@ -75,13 +84,19 @@ def _place(source: Any, options: Mapping[str, Any], made: Made) -> str:
 
 def _of_array(source: Any, options: Mapping[str, Any]) -> list[Record]:
     """The records of an array: one dimension, or a row for each channel."""
-    array = np.asarray(source)
-    if array.dtype.kind not in "biufc":
-        raise BadInput(f"{type(source).__name__}; expected a file, a record, or numbers")
-    unit = options.get("unit") or ""
+    rate, unit = options.get("rate"), options.get("unit") or ""
+    over_time = str(getattr(getattr(source, "index", None), "name", "")) in ("time [s]", "frequency [Hz]")
+    if over_time and rate is None:
+        columns = [source[name] for name in source.columns] if hasattr(source, "columns") else [source]
+        return [Record.from_pandas(column, unit=unit or None) for column in columns]
+    try:
+        array = np.asarray(source)
+    except ValueError:
+        raise BadInput("rows of different lengths; expected channels of one length") from None
+    if array.dtype.kind not in "biufc" or array.ndim == 0:
+        raise BadInput(f"{source!r:.60}; expected a file, a record, or numbers")
     if not isinstance(unit, str):
-        raise BadInput("several units for an array; expected one")
-    rate = options.get("rate")
+        raise BadInput("several units for an array; expected one: a record for each, Record.of(array, rate=…, unit=…)")
     if array.ndim == 1:
         return [Record.of(array, rate=rate, unit=unit)]
     if array.ndim == 2:

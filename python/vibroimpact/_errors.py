@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 
 class VibroError(Exception):
     """No answer. ``code`` names the finding, where it has a code; ``hint`` says what to try."""
@@ -10,9 +12,12 @@ class VibroError(Exception):
     hint: str
 
     def __init__(self, text: str, code: str | None = None, hint: str = "") -> None:
-        super().__init__(text)
+        super().__init__(spoken(text))
         self.code = code
-        self.hint = hint
+        self.hint = spoken(hint)
+
+    def __reduce__(self) -> tuple[type[VibroError], tuple[str, str | None, str]]:
+        return type(self), (str(self), self.code, self.hint)
 
 
 class Refused(VibroError):
@@ -21,3 +26,29 @@ class Refused(VibroError):
 
 class BadInput(VibroError, ValueError):
     """A file, a record or an argument is not what it should be."""
+
+
+def spoken(text: str) -> str:
+    """A message for a person at a command line, with functions and keyword arguments in place of its words."""
+
+    def called(found: re.Match[str]) -> str:
+        name, rest = found[1], (found[2] or "").strip()
+        if rest == "--help":
+            return f"help(vibroimpact.{name})"
+        if name == "run":
+            return f"vibroimpact.Campaign({rest!r}).run()"
+        return f"vibroimpact.{_FUNCTIONS.get(name, name)}" + (f" ({rest})" if rest else "")
+
+    def argument(found: re.Match[str]) -> str:
+        name, value = found[1].replace("-", "_"), (found[2] or "").strip(" =")
+        if re.fullmatch(r"<.*>|[A-Z:]+|is|stands|has|needs|without", value):
+            return f"{name}= {value}".strip() if value.islower() else f"{name}="
+        return f"{name}={value}" if _NUMBER.fullmatch(value) else f"{name}={value!r}" if value else f"{name}="
+
+    text = re.sub(r"\bvibro --help", "help(vibroimpact)", text)
+    text = re.sub(r"\bvibro ([a-z]+)((?: --help| [^\s`,;.:()]+(?:\.[a-z]+)?)?)", called, text)
+    return re.sub(r"--([a-z][a-z-]+)((?:=| )(?:<[^>]*>|[^\s`,;()]+))?", argument, text)
+
+
+_NUMBER = re.compile(r"[+-]?[0-9.]+(e[+-]?[0-9]+)?")
+_FUNCTIONS = {"info": "read", "convert": "write", "model": "Rig", "init": "Campaign"}

@@ -11,7 +11,8 @@ from statistics import NormalDist
 class Estimate:
     """A value with its standard uncertainty, which prints as ``5.51446(45) Hz``.
 
-    ``float(estimate)`` is its value.
+    ``float(estimate)`` is its value, and values are compared. There is no arithmetic: numbers of one answer
+    are correlated, so that their uncertainties do not add as those of independent ones.
     """
 
     value: float
@@ -43,6 +44,18 @@ class Estimate:
 
     def __float__(self) -> float:
         return float(self.value)
+
+    def __lt__(self, other: float | Estimate) -> bool:
+        return float(self) < float(other)
+
+    def __le__(self, other: float | Estimate) -> bool:
+        return float(self) <= float(other)
+
+    def __gt__(self, other: float | Estimate) -> bool:
+        return float(self) > float(other)
+
+    def __ge__(self, other: float | Estimate) -> bool:
+        return float(self) >= float(other)
 
     def __str__(self) -> str:
         unit = "" if self.unit in ("", "1") else f" {self.unit}"

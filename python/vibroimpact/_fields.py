@@ -9,11 +9,12 @@ class Fields(dict[str, Any]):
     """Named values: ``fields.name`` and ``fields["name"]`` are the same."""
 
     def __getattr__(self, name: str) -> Any:
-        try:
-            return self[name]
-        except KeyError:
-            known = ", ".join(self)
-            raise AttributeError(f"no {name!r}; there are {known}") from None
+        if name.startswith("__") or name not in self:
+            raise AttributeError(f"no {name!r}; there are {', '.join(self)}")
+        return self[name]
+
+    def __missing__(self, name: str) -> Any:
+        raise KeyError(f"no {name!r}; there are {', '.join(self)}")
 
     def __dir__(self) -> list[str]:
         return [*super().__dir__(), *(key for key in self if key.isidentifier())]

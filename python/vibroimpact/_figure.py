@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import json
-from os import PathLike
+from os import PathLike, fspath
 from pathlib import Path
 from typing import Any
 
+from ._errors import BadInput
 from ._native import Drawing
 
 
@@ -32,10 +33,12 @@ class Figure:
         return self._drawing.svg()
 
     def save(self, path: str | PathLike[str]) -> None:
-        """Writes the SVG into a new file.
+        """Writes the drawing into a new file that ends in .svg.
 
-        Raises ``FileExistsError`` where there is a file of this name.
+        Raises ``BadInput`` for another ending, ``FileExistsError`` where there is a file of this name.
         """
+        if Path(path).suffix.lower() != ".svg":
+            raise BadInput(f"{fspath(path)} does not end in .svg; for pixels: .plot().figure.savefig(…)")
         with Path(path).open("x", encoding="utf-8") as file:
             file.write(self.svg())
 
@@ -47,7 +50,8 @@ class Figure:
     def plot(self, ax: Any = None) -> Any:
         """Draws the panels with matplotlib: the first on ``ax``, or all on a new figure.
 
-        Returns the axes that were drawn on. Waterfalls and maps of classes are left out: they are in ``svg()``.
+        Returns the first axes that were drawn on; ``.figure.axes`` has all. Waterfalls and maps of classes are
+        left out: they are in ``svg()``.
         """
         panels = [panel["Plot"] for panel in self.data()["panels"] if "Plot" in panel]
         if not panels:
@@ -60,7 +64,10 @@ class Figure:
         _, axes = plt.subplots(len(panels), squeeze=False, layout="constrained")
         for panel, at in zip(panels, axes[:, 0], strict=True):
             _draw(panel, at)
-        return axes[0, 0] if len(panels) == 1 else list(axes[:, 0])
+        return axes[0, 0]
+
+    def __reduce__(self) -> tuple[type[Figure], tuple[str, Drawing]]:
+        return Figure, (self.name, self._drawing)
 
     def __repr__(self) -> str:
         return f"<Figure {self.name}: {self.title}>"

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, overload
 import numpy as np
 import numpy.typing as npt
 
-from ._answer import Finding
+from ._answer import Finding, finding
 from ._errors import BadInput
 from ._fields import Fields
 from ._figure import Figure
@@ -62,14 +62,13 @@ class Record:
 
         Raises ``BadInput`` where the unit is not known, or values and axis differ in length.
         """
-        array = np.asarray(values)
-        array = np.array(array, complex if np.iscomplexobj(array) else float)
+        array = numbers(values)
         if array.ndim != 1:
             raise BadInput(f"values of shape {array.shape}; expected one dimension, a record for each channel")
         if sum(stated is not None for stated in (rate, time, frequency)) > 1:
             raise BadInput("more than one of rate, time and frequency; expected one of them")
         over = time if time is not None else frequency
-        at = None if over is None else np.asarray(over, float)
+        at = None if over is None else numbers(over)
         if at is not None and at.shape != array.shape:
             raise BadInput(f"{len(array)} values over an axis of {at.size}; expected equal numbers")
         if kind is None:
@@ -78,8 +77,8 @@ class Record:
             kind = "complex spectrum"
         if kind == "trace" and np.iscomplexobj(array):
             raise BadInput("complex values over time; expected real ones, or frequency=")
-        if rate is not None and not (np.isfinite(rate) and rate > 0):
-            raise BadInput(f"rate is {rate} Hz; expected a number above 0")
+        if rate is not None:
+            rate = above_zero("rate", rate)
         even = None if rate is None else (start, 1.0 / rate)
         head, factor = Head.made(kind, len(array), name, unit, even, None if at is None else at.tolist())
         if factor != 1.0:
@@ -146,7 +145,7 @@ class Record:
     @property
     def findings(self) -> list[Finding]:
         """What must be known before the values are trusted."""
-        return [Finding(*told, self.name) for told in self._head.findings()]
+        return [finding(told, self.name) for told in self._head.findings()]
 
     def figure(self) -> Figure:
         """The values over their axis; of complex values the magnitude."""
@@ -173,6 +172,22 @@ class Record:
         series = pandas.Series(self.values, index=index, name=self.name or None, copy=False)
         series.attrs.update(unit=self.unit, quantity=self.quantity)
         return series
+
+    @classmethod
+    def from_pandas(cls, series: pandas.Series[Any], *, unit: str | None = None) -> Record:
+        """The record of a series whose index is named ``time [s]`` or ``frequency [Hz]``, as ``to_pandas`` makes it.
+
+        Its unit is that of ``attrs["unit"]``, unless ``unit`` states it.
+
+        Raises ``BadInput`` where the index has another name.
+        """
+        over = {"time [s]": "time", "frequency [Hz]": "frequency"}.get(str(series.index.name))
+        if over is None:
+            raise BadInput(f"an index named {series.index.name!r}; expected 'time [s]' or 'frequency [Hz]'")
+        stated = str(series.attrs.get("unit", "")) if unit is None else unit
+        name = "" if series.name is None else str(series.name)
+        at: dict[str, Any] = {over: series.index.to_numpy()}
+        return cls.of(series.to_numpy(), unit=stated, name=name, **at)
 
     def to_xarray(self) -> xarray.DataArray:
         """An array with its axis as coordinate; ``attrs`` have the units."""
@@ -202,7 +217,7 @@ class Record:
         rate, time = series.get("fs"), series.get("time")
         if rate is None and time is None:
             raise BadInput("neither 'fs' nor 'time'; expected one of them")
-        given = {"rate": rate} if rate is not None else {"time": time}
+        given: dict[str, Any] = {"rate": rate} if rate is not None else {"time": time}
         return cls.of(series["data"], unit=series.get("unit_str", ""), name=series.get("name", ""), **given)
 
     def __array__(self, dtype: Any = None, copy: bool | None = None) -> Array:
@@ -290,7 +305,7 @@ def read_file(path: str | PathLike[str], options: Mapping[str, Any]) -> Recordin
         format, findings, records = _read(fspath(path), words(options), bar)
     finally:
         bar.clear()
-    found = [Finding(*told) for told in findings]
+    found = [finding(told) for told in findings]
     return Recording(fspath(path), format, found, (Record(head, values) for head, values in records))
 
 
@@ -310,6 +325,9 @@ def write(
     Raises ``BadInput`` for another ending, for records that the format cannot hold, or a file that is there.
     """
     all_records = [records] if isinstance(records, Record) else list(records)
+    other = next((record for record in all_records if not isinstance(record, Record)), None)
+    if other is not None:
+        raise BadInput(f"{type(other).__name__}; expected records: make one by Record.of(array, rate=…, unit=…)")
     _write(fspath(path), [(r._head, _plain(r)) for r in all_records], single, binary, replace)
 
 
@@ -321,6 +339,34 @@ def write_uff(
     Raises ``BadInput`` as ``write``.
     """
     write(path, records, binary=binary, replace=replace)
+
+
+def numbers(values: Any) -> Array:
+    """A new array of float or complex.
+
+    Raises ``BadInput`` where the values are no numbers.
+    """
+    try:
+        array = np.asarray(values)
+        if array.dtype.kind not in "biufc":
+            raise TypeError
+        return np.array(array, complex if np.iscomplexobj(array) else float)
+    except (TypeError, ValueError):
+        raise BadInput(f"{type(values).__name__}; expected numbers in one dimension") from None
+
+
+def above_zero(name: str, value: Any) -> float:
+    """A number above 0.
+
+    Raises ``BadInput`` where it is none.
+    """
+    try:
+        number = float(value) if not isinstance(value, str) else float("nan")
+    except (TypeError, ValueError):
+        number = float("nan")
+    if not (np.isfinite(number) and number > 0):
+        raise BadInput(f"{name} is {value!r}; expected a number above 0")
+    return number
 
 
 def _plain(record: Record) -> Array:

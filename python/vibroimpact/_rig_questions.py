@@ -54,7 +54,7 @@ class RigQuestions:
         impulse: float | None = None,
         width: float | None = None,
         frequency: float | None = None,
-        model: str | float | None = None,
+        model: str | None = None,
         cycles: int | None = None,
         settle: int | None = None,
         initial: str | Sequence[str | float] | None = None,
@@ -95,8 +95,6 @@ class RigQuestions:
         gap_std: float | None = None,
     ) -> Answer:
         """All motions with one impact a period over frequency, with folds and stability limits.
-
-        ``sweep`` is a list file, campaign.toml#name, a folder, or the files of its steps.
 
         Numbers are in SI units. Raises ``Refused`` where the data allow no answer, and ``BadInput`` where a
         file or an argument is not what it should be.
@@ -150,7 +148,7 @@ class RigQuestions:
         force: float | None = None,
         impulse: float | None = None,
         width: float | None = None,
-        over: str | float | None = None,
+        over: str | None = None,
         frequency: float | None = None,
         impacts: int | None = None,
         cycles: int | None = None,
@@ -184,16 +182,16 @@ class RigQuestions:
         force: float | None = None,
         impulse: float | None = None,
         width: float | None = None,
-        over: str | float | None = None,
+        over: str | None = None,
         frequency: float | None = None,
-        model: str | float | None = None,
-        direction: str | float | None = None,
+        model: str | None = None,
+        direction: str | None = None,
         start: str | Sequence[str | float] | None = None,
         sweep_rate: float | None = None,
         steps: int | None = None,
         settle: int | None = None,
         measure: int | None = None,
-        observable: str | float | None = None,
+        observable: str | None = None,
     ) -> Answer:
         """Simulated sweep of frequency or force; the state carries over from step to step.
 
@@ -232,11 +230,11 @@ class RigQuestions:
         from_: float | None = None,
         to: float | None = None,
         points: int | None = None,
-        observable: str | float | None = None,
+        observable: str | None = None,
         tolerance: float | None = None,
         noise_floor: float | None = None,
         gap_std: float | None = None,
-        history: str | float | None = None,
+        history: str | None = None,
     ) -> Answer:
         """The simplest adequate model of a scene, and why.
 

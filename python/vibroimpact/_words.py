@@ -8,6 +8,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ._errors import BadInput
+
 
 class Joined(NamedTuple):
     """Values that are typed as one word with a mark between them."""
@@ -43,7 +45,10 @@ def word(value: Any) -> str:
         return str(bool(value)).lower()
     if isinstance(value, (int, np.integer)):
         return str(int(value))
-    return repr(float(value))
+    try:
+        return repr(float(value))
+    except (TypeError, ValueError):
+        raise BadInput(f"{value!r:.60}; expected a number or a name") from None
 
 
 def _joined(joined: Joined) -> str:
