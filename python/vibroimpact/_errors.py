@@ -33,22 +33,31 @@ def spoken(text: str) -> str:
 
     def called(found: re.Match[str]) -> str:
         name, rest = found[1], (found[2] or "").strip()
+        name = _FUNCTIONS.get(name, name)
         if rest == "--help":
             return f"help(vibroimpact.{name})"
-        if name == "run":
+        if name == "Campaign" and rest:
             return f"vibroimpact.Campaign({rest!r}).run()"
-        return f"vibroimpact.{_FUNCTIONS.get(name, name)}" + (f" ({rest})" if rest else "")
+        return f"vibroimpact.{name}" + (f" ({rest})" if rest else "")
 
     def argument(found: re.Match[str]) -> str:
         name, value = found[1].replace("-", "_"), (found[2] or "").strip(" =")
-        if re.fullmatch(r"<.*>|[A-Z:]+|is|stands|has|needs|without", value):
-            return f"{name}= {value}".strip() if value.islower() else f"{name}="
-        return f"{name}={value}" if _NUMBER.fullmatch(value) else f"{name}={value!r}" if value else f"{name}="
+        if value in ("is", "stands", "has", "needs", "without"):
+            return f"{name} {value}"
+        if not value or re.fullmatch(r"<.*>|[A-Z:]+", value):
+            return f"{name}="
+        return f"{name}={value if _NUMBER.fullmatch(value) else repr(value)}"
 
     text = re.sub(r"\bvibro --help", "help(vibroimpact)", text)
-    text = re.sub(r"\bvibro ([a-z]+)((?: --help| [^\s`,;.:()]+(?:\.[a-z]+)?)?)", called, text)
-    return re.sub(r"--([a-z][a-z-]+)((?:=| )(?:<[^>]*>|[^\s`,;()]+))?", argument, text)
+    text = re.sub(r"\bvibro needs <([A-Z]+)>\.*", lambda found: f"no {found[1].lower()} is named", text)
+    text = re.sub(r"\bvibro (" + "|".join(_COMMANDS) + r")\b( [^\s`,;()]+)?", called, text)
+    text = re.sub(r"--([a-z][a-z-]+)((?:=| )(?:<[^>]*>|[^\s`,;()]+))?", argument, text)
+    return re.sub(r"try: ls\b *(.*)", lambda found: f"try: os.listdir({found[1] or '.'!r})", text)
 
 
+_COMMANDS = (
+    *("info", "convert", "spectrum", "modal", "impacts", "restitution", "pulse", "decay", "drill", "response"),
+    *("waterfall", "excitation", "compare", "model", "run", "init", "demo"),
+)
 _NUMBER = re.compile(r"[+-]?[0-9.]+(e[+-]?[0-9]+)?")
-_FUNCTIONS = {"info": "read", "convert": "write", "model": "Rig", "init": "Campaign"}
+_FUNCTIONS = {"info": "read", "convert": "write", "model": "Rig", "init": "Campaign", "run": "Campaign"}
