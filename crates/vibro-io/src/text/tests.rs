@@ -1149,7 +1149,9 @@ fn a_row_of_units_that_contradicts_a_name_is_said() {
     let found = of(format!("Time [s],Acc [m/s²]\ns,g\n{rows}"));
     assert!(has_finding(&found.all_findings(), "unit-row-differs", &["head=m/s²", "used=g"]));
     let times = of(format!("Time [s],Acc [g]\nms,g\n{rows}"));
-    assert!(has_finding(&times.all_findings(), "unit-row-differs", &["head=s", "used=ms"]));
+    assert!(has_finding(&times.all_findings(), "axis-row-differs", &["head=s", "used=ms"]));
+    let other = of(format!("Time [s],Acc [m/s²]\ns,mm/s\n{rows}"));
+    assert!(has_finding(&other.all_findings(), "quantity-row-differs", &["head=m/s²", "used=mm/s"]));
     let same = of(format!("Time [s],Acc [m/s²]\ns,m/s²\n{rows}"));
     assert!(same.all_findings().is_empty(), "{:?}", same.all_findings());
     assert_eq!(same.records[0].meta().name, "Acc");
