@@ -6,8 +6,7 @@ mod taker;
 
 use super::answered::answered;
 use super::excitation::{Excitation, each, excitations};
-use super::jump::Point;
-use super::resonance::{NamedCurve, Resonance, resonances};
+use super::resonance::{NamedCurve, Resonance};
 use crate::line::deviation;
 use num_complex::Complex64;
 pub use result::{Harmonic, Receptance, Response, ResponsePoint};
@@ -15,9 +14,7 @@ use std::cmp::Ordering;
 use steady::SteadyLine;
 use taker::Taker;
 use vibro_record::units::Quantity;
-use vibro_record::{
-    Direction, Doubt, Error, Finding, Result, Step, Sweep, SweepPoint, Window, median, sort_by_number,
-};
+use vibro_record::{Direction, Doubt, Error, Finding, Result, Step, Sweep, SweepPoint, Window, median};
 
 /// Options of a response curve.
 #[derive(Debug, Clone, PartialEq)]
@@ -166,10 +163,7 @@ impl Response {
             let receptance = |p: &ResponsePoint| p.receptance.as_ref().map(|r| Complex64::new(r.re, r.im));
             let receptances: Option<Vec<Complex64>> = points.iter().map(receptance).collect();
             let receptances = receptances.unwrap_or_default();
-            let mut curve = NamedCurve::new(points.iter().map(at).collect(), &receptances, direction, *mass);
-            if !receptances.is_empty() {
-                curve.resonances = by_own_noise(points, &curve);
-            }
+            let curve = NamedCurve::new(points.iter().map(at).collect(), &receptances, direction, *mass);
             // Two steps at one frequency prevent an interpolation there, however fine the other steps are.
             let alone = |f: f64| points.iter().filter(|p| p.excitation == f).count() == 1;
             let coarse = curve.resonances.iter().filter(|r| r.is_largest_point()).map(|r| r.frequency);
@@ -185,28 +179,6 @@ impl Response {
         self.direction = direction;
         self
     }
-}
-
-/// Resonances of a curve with these jumps, by the noise of each step alone. A force that drifts within every
-/// step moves all amplitudes alike, and the resonance not: the noise is that of the receptance, in which the
-/// force cancels. The height of a resonance has the uncertainty that the steps share.
-fn by_own_noise(points: &[ResponsePoint], curve: &NamedCurve) -> Vec<Resonance> {
-    let split = |p: &ResponsePoint| {
-        let (size, std) = (p.amplitude.value, p.amplitude.std.unwrap_or(f64::NAN));
-        let own = p.receptance.and_then(|r| Some(r.std? / r.re.hypot(r.im) * size));
-        let own = own.filter(|own| *own < std).unwrap_or(std);
-        ((p.excitation, size, own), (std * std - own * own).sqrt() / size)
-    };
-    let mut steps: Vec<(Point, f64)> = points.iter().map(split).collect();
-    sort_by_number(&mut steps, |step| step.0.0);
-    let own: Vec<Point> = steps.iter().map(|step| step.0).collect();
-    let mut found = resonances(&own, &curve.jumps, curve.mass);
-    for resonance in &mut found {
-        let above = own.partition_point(|p| p.0 < resonance.frequency).min(own.len() - 1);
-        let shared = steps[above].1 * resonance.amplitude;
-        resonance.amplitude_std = resonance.amplitude_std.map(|std| std.hypot(shared));
-    }
-    found
 }
 
 /// Caution on the peak that a changing force moves most: the response per newton peaks elsewhere by more

@@ -117,30 +117,6 @@ fn uncertainties_under_growing_forces_cover_the_truth() {
     assert!(within > 0.93, "{within}");
 }
 
-/// Growth of 2 % in every step moves all amplitudes alike: the height of a resonance, and not its place.
-#[test]
-fn a_force_that_grows_in_every_step_leaves_the_place_of_the_resonance() {
-    let resonance = |growth: f64| {
-        let mut noise = Noise::new(8);
-        let steps = (0..9).map(|k| {
-            let mut step = step(28.5 + 0.375 * f64::from(k), 4.0, 0.0, (1e-3, &mut noise));
-            for trace in [&mut step.force, &mut step.response] {
-                let grows = |i: usize| (growth * i as f64 / 2000.0).exp();
-                trace.values.iter_mut().enumerate().for_each(|(i, v)| *v *= grows(i));
-            }
-            step
-        });
-        response_of(&steps.collect::<Vec<_>>()).resonances[0].clone()
-    };
-    let (still, grown) = (resonance(0.0), resonance(0.005));
-    let highest = OWN * (1.0 - 2.0 * ZETA * ZETA).sqrt();
-    for found in [&still, &grown] {
-        assert!((found.frequency - highest).abs() < 4.0 * found.frequency_std.unwrap(), "{found:?}");
-    }
-    assert!(grown.frequency_std < still.frequency_std.map(|std| 1.5 * std), "{still:?} {grown:?}");
-    assert!(grown.amplitude_std > still.amplitude_std.map(|std| 3.0 * std), "{still:?} {grown:?}");
-}
-
 fn named() -> Sweep {
     Sweep {
         name: "up".into(),
