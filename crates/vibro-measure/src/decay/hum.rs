@@ -107,7 +107,7 @@ impl SineGroup {
         let parts = columns.flat_map(|[a, b]| [a.re, b.re, a.im, b.im]);
         let columns = DMatrix::from_row_iterator(2 * self.lines.len(), 2, parts);
         let jacobian = self.fit.jacobian.rows(0, 2 * self.lines.len());
-        let own = &columns - &jacobian * (&self.fit.cofactor * jacobian.tr_mul(&columns));
+        let own = &columns - jacobian * (&self.fit.cofactor * jacobian.tr_mul(&columns));
         let along = Vector2::from_fn(|i, _| {
             own.column(i).iter().zip(&self.fit.residuals).map(|(own, left)| own * left).sum::<f64>()
         });

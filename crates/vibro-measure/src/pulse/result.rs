@@ -85,7 +85,9 @@ impl Uncertain for PulseFit {
     }
 
     fn doubt_scale(&mut self) {
-        ["baseline", "initial_velocity"].iter().for_each(|name| self.parameters.get_mut(name).doubt());
+        for name in ["baseline", "initial_velocity"] {
+            self.parameters.get_mut(name).doubt();
+        }
     }
 }
 
