@@ -12,7 +12,7 @@ use serde_json::Value;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::process::Command;
-use vibroimpact::record::code::READER_DOUBTS;
+use vibroimpact::record::code::{READER_DOUBTS, UNIT_DOUBTS};
 
 /// Doubts that no case here provokes, each with the reason.
 const NOT_PROVOKED: [(&str, &str); 18] = [
@@ -96,6 +96,19 @@ fn provoke(cases: &[Case]) {
 fn no_number_has_an_uncertainty_beside_a_doubt_about_it() {
     let folder = tempfile::tempdir().unwrap();
     provoke(&cases(folder.path()));
+}
+
+#[test]
+fn a_doubt_about_the_unit_leaves_what_does_not_depend_on_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let cases = cases(folder.path());
+    let of_units = cases.iter().filter(|case| case.codes.iter().any(|code| UNIT_DOUBTS.contains(code)));
+    let found: Vec<Value> = of_units.map(|case| answer(&case.arguments)["modes"][0].take()).collect();
+    assert_eq!(found.len(), 2);
+    for mode in found {
+        let known = ["frequency", "zeta", "phase", "amplitude"].map(|key| mode[key]["std"].is_number());
+        assert_eq!(known, [true, true, true, false], "{mode}");
+    }
 }
 
 #[test]

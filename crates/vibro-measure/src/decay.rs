@@ -6,12 +6,14 @@
 //! damped sines). The residual of the lines beside a sine is its noise.
 
 mod damped;
+mod hum;
 mod result;
 mod sines;
 mod usable;
 
 use super::Estimate;
 use super::chance::chi_squared_above;
+use super::mains::Hum;
 use damped::{Damped, LINES, OWN, SineGroup, lines};
 pub use result::{DecayMode, DecayOptions, DecayResult, Level};
 use sines::{ENOUGH, MOST, STEADY, SURE, Sines, decays};
@@ -101,6 +103,13 @@ impl Sines {
             let of_all: &mut [&mut dyn Uncertain] = &mut [mode, &mut decrement];
             findings.extend(changes.map(|doubt| doubt.of(of_all)));
         }
+        let seen = self.groups.iter().flat_map(|group| &group.hum).filter(|hum| hum.seen);
+        let hum = seen.map(|hum| Hum {
+            frequency: hum.sine.periods * self.rate / self.n as f64,
+            amplitude: hum.sine.amplitude.norm(),
+            harmonics: 1,
+        });
+        findings.extend(hum.map(|hum| hum.removed(unit)));
         sort_by_number(&mut modes, |a| a.frequency.value);
         let left = self.left(&trace.values[part.clone()]);
         let record = trace.values[part.clone()].to_vec();
@@ -190,7 +199,7 @@ impl Sines {
             let centre = starts[0].0 as usize;
             let range = centre.saturating_sub(LINES.0 as usize).max(1)
                 ..(centre + LINES.0 as usize + 2).min(spectrum.len() - 1);
-            let group = SineGroup::fit(&spectrum, range.clone(), n, &starts).ok()?;
+            let group = SineGroup::fit(&spectrum, range.clone(), n, &starts, &[]).ok()?;
             let mode = mode(&group, 0, n, self.rate, unit);
             // A fit that has left these lines has found another mode.
             let own = range.contains(&(group.sines[0].periods.max(0.0) as usize));

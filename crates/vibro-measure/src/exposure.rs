@@ -112,7 +112,7 @@ impl WeightedAxis {
     }
 }
 
-uncertain!(Exposure: axes, a_hv, a8);
+uncertain!(Exposure: ; scaled: axes, a_hv, a8);
 
 /// Records shorter than this, in s, are unlikely to be reliable (ISO 5349-2:2001, 5.4.1).
 const SHORT: f64 = 8.0;

@@ -30,7 +30,7 @@ pub struct Jump {
 }
 
 // Its frequency lies between two steps, whatever their amplitudes.
-uncertain!(Jump: amplitude_before_std, amplitude_after_std);
+uncertain!(Jump: ; scaled: amplitude_before_std, amplitude_after_std);
 
 /// Least factor by which a jump changes the amplitude.
 const JUMP: f64 = 1.5;

@@ -7,6 +7,14 @@ use vibro_record::Finding;
 pub(crate) const MAINS: [f64; 2] = [50.0, 60.0];
 /// Highest harmonic of the mains that is looked for, the fundamental included.
 pub(crate) const HARMONICS: usize = 7;
+/// Largest deviation of the mains from a nominal frequency during a record, in Hz.
+const TOLERANCE: f64 = 0.2;
+
+/// Nominal frequencies of the mains and their harmonics, and the largest deviations from them, in Hz.
+pub(crate) fn harmonics() -> impl Iterator<Item = (f64, f64)> {
+    let orders = |mains: f64| (1..=HARMONICS).map(move |k| (mains * k as f64, TOLERANCE * k as f64));
+    MAINS.into_iter().flat_map(orders)
+}
 
 /// A fitted mains sine.
 #[derive(Debug, Clone, PartialEq, Serialize)]

@@ -124,8 +124,9 @@ pub(crate) fn lowest(x: &[f64], y: &[f64], (low, high): (f64, f64)) -> Option<(f
 /// So the polynomial in f² through up to two points on each side is used: exact for one mode at any spacing.
 /// Its uncertainty combines the propagated uncertainties of the heights with the choice of points. For the
 /// latter, the largest distance to the polynomials through the highest point and its neighbours, and through
-/// one point less, counts as the half-width of a rectangular distribution. (Contact makes a resonance lean;
-/// higher orders then decrease slowly, and two orders may agree by chance.) The answer is that of
+/// one point less, as far as it exceeds its noise, counts as the half-width of a rectangular distribution.
+/// (Contact makes a resonance lean; higher orders then decrease slowly, and two orders may agree by
+/// chance.) The answer is that of
 /// [`vertex`], with the uncertainty of a lean that three points cannot show, where the points beside `i` are
 /// below half of it, where there are only three, or where the polynomial has no single vertex.
 pub(crate) fn apex(points: &[Point], i: usize) -> Option<Vertex> {
@@ -170,31 +171,39 @@ fn leaning(vertex: Vertex, f: [f64; 3], a: [f64; 3]) -> Vertex {
 /// through all points has no single vertex.
 fn fitted(points: &[Point], i: usize) -> Option<[(f64, f64); 2]> {
     let beside = (points[i - 1].0, points[i + 1].0);
-    let found = extremum(points, beside)?;
     let n = points.len();
-    let mut open = [0.0f64; 2];
     // All subsets keep the neighbours of the highest point: without one the polynomial would be
     // extrapolated.
-    for fewer in [i - 1..i + 2, usize::from(i > 1)..n, 0..n - usize::from(i + 2 < n)] {
-        let rival = extremum(&points[fewer], beside)?;
+    let subsets = [0..n, i - 1..i + 2, usize::from(i > 1)..n, 0..n - usize::from(i + 2 < n)];
+    let vertices = |points: &[Point]| {
+        let each = subsets.iter().map(|subset| extremum(&points[subset.clone()], beside));
+        each.collect::<Option<Vec<[f64; 2]>>>()
+    };
+    let found = vertices(points)?;
+    // Variance of the vertex by all points, and of the distance of each vertex to it.
+    let (mut variance, mut of_distance) = ([0.0; 2], vec![[0.0; 2]; subsets.len()]);
+    let mut moved = points.to_vec();
+    for (k, point) in points.iter().enumerate() {
+        moved[k].1 += point.2;
+        let other = vertices(&moved)?;
+        moved[k].1 = point.1;
         for q in 0..2 {
-            open[q] = open[q].max((rival[q] - found[q]).abs());
+            let own = other[0][q] - found[0][q];
+            variance[q] += own * own;
+            for (sum, (other, found)) in of_distance.iter_mut().zip(other.iter().zip(&found)) {
+                sum[q] += (other[q] - found[q] - own).powi(2);
+            }
         }
     }
     // With four points only one order can be compared, and it may agree by chance: the whole distance
     // counts.
     let share = if n > 4 { 1.0 / 3.0 } else { 1.0 };
-    let mut variance = open.map(|o| share * o * o);
-    let mut moved = points.to_vec();
-    for (k, point) in points.iter().enumerate() {
-        moved[k].1 += point.2;
-        let other = extremum(&moved, beside)?;
-        moved[k].1 = point.1;
-        for q in 0..2 {
-            variance[q] += (other[q] - found[q]).powi(2);
-        }
+    for q in 0..2 {
+        // The mean square of a distance is that of the choice of points, and its variance by noise.
+        let choice = |(rival, noise): (&[f64; 2], &[f64; 2])| (rival[q] - found[0][q]).powi(2) - noise[q];
+        variance[q] += share * found.iter().zip(&of_distance).map(choice).fold(0.0, f64::max);
     }
-    variance.iter().all(|v| v.is_finite()).then(|| [0, 1].map(|q| (found[q], variance[q].sqrt())))
+    variance.iter().all(|v| v.is_finite()).then(|| [0, 1].map(|q| (found[0][q], variance[q].sqrt())))
 }
 
 /// Where the polynomial through 1/height² is lowest between the points beside the highest, and the height

@@ -25,7 +25,7 @@ pub struct Resonance {
     pub at_jump: bool,
 }
 
-uncertain!(Resonance: frequency_std, amplitude_std);
+uncertain!(Resonance: frequency_std; scaled: amplitude_std);
 
 /// Kind of a maximum or minimum of a response curve.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]

@@ -333,7 +333,7 @@ struct Phasor {
     whiteness: Whiteness,
 }
 
-uncertain!(Phasor: std, across);
+uncertain!(Phasor: ; scaled: std, across);
 
 impl Phasor {
     fn of(all: &[Complex64]) -> Phasor {

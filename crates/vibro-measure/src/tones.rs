@@ -67,7 +67,7 @@ pub struct Tone {
     pub phase: Estimate,
 }
 
-uncertain!(Tone: frequency, amplitude, phase);
+uncertain!(Tone: frequency, phase; scaled: amplitude);
 
 /// Sines of a record, and the residual noise.
 #[derive(Debug, Clone, PartialEq)]

@@ -1,7 +1,7 @@
 //! Codes of findings that one part of the program adds and another part searches for.
 
 /// Doubts of the readers, about the times, the unit or single values of a record.
-pub const READER_DOUBTS: [&str; 15] = [
+pub const READER_DOUBTS: [&str; 17] = [
     "last-number-cut-off",
     "no-closing-line",
     "decibels-overruled",
@@ -14,10 +14,15 @@ pub const READER_DOUBTS: [&str; 15] = [
     "digits-may-be-grouped",
     "unit-head-differs",
     "unit-row-differs",
+    "quantity-row-differs",
+    "axis-row-differs",
     "sheet-in-percent",
     "missing-marked",
     "filled-with-zeros",
 ];
+
+/// Those of the readers' doubts that are about the unit of values alone: which factor takes them to SI.
+pub const UNIT_DOUBTS: [&str; 3] = ["unit-head-differs", "unit-row-differs", "sheet-in-percent"];
 
 /// Samples are missing in a record.
 pub const SAMPLES_LOST: &str = "samples-lost";

@@ -1,6 +1,6 @@
 //! Doubts: a finding that a number may be wrong, which cannot be made without taking its uncertainty away.
 
-use super::{Estimate, Finding};
+use super::{Estimate, Finding, code};
 use std::collections::BTreeMap;
 
 /// Numbers with standard uncertainties, which a [`Doubt`] about them takes away.
@@ -13,25 +13,36 @@ pub trait Uncertain {
     fn doubt_all(&mut self) {
         self.doubt();
     }
+
+    /// As [`Uncertain::doubt`], of the numbers that grow with the values of the record, where only their unit
+    /// is in doubt. A number by itself does not tell whether it does: its struct does.
+    fn doubt_scale(&mut self) {}
 }
 
-/// Implements [`Uncertain`] for a struct by its fields that have uncertainties.
+/// Implements [`Uncertain`] for a struct by its fields that have uncertainties; those that grow with the
+/// values of the record stand behind `scaled:`.
 ///
 /// ```
 /// use vibro_record::{Estimate, Finding, Uncertain, uncertain};
-/// struct Mode { frequency: Estimate, zeta: Option<Estimate>, lines: usize }
-/// uncertain!(Mode: frequency, zeta);
+/// struct Mode { frequency: Estimate, amplitude: Option<Estimate>, lines: usize }
+/// uncertain!(Mode: frequency; scaled: amplitude);
 /// let frequency = Estimate::new(50.0, Some(0.1), "Hz", 8, "line fit");
-/// let mut mode = Mode { frequency, zeta: None, lines: 8 };
+/// let mut mode = Mode { frequency, amplitude: None, lines: 8 };
 /// let found = Finding::doubt("two-modes").count("lines", mode.lines).of(&mut mode);
 /// assert_eq!((&*found.code, mode.frequency.std), ("two-modes", None));
 /// ```
 #[macro_export]
 macro_rules! uncertain {
-    ($type:ty: $($field:ident),+) => {
+    ($type:ty: $($field:ident),* $(; scaled: $($scaled:ident),+)?) => {
         impl $crate::Uncertain for $type {
             fn doubt(&mut self) {
-                $($crate::Uncertain::doubt(&mut self.$field);)+
+                $($crate::Uncertain::doubt(&mut self.$field);)*
+                $($($crate::Uncertain::doubt(&mut self.$scaled);)+)?
+            }
+
+            fn doubt_scale(&mut self) {
+                $($crate::Uncertain::doubt_scale(&mut self.$field);)*
+                $($($crate::Uncertain::doubt(&mut self.$scaled);)+)?
             }
         }
     };
@@ -50,11 +61,19 @@ impl<T: Uncertain> Uncertain for Option<T> {
     fn doubt(&mut self) {
         self.iter_mut().for_each(T::doubt);
     }
+
+    fn doubt_scale(&mut self) {
+        self.iter_mut().for_each(T::doubt_scale);
+    }
 }
 
 impl<T: Uncertain> Uncertain for [T] {
     fn doubt(&mut self) {
         self.iter_mut().for_each(T::doubt);
+    }
+
+    fn doubt_scale(&mut self) {
+        self.iter_mut().for_each(T::doubt_scale);
     }
 }
 
@@ -62,11 +81,19 @@ impl<T: Uncertain, const N: usize> Uncertain for [T; N] {
     fn doubt(&mut self) {
         self.as_mut_slice().doubt();
     }
+
+    fn doubt_scale(&mut self) {
+        self.as_mut_slice().doubt_scale();
+    }
 }
 
 impl<T: Uncertain> Uncertain for Vec<T> {
     fn doubt(&mut self) {
         self.as_mut_slice().doubt();
+    }
+
+    fn doubt_scale(&mut self) {
+        self.as_mut_slice().doubt_scale();
     }
 }
 
@@ -74,12 +101,20 @@ impl<K, T: Uncertain> Uncertain for BTreeMap<K, T> {
     fn doubt(&mut self) {
         self.values_mut().for_each(T::doubt);
     }
+
+    fn doubt_scale(&mut self) {
+        self.values_mut().for_each(T::doubt_scale);
+    }
 }
 
 /// Some of the numbers of an answer: `[&mut mode.frequency, &mut mode.zeta]`.
 impl<T: Uncertain + ?Sized> Uncertain for &mut T {
     fn doubt(&mut self) {
         (**self).doubt();
+    }
+
+    fn doubt_scale(&mut self) {
+        (**self).doubt_scale();
     }
 }
 
@@ -123,13 +158,18 @@ impl Doubt {
 }
 
 /// Takes the standard uncertainties of numbers away if a reader's finding on their record is a doubt: what is
-/// computed from values or times that may be wrong may be wrong by more.
+/// computed from values or times that may be wrong may be wrong by more. A unit that may be wrong leaves
+/// those that do not depend on it, such as frequencies and damping ratios.
 pub fn doubt_with_record<'a>(
     findings: impl IntoIterator<Item = &'a Finding>,
     numbers: &mut (impl Uncertain + ?Sized),
 ) {
-    if findings.into_iter().any(Finding::is_doubt) {
-        numbers.doubt_all();
+    for found in findings.into_iter().filter(|found| found.is_doubt()) {
+        if code::UNIT_DOUBTS.contains(&&*found.code) {
+            numbers.doubt_scale();
+        } else {
+            numbers.doubt_all();
+        }
     }
 }
 

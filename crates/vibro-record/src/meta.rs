@@ -157,6 +157,11 @@ impl Meta {
         self.history.iter().any(|step| step.name == "blows") || self.notes.iter().any(said)
     }
 
+    /// Number of blows over which it was averaged, from the history.
+    pub fn blows(&self) -> Option<usize> {
+        self.history.iter().rev().find(|step| step.name == "blows")?.argument("count")?.parse().ok()
+    }
+
     /// Takes over the unit that an instrument wrote: stores its SI unit and quantity, notes the conversion in
     /// the history, and returns the factor by which the values must be multiplied. An unknown unit is kept,
     /// with a finding and factor 1.

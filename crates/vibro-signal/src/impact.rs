@@ -174,7 +174,10 @@ pub fn from_blows(
     let averages = sums.mean(&vec![1.0; how.length], apart, rate, true);
     let metas: [Meta; 2] = [force.meta.clone(), response.meta.clone()];
     let mut transfer = transfer(&averages, 1, &metas, estimator)?;
-    transfer.frf.meta.step("blows", &[("length", &how.length), ("before", &how.before)]);
+    transfer
+        .frf
+        .meta
+        .step("blows", &[("count", &kept.len()), ("length", &how.length), ("before", &how.before)]);
     let left = left::widen(&mut transfer, &response.values, &kept, how, &weights[1]);
     let force = &averages.auto[0];
     let noise = noise * weights[0].iter().map(|w| w * w).sum::<f64>();

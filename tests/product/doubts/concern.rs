@@ -28,9 +28,35 @@ const STEP: Concern =
     Item("points", "excitation", &["amplitude", "phase", "receptance", "harmonics", "subharmonics"]);
 const VELOCITIES: Concern =
     Group(&["first_contact", "before", "after", "energy", "energy_given", "restitution"]);
+// What grows with the values of the record.
+const SCALED: Concern = At(&[
+    "modes/*/amplitude",
+    "modes/*/modal_constant",
+    "modes/*/by/*/modal_constant",
+    "levels/*/amplitude",
+    "tones/*/amplitude",
+    "value_std",
+    "initial_velocity",
+    "fits/*/parameters/initial_velocity",
+    "points/*/force_std",
+    "points/*/amplitude",
+    "points/*/receptance",
+    "points/*/harmonics",
+    "points/*/subharmonics",
+    "resonances/*/amplitude_std",
+    "jumps/*/amplitude_before_std",
+    "jumps/*/amplitude_after_std",
+    "impacts/*/before_std",
+    "impacts/*/after_std",
+    "before",
+    "after",
+    "energy",
+    "displacement",
+    "exposure",
+]);
 
 /// Every code of a doubt.
-pub const CONCERNS: [(&str, Concern); 73] = [
+pub const CONCERNS: [(&str, Concern); 75] = [
     ("rig-left-out", Nothing(MODEL)),
     ("decay-unexplained", MODE),
     ("decay-changes", MODE),
@@ -57,9 +83,11 @@ pub const CONCERNS: [(&str, Concern); 73] = [
     ("rates-differ", Whole),
     ("head-step-assumed", Whole),
     ("digits-may-be-grouped", Whole),
-    ("unit-head-differs", Whole),
-    ("unit-row-differs", Whole),
-    ("sheet-in-percent", Whole),
+    ("unit-head-differs", SCALED),
+    ("unit-row-differs", SCALED),
+    ("quantity-row-differs", Whole),
+    ("axis-row-differs", Whole),
+    ("sheet-in-percent", SCALED),
     ("missing-marked", Whole),
     ("filled-with-zeros", Whole),
     ("step-changed", Whole),

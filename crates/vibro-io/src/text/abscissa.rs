@@ -153,7 +153,7 @@ impl RecordContext<'_> {
             assumed.map(
                 |found| if found.code == code::AXIS_UNIT_ASSUMED { found.name("head", head) } else { found },
             );
-        let findings = column.name.unit_differs().into_iter().chain(assumed).chain(found).collect();
+        let findings = column.name.unit_differs(true).into_iter().chain(assumed).chain(found).collect();
         Ok(PrintedAbscissa {
             axis,
             label,

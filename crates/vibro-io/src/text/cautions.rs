@@ -3,12 +3,19 @@
 
 use super::column::Column;
 use super::header::Stated;
+use crate::held::Held;
 use vibro_record::code;
 use vibro_record::{Axis, AxisKind, Finding, Values};
 
 /// Magnitudes by which programs mark missing values. The last is the fill value of netCDF.
 const MISSING_MARKS: [f64; 11] =
     [999.0, 9999.0, 99_999.0, 999_999.0, 9_999_999.0, 1e20, 1e30, 1e35, 1e36, 1e38, 9.969_209_968_386_869e36];
+
+/// Whether the largest magnitude of a column of which only a summary is held may mark missing values.
+pub fn may_be_marked(held: &Held) -> bool {
+    let Held::Summary(ends) = held else { return false };
+    ends.largest().is_some_and(|(_, size)| MISSING_MARKS.contains(&size))
+}
 
 /// A missing-value mark is at least 10 times all other magnitudes; a measured 999 has neighbours of its
 /// size.

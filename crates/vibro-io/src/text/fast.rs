@@ -3,6 +3,7 @@
 //! On anything unexpected (a comment, a missing value, a row of another length, a word) this path gives up.
 //! [`super::rows`] then reads the file again, line by line, so that an error names line and column.
 
+use super::cautions::may_be_marked;
 use super::dialect::Dialect;
 use super::lines::Separator;
 use crate::held::{Held, rises};
@@ -74,12 +75,19 @@ fn exponential(rows: &[&[u8]], separator: Separator) -> Option<(Exponential, usi
 }
 
 /// Reads all columns up to the byte `end`, after which only blanks follow; `None` if a row is not clean.
-/// For a column that is not `kept` and falls anywhere, only extremes and first values are held.
+/// For a column that is not `kept` and falls anywhere, only extremes and first values are held, unless its
+/// largest magnitude may mark missing values: whether it does, all values tell.
 pub fn read(source: &Source, shape: &RowShape, end: u64, kept: &[bool]) -> Result<Option<Vec<Held>>> {
-    match columns(source, shape, end, kept)? {
-        None if shape.fixed.is_some() => columns(source, &RowShape { fixed: None, ..*shape }, end, kept),
-        columns => Ok(columns),
+    let found = match columns(source, shape, end, kept)? {
+        None if shape.fixed.is_some() => columns(source, &RowShape { fixed: None, ..*shape }, end, kept)?,
+        columns => columns,
+    };
+    if !found.iter().flatten().any(may_be_marked) {
+        return Ok(found);
     }
+    let kept: Vec<bool> =
+        found.iter().flatten().zip(kept).map(|(held, kept)| *kept || may_be_marked(held)).collect();
+    columns(source, &RowShape { fixed: None, ..*shape }, end, &kept)
 }
 
 /// As [`read`], with this shape only.

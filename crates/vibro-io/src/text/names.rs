@@ -108,13 +108,19 @@ impl Name {
     }
 
     /// Finding if the name states another unit than the row of units below it: `Acc [m/s²]` above `g`.
-    pub(crate) fn unit_differs(&self) -> Option<Finding> {
+    /// `axis`: whether the column is one.
+    pub(crate) fn unit_differs(&self, axis: bool) -> Option<Finding> {
         let used = self.unit.as_deref()?;
         let own = Name::parse(&self.name).unit?;
         let known = |unit: &str| Unit::parse(amplitude(unit).0);
-        let differ = known(&own)? != known(used)?;
-        let found = Finding::doubt("unit-row-differs").name("head", own).name("used", used);
-        differ.then(|| found.name("column", self.name.as_str()).without_estimate())
+        let (of_name, of_row) = (known(&own)?, known(used)?);
+        let found = match of_name.dimension() == of_row.dimension() {
+            _ if axis => Finding::doubt("axis-row-differs"),
+            true => Finding::doubt("unit-row-differs"),
+            false => Finding::doubt("quantity-row-differs"),
+        };
+        let found = found.name("head", own).name("used", used).name("column", self.name.as_str());
+        (of_name != of_row).then(|| found.without_estimate())
     }
 
     /// Reads a quantity divided by its unit, `t/s` or `a/(m/s²)`; `None` for other text.

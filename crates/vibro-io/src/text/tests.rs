@@ -387,6 +387,17 @@ fn a_survey_says_what_reading_says() {
     assert_eq!((headers[1].max_abs, headers[1].max_at, headers[1].n), (Some(9.0 * 1e-3), Some(0.0), 2));
 }
 
+/// Of other columns a survey holds only the range.
+#[test]
+fn a_survey_says_what_marks_missing_values() {
+    let values = |i: usize| if i % 50 == 9 { -9999.0 } else { (0.37 * i as f64).sin() };
+    let rows: Vec<String> = (0..200).map(|i| format!("{},{}\n", i as f64 * 1e-3, values(i))).collect();
+    let text = format!("t [s],a [g]\n{}", rows.concat());
+    let source = Source::memory("marked.csv", text.as_bytes()).unwrap();
+    let seen = read_table(&source, &Options::default(), true).unwrap();
+    assert!(has_finding(&seen.findings, "missing-marked", &["mark=-9999", "n=4"]), "{:?}", seen.findings);
+}
+
 /// In the formats of PASCO's and Vernier's programs.
 #[test]
 fn runs_side_by_side_have_times_of_their_own() {
@@ -1149,7 +1160,9 @@ fn a_row_of_units_that_contradicts_a_name_is_said() {
     let found = of(format!("Time [s],Acc [m/s²]\ns,g\n{rows}"));
     assert!(has_finding(&found.all_findings(), "unit-row-differs", &["head=m/s²", "used=g"]));
     let times = of(format!("Time [s],Acc [g]\nms,g\n{rows}"));
-    assert!(has_finding(&times.all_findings(), "unit-row-differs", &["head=s", "used=ms"]));
+    assert!(has_finding(&times.all_findings(), "axis-row-differs", &["head=s", "used=ms"]));
+    let other = of(format!("Time [s],Acc [m/s²]\ns,mm/s\n{rows}"));
+    assert!(has_finding(&other.all_findings(), "quantity-row-differs", &["head=m/s²", "used=mm/s"]));
     let same = of(format!("Time [s],Acc [m/s²]\ns,m/s²\n{rows}"));
     assert!(same.all_findings().is_empty(), "{:?}", same.all_findings());
     assert_eq!(same.records[0].meta().name, "Acc");

@@ -53,6 +53,19 @@ impl Damped {
     }
 }
 
+/// A sine that does not decay, whose frequency is known before.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Steady {
+    pub sine: Damped,
+    /// Periods of its nominal frequency, and their standard uncertainty.
+    pub nominal: f64,
+    pub spread: f64,
+    /// Standard deviation of the noise of a component of a line.
+    pub noise: f64,
+    /// Whether chance alone does not explain it.
+    pub seen: bool,
+}
+
 /// Lines that are fitted on either side of a sine: least number, and number in half-widths of the sine.
 pub const LINES: (f64, f64) = (8.0, 6.0);
 
@@ -75,6 +88,12 @@ fn exponentials(periods: f64, decay: f64, k: usize, n: usize) -> [Complex64; 2] 
     })
 }
 
+/// Line `k` of a sine by the real and by the imaginary part of its amplitude.
+pub fn quadratures(periods: f64, decay: f64, k: usize, n: usize) -> [Complex64; 2] {
+    let [own, image] = exponentials(periods, decay, k, n);
+    [own + image, Complex64::i() * (own - image)]
+}
+
 /// eᶻ − 1 without cancellation.
 fn less_one(z: Complex64) -> Complex64 {
     let (sin, cos) = z.im.sin_cos();
@@ -84,6 +103,8 @@ fn less_one(z: Complex64) -> Complex64 {
 
 /// Parameters of a sine: periods, decay, real and imaginary part of the amplitude.
 pub const OWN: usize = 4;
+/// Parameters of a sine that does not decay: periods, real and imaginary part of the amplitude.
+const OF_HUM: usize = 3;
 /// Parameters of the background under the sines, a complex straight line over frequency.
 const REST: usize = 4;
 
@@ -94,12 +115,15 @@ pub struct SineGroup {
     pub lines: Range<usize>,
     /// The sines, in the order of their starts.
     pub sines: Vec<Damped>,
+    /// Sines of hum beside them.
+    pub hum: Vec<Steady>,
     pub fit: Fit,
     widening: f64,
 }
 
 impl SineGroup {
-    /// Fits sines to `lines` of a spectrum of `n` samples, starting from these periods and decays.
+    /// Fits sines to `lines` of a spectrum of `n` samples, starting from these periods and decays, and `hum`,
+    /// starting from its periods.
     ///
     /// # Errors
     /// If the lines do not determine the sines.
@@ -108,40 +132,59 @@ impl SineGroup {
         lines: Range<usize>,
         n: usize,
         starts: &[(f64, f64)],
+        hum: &[Steady],
     ) -> Result<SineGroup> {
-        let start = start(spectrum, &lines, n, starts)?;
+        let start = start(spectrum, &lines, n, starts, hum)?;
+        let size = |amplitude: &[f64]| amplitude[0].hypot(amplitude[1]).max(f64::MIN_POSITIVE);
+        let (own, linear) = start.split_at(OWN * starts.len());
         let mut scale = Vec::new();
-        for (at, (_, decay)) in starts.iter().enumerate() {
-            let size = start[OWN * at + 2].hypot(start[OWN * at + 3]).max(f64::MIN_POSITIVE);
-            scale.extend([1.0, decay.abs().max(1.0), size, size]);
+        for p in own.chunks_exact(OWN) {
+            scale.extend([1.0, p[1].abs().max(1.0), size(&p[2..]), size(&p[2..])]);
         }
+        scale.extend(
+            linear.chunks_exact(OF_HUM).take(hum.len()).flat_map(|p| [1.0, size(&p[1..]), size(&p[1..])]),
+        );
         let largest = scale.iter().skip(2).copied().fold(f64::MIN_POSITIVE, f64::max);
         scale.extend([largest; REST]);
         // A numerical derivative changes one parameter, so the exponentials of all other sines are kept.
-        let known = RefCell::new(vec![([f64::NAN; 2], Vec::new()); starts.len()]);
+        let known = RefCell::new(vec![([f64::NAN; 2], Vec::new()); starts.len() + hum.len()]);
+        let count = lines.len();
         let residuals = |p: &[f64], out: &mut [f64]| {
-            let (rest, mut known) = (&p[p.len() - REST..], known.borrow_mut());
-            for (p, (at, of)) in p.chunks_exact(OWN).zip(known.iter_mut()) {
-                if *at != [p[0], p[1]] {
-                    *at = [p[0], p[1]];
-                    *of = lines.clone().map(|k| exponentials(p[0], p[1], k, n)).collect();
+            let (sines, rest) = all(p, starts.len());
+            let mut known = known.borrow_mut();
+            for (sine, (at, of)) in sines.iter().zip(known.iter_mut()) {
+                let Damped { periods, decay, .. } = *sine;
+                if *at != [periods, decay] {
+                    *at = [periods, decay];
+                    *of = lines.clone().map(|k| exponentials(periods, decay, k, n)).collect();
                 }
             }
             for ((i, k), out) in lines.clone().enumerate().zip(out.chunks_exact_mut(2)) {
-                let sines = p.chunks_exact(OWN).zip(known.iter()).map(|(p, (_, of))| sine(p).of(of[i]));
-                let left = spectrum[k] - sines.sum::<Complex64>() - beside(rest, place(i, lines.len()));
+                let all = sines.iter().zip(known.iter()).map(|(sine, (_, of))| sine.of(of[i]));
+                let left = spectrum[k] - all.sum::<Complex64>() - beside(rest, place(i, count));
                 out.copy_from_slice(&[left.re, left.im]);
             }
+            for ((hum, sine), out) in hum.iter().zip(&sines[starts.len()..]).zip(&mut out[2 * count..]) {
+                *out = (sine.periods - hum.nominal) / hum.spread * hum.noise;
+            }
         };
-        let fit = least_squares(residuals, 2 * lines.len(), &start, &scale)?;
+        let fit = least_squares(residuals, 2 * lines.len() + hum.len(), &start, &scale)?;
         if !fit.converged {
             return Err(Error::refused("the fit of damped sines does not settle"));
         }
-        let sines: Vec<Damped> = fit.parameters.chunks_exact(OWN).take(starts.len()).map(sine).collect();
-        let part = |odd: usize| fit.residuals.iter().skip(odd).step_by(2).copied().collect::<Vec<f64>>();
+        let (mut sines, _) = all(&fit.parameters, starts.len());
+        let steady = sines.split_off(starts.len());
+        let hum = hum.iter().zip(steady).map(|(hum, sine)| Steady { sine, ..*hum }).collect();
+        let own = &fit.residuals[..2 * count];
+        let part = |odd: usize| own.iter().skip(odd).step_by(2).copied().collect::<Vec<f64>>();
         let white = Whiteness::of(&[&part(0), &part(1)]);
         let widening = student(fit.degrees_of_freedom()).unwrap_or(f64::NAN) * white.inflation;
-        Ok(SineGroup { lines, sines, fit, widening })
+        Ok(SineGroup { lines, sines, hum, fit, widening })
+    }
+
+    /// The sines, and those of hum.
+    pub fn all(&self) -> impl Iterator<Item = &Damped> {
+        self.sines.iter().chain(self.hum.iter().map(|hum| &hum.sine))
     }
 
     /// Standard uncertainty of a function of the parameters of sine `m` with this gradient.
@@ -157,6 +200,14 @@ fn sine(p: &[f64]) -> Damped {
     Damped { periods: p[0], decay: p[1], amplitude: Complex64::new(p[2], p[3]) }
 }
 
+/// The sines of all parameters, of which `decaying` decay, and the parameters of the background.
+fn all(p: &[f64], decaying: usize) -> (Vec<Damped>, &[f64]) {
+    let (own, others) = p.split_at(OWN * decaying);
+    let (of_hum, rest) = others.split_at(others.len() - REST);
+    let steady = |p: &[f64]| sine(&[p[0], 0.0, p[1], p[2]]);
+    (own.chunks_exact(OWN).map(sine).chain(of_hum.chunks_exact(OF_HUM).map(steady)).collect(), rest)
+}
+
 /// Position of line `i` of `n`, scaled to −1 … 1.
 fn place(i: usize, n: usize) -> f64 {
     2.0 * i as f64 / (n - 1) as f64 - 1.0
@@ -167,33 +218,48 @@ fn beside(rest: &[f64], place: f64) -> Complex64 {
 }
 
 /// Starting values of all parameters: the given periods and decays, the linear ones by least squares.
-fn start(spectrum: &[Complex64], range: &Range<usize>, n: usize, starts: &[(f64, f64)]) -> Result<Vec<f64>> {
-    let (rows, columns) = (2 * range.len(), 2 * starts.len() + REST);
-    if rows <= OWN * starts.len() + REST {
-        return Err(Error::refused(format!("{} lines do not determine {} sines", range.len(), starts.len())));
+fn start(
+    spectrum: &[Complex64],
+    range: &Range<usize>,
+    n: usize,
+    starts: &[(f64, f64)],
+    hum: &[Steady],
+) -> Result<Vec<f64>> {
+    let steady = hum.iter().map(|hum| (hum.sine.periods, 0.0));
+    let sines: Vec<(f64, f64)> = starts.iter().copied().chain(steady).collect();
+    let (rows, columns) = (2 * range.len(), 2 * sines.len() + REST);
+    if rows <= columns + 2 * sines.len() {
+        return Err(Error::refused(format!("{} lines do not determine {} sines", range.len(), sines.len())));
     }
     let (mut matrix, mut right) = (DMatrix::zeros(rows, columns), DVector::zeros(rows));
     for (i, k) in range.clone().enumerate() {
         let mut put = |column: usize, value: Complex64| {
             (matrix[(2 * i, column)], matrix[(2 * i + 1, column)]) = (value.re, value.im);
         };
-        for (m, (periods, decay)) in starts.iter().enumerate() {
-            let [own, image] = exponentials(*periods, *decay, k, n);
-            put(2 * m, own + image);
-            put(2 * m + 1, Complex64::i() * (own - image));
+        for (m, (periods, decay)) in sines.iter().enumerate() {
+            let [real, imaginary] = quadratures(*periods, *decay, k, n);
+            put(2 * m, real);
+            put(2 * m + 1, imaginary);
         }
         for c in 0..REST {
             let mut unit = [0.0; REST];
             unit[c] = 1.0;
-            put(2 * starts.len() + c, beside(&unit, place(i, range.len())));
+            put(2 * sines.len() + c, beside(&unit, place(i, range.len())));
         }
         (right[2 * i], right[2 * i + 1]) = (spectrum[k].re, spectrum[k].im);
     }
     let svd = SVD::try_new(matrix, true, true, f64::EPSILON, 10_000);
     let solved = svd.and_then(|svd| svd.solve(&right, 1e-12 * svd.singular_values.max()).ok());
     let linear = solved.ok_or_else(|| Error::refused("the lines do not determine the sines"))?;
-    let own = starts.iter().enumerate().flat_map(|(m, s)| [s.0, s.1, linear[2 * m], linear[2 * m + 1]]);
-    Ok(own.chain(linear.iter().skip(2 * starts.len()).copied()).collect())
+    let of = |m: usize| [linear[2 * m], linear[2 * m + 1]];
+    let mut all: Vec<f64> = Vec::new();
+    for (m, (periods, decay)) in sines.iter().enumerate() {
+        all.push(*periods);
+        all.extend((m < starts.len()).then_some(decay));
+        all.extend(of(m));
+    }
+    all.extend(linear.iter().skip(2 * sines.len()));
+    Ok(all)
 }
 
 #[cfg(test)]
@@ -222,11 +288,11 @@ mod tests {
             amplitude: Complex64::from_polar(a, a),
         });
         let spectrum: Vec<Complex64> = (0..100).map(|k| truth.iter().map(|s| s.line(k, n)).sum()).collect();
-        let group = SineGroup::fit(&spectrum, 30..52, n, &[(40.0, 2.0), (41.5, 2.0)]).unwrap();
+        let group = SineGroup::fit(&spectrum, 30..52, n, &[(40.0, 2.0), (41.5, 2.0)], &[]).unwrap();
         for (found, truth) in group.sines.iter().zip(&truth) {
             // The Jacobian is from central differences, and the fit ends at steps below 1e-8 of a line.
             assert!((found.periods - truth.periods).abs() < 1e-6 && (found.decay - truth.decay).abs() < 1e-5);
         }
-        assert!(SineGroup::fit(&spectrum, 38..42, n, &[(40.0, 2.0), (41.5, 2.0)]).is_err());
+        assert!(SineGroup::fit(&spectrum, 38..42, n, &[(40.0, 2.0), (41.5, 2.0)], &[]).is_err());
     }
 }

@@ -60,5 +60,5 @@ pub struct DecayResult {
 }
 
 uncertain!(DecayResult: modes, levels, decrement);
-uncertain!(DecayMode: frequency, zeta, amplitude, phase);
+uncertain!(DecayMode: frequency, zeta, phase; scaled: amplitude);
 uncertain!(Level: mode);

@@ -83,6 +83,10 @@ impl Sines {
             sines.settle(&spectrum);
             sines.part(&spectrum);
         }
+        if sines.add_hum(&spectrum) {
+            sines.settle(&spectrum);
+            sines.part(&spectrum);
+        }
         // A line near a sine that is still above the noise is a mode beyond the requested number, or not a
         // sine.
         let rest = sines.rest(&spectrum, None);
@@ -98,7 +102,8 @@ impl Sines {
             let rest = self.rest(spectrum, Some(at));
             let old = &self.groups[at];
             let starts: Vec<(f64, f64)> = old.sines.iter().map(|s| (s.periods, s.decay)).collect();
-            if let Ok(better) = SineGroup::fit(&rest, range(&old.sines, rest.len()), self.n, &starts) {
+            let lines = range(&old.sines, rest.len());
+            if let Ok(better) = SineGroup::fit(&rest, lines, self.n, &starts, &old.hum) {
                 self.groups[at] = better;
             }
         }
@@ -170,9 +175,9 @@ impl Sines {
     }
 
     /// The lines after subtraction of the sines of all groups but one.
-    fn rest(&self, spectrum: &[Complex64], but: Option<usize>) -> Vec<Complex64> {
+    pub(super) fn rest(&self, spectrum: &[Complex64], but: Option<usize>) -> Vec<Complex64> {
         let others = self.groups.iter().enumerate().filter(|(i, _)| Some(*i) != but);
-        let sines: Vec<&Damped> = others.flat_map(|(_, group)| &group.sines).collect();
+        let sines: Vec<&Damped> = others.flat_map(|(_, group)| group.all()).collect();
         let left = |(k, line): (usize, &Complex64)| {
             line - sines.iter().map(|s| s.line(k, self.n)).sum::<Complex64>()
         };
@@ -219,7 +224,7 @@ impl Sines {
         let rest = self.rest(spectrum, None);
         let fit = |sines: &[Damped], lines: Range<usize>| {
             let starts: Vec<(f64, f64)> = sines.iter().map(|s| (s.periods, s.decay)).collect();
-            SineGroup::fit(&rest, lines, self.n, &starts)
+            SineGroup::fit(&rest, lines, self.n, &starts, &[])
         };
         let mut best: Option<SineGroup> = None;
         for decay in [0.3 * decay, decay, 0.2] {
@@ -270,7 +275,7 @@ impl Sines {
 
     /// Residual of a part: its samples less all sines.
     pub fn left(&self, part: &[f64]) -> Vec<f64> {
-        let sines: Vec<&Damped> = self.groups.iter().flat_map(|group| &group.sines).collect();
+        let sines: Vec<&Damped> = self.groups.iter().flat_map(SineGroup::all).collect();
         let sum = |i: usize| sines.iter().map(|sine| sine.sample(i, self.n)).sum::<f64>();
         part.iter().enumerate().map(|(i, v)| v - sum(i)).collect()
     }

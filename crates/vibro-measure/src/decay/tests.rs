@@ -118,6 +118,46 @@ fn a_mode_that_is_over_long_before_another_is_found() {
     }
 }
 
+/// Deviations of frequency and damping ratio of a mode within three lines of hum of two to eight standard
+/// deviations of a line's noise, and the number of records in which it is named. Most of it is too weak for
+/// the search of lines; where it is ignored, 80 to 89 % lie within 1.96.
+fn beside_weak_hum(records: usize) -> (Vec<f64>, usize) {
+    let (mut normal, mut all, mut named) = (Noise::new(21), Vec::new(), 0);
+    for _ in 0..records {
+        let (f, at) = (50.0 + 3.0 * (normal.uniform() - 0.5), 50.0 + 0.1 * (normal.uniform() - 0.5));
+        // The part is six time constants of 0.32 s at 1 kHz, and a line has a noise of 0.003 √(2/1900).
+        let (phase, size) = (6.0 * normal.uniform(), 1e-4 * (2.0 + 6.0 * normal.uniform()));
+        let values = record(6000, 700, &[(f, 0.01, 1.0, 6.0 * normal.uniform())], 0.003, &mut normal);
+        let hum = |i: usize| size * (TAU * at * i as f64 * 1e-3 + phase).cos();
+        let found = found(values.into_iter().enumerate().map(|(i, v)| v + hum(i)).collect()).unwrap();
+        let removed = found.findings.iter().find(|found| found.code == "mains-hum-removed");
+        assert!(removed.is_none_or(|found| (found.get("frequency").unwrap() - 50.0).abs() < 0.5));
+        named += usize::from(removed.is_some());
+        let sure = found.modes.iter().filter(|mode| mode.zeta.std.is_some());
+        all.extend(sure.flat_map(|mode| [off(&mode.zeta, 0.01), off(&mode.frequency, f)]));
+    }
+    (all, named)
+}
+
+#[test]
+fn weak_hum_beside_a_mode_does_not_move_it() {
+    let (all, named) = beside_weak_hum(12);
+    assert!(all.len() >= 22 && all.iter().all(|off| off.abs() < 5.0) && named > 0, "{all:?} {named}");
+}
+
+#[test]
+#[ignore = "Monte Carlo: cargo test --release -- --ignored"]
+fn weak_hum_leaves_coverage_as_stated() {
+    let (all, named) = beside_weak_hum(400);
+    let share = all.iter().filter(|off| off.abs() < 1.96).count() as f64 / all.len() as f64;
+    // 95 % of 800 with a standard deviation of 0.8 %, three times that on either side.
+    assert!(
+        (0.927..0.973).contains(&share) && all.len() > 760 && named > 80,
+        "{share} {} {named}",
+        all.len()
+    );
+}
+
 #[test]
 fn what_else_a_record_holds_is_left_out() {
     let slow = |i: usize| 0.3 * (i as f64 / 900.0).sin() + 1e-4 * i as f64;

@@ -69,7 +69,7 @@ pub struct Impact {
     pub clipped: bool,
 }
 
-uncertain!(Impact: time_std, phase_std, first_contact_std, before_std, after_std);
+uncertain!(Impact: time_std, phase_std; scaled: first_contact_std, before_std, after_std);
 
 impl Impact {
     /// Time and phase.
@@ -157,6 +157,12 @@ impl Uncertain for Group {
         self.phase.doubt();
         self.velocities().doubt();
         self.kept.doubt();
+    }
+
+    fn doubt_scale(&mut self) {
+        let Group { first_contact, before, after, energy, energy_given, .. } = self;
+        let scaled: &mut [&mut dyn Uncertain] = &mut [first_contact, before, after, energy, energy_given];
+        scaled.doubt();
     }
 }
 

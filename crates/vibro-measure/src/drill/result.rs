@@ -112,6 +112,15 @@ impl Uncertain for Drill {
         self.speed.doubt();
         self.exposure.doubt();
     }
+
+    fn doubt_scale(&mut self) {
+        self.impacts.doubt_scale();
+        self.groups.doubt_scale();
+        let Drill { before, after, energy, energy_given, displacement, exposure, .. } = self;
+        let scaled: &mut [&mut dyn Uncertain] =
+            &mut [before, after, energy, energy_given, displacement, exposure];
+        scaled.doubt();
+    }
 }
 
 impl Drill {
@@ -149,7 +158,7 @@ pub struct Displacement {
     pub drift: Estimate,
 }
 
-uncertain!(Displacement: stroke, drift);
+uncertain!(Displacement: ; scaled: stroke, drift);
 
 /// Largest drift in a turn over the stroke; above it the velocity has an offset, or the machine moves.
 const DRIFTING: f64 = 0.1;

@@ -68,12 +68,12 @@ impl Candidate<'_> {
         find(measured.window.is_some() && leaks, of(Finding::note("modal-leakage-fitted")));
         if let Some(after_blow) = measured.after_blow {
             // The response left by the blow before, e^(sT) of its own, has the same pole, and any phase: it
-            // changes A by a factor. Its mean over blows of independent phases is smaller by √n; a coherence
-            // needs two.
+            // changes A by a factor, half of whose mean square is along A. Its mean over blows of independent
+            // phases is smaller by √n; a coherence needs two.
             let left = (-TAU * pole.frequency * pole.zeta * after_blow).exp();
             let cut_off = Finding::caution(code::MODAL_BLOW_CUT_OFF).number("part", left);
             find(left * pole.constant.norm() > std[2], cut_off);
-            let left = 0.5 * left;
+            let left = left / (2.0 * measured.blows.unwrap_or(2) as f64).sqrt();
             (std[2], std[3]) = (std[2].hypot(left * pole.constant.norm()), std[3].hypot(left));
         }
         let phase = own.constant.arg().to_degrees();

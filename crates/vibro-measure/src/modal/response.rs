@@ -27,6 +27,8 @@ pub struct Measured {
     /// Time in s from a blow of a hammer to the end of its record, where the function was averaged over
     /// blows.
     pub after_blow: Option<f64>,
+    /// Number of these blows, where it is known.
+    pub blows: Option<usize>,
     /// Standard uncertainty of one component of each value, above 0, where it is known.
     pub std: Option<Vec<f64>>,
 }
@@ -42,6 +44,7 @@ impl Measured {
             coherence: None,
             window: None,
             after_blow: None,
+            blows: None,
             std: None,
         }
     }
@@ -51,7 +54,8 @@ impl Measured {
         let window = frf.meta.averaged_with();
         let all = Measured::of(&frf.axis, frf.values.clone(), frf.meta.quantity);
         let record = frf.axis.step().map(|step| (1.0 - 1.0 / BEFORE as f64) / step);
-        Measured { window, after_blow: record.filter(|_| frf.meta.from_blows()), ..all }
+        let after_blow = record.filter(|_| frf.meta.from_blows());
+        Measured { window, after_blow, blows: frf.meta.blows(), ..all }
     }
 
     fn of(axis: &Axis, values: Vec<Complex64>, kind: Quantity) -> Measured {

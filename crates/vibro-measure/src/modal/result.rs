@@ -57,8 +57,8 @@ pub struct Mode {
 }
 
 uncertain!(ModalResult: modes);
-uncertain!(Mode: frequency, zeta, modal_constant, phase, stiffness, by);
-uncertain!(ByMethod: frequency, zeta, modal_constant);
+uncertain!(Mode: frequency, zeta, phase, stiffness, by; scaled: modal_constant);
+uncertain!(ByMethod: frequency, zeta; scaled: modal_constant);
 
 /// Result of one method.
 #[derive(Debug, Clone, PartialEq, Serialize)]

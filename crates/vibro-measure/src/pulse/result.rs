@@ -8,7 +8,7 @@ use serde::Serialize;
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 use std::sync::LazyLock;
-use vibro_record::{Finding, Uncertain, uncertain};
+use vibro_record::{Finding, Uncertain};
 
 /// A model of a contact.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -79,12 +79,27 @@ pub struct PulseResult {
     pub picture: Option<PulsePicture>,
 }
 
-uncertain!(PulseFit: parameters);
+impl Uncertain for PulseFit {
+    fn doubt(&mut self) {
+        self.parameters.doubt();
+    }
+
+    fn doubt_scale(&mut self) {
+        for name in ["baseline", "initial_velocity"] {
+            self.parameters.get_mut(name).doubt();
+        }
+    }
+}
 
 impl Uncertain for PulseResult {
     fn doubt(&mut self) {
         self.estimates().for_each(Uncertain::doubt);
         self.fits.doubt();
+    }
+
+    fn doubt_scale(&mut self) {
+        self.initial_velocity.doubt();
+        self.fits.doubt_scale();
     }
 }
 

@@ -65,10 +65,10 @@ pub struct Receptance {
     pub std: Option<f64>,
 }
 
-uncertain!(Harmonic: amplitude);
-uncertain!(Receptance: std);
+uncertain!(Harmonic: ; scaled: amplitude);
+uncertain!(Receptance: ; scaled: std);
 // Phase and receptance are ratios of two lines of one window, on which they do not depend.
-uncertain!(ResponsePoint: excitation_std, force_std, frequency_std, amplitude, harmonics, subharmonics);
+uncertain!(ResponsePoint: excitation_std, frequency_std; scaled: force_std, amplitude, harmonics, subharmonics);
 
 impl Uncertain for Response {
     fn doubt(&mut self) {
@@ -83,6 +83,13 @@ impl Uncertain for Response {
             point.of_response().doubt();
         }
         self.jumps.iter_mut().for_each(|jump| jump.frequency_std = f64::NAN);
+    }
+
+    fn doubt_scale(&mut self) {
+        self.points.doubt_scale();
+        self.points.iter_mut().for_each(|point| point.receptance.doubt());
+        self.resonances.doubt_scale();
+        self.jumps.doubt_scale();
     }
 }
 

@@ -60,13 +60,20 @@ pub struct SpectralResult {
 
 impl Uncertain for SpectralResult {
     fn doubt(&mut self) {
-        self.value_std.fill(f64::NAN);
+        self.doubt_scale();
         self.response.iter_mut().for_each(|response| response.phase_std.fill(f64::NAN));
         if let Lines::Transfer(function) = &mut self.found {
-            function.magnitude_std.fill(f64::NAN);
             function.phase_std.fill(f64::NAN);
         }
         self.tones.doubt();
+    }
+
+    fn doubt_scale(&mut self) {
+        self.value_std.fill(f64::NAN);
+        if let Lines::Transfer(function) = &mut self.found {
+            function.magnitude_std.fill(f64::NAN);
+        }
+        self.tones.doubt_scale();
     }
 }
 

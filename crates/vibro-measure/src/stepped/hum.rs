@@ -7,7 +7,7 @@
 
 use super::common;
 use crate::chance::chi_squared_above;
-use crate::mains::{HARMONICS, Hum, MAINS};
+use crate::mains::{Hum, harmonics};
 use crate::mean::average;
 use crate::noise;
 use nalgebra::{DMatrix, DVector};
@@ -16,8 +16,6 @@ use std::f64::consts::TAU;
 use vibro_record::{Axis, Result, Scaling, Trace, Window, median, sort_by_number};
 use vibro_signal::spectrum;
 
-/// Largest deviation of the fundamental of the mains from its nominal frequency, in Hz.
-const TOLERANCE: f64 = 0.2;
 /// Harmonics of the excitation that are fitted, itself included.
 const OWN: usize = 4;
 /// Lines on either side of the excitation or a harmonic that belong to it.
@@ -102,8 +100,7 @@ pub(super) fn remove(mut steps: Vec<Settled>) -> Result<Vec<Removed>> {
 /// leaks to the others.
 fn candidates(steps: &[Settled], all: &[Spectral]) -> Vec<(f64, f64)> {
     let top = steps.iter().map(|step| step.rate).fold(f64::INFINITY, f64::min) / 2.0;
-    let orders = |mains: f64| (1..=HARMONICS).map(move |k| (mains * k as f64, TOLERANCE * k as f64));
-    let lines = MAINS.into_iter().flat_map(orders).filter(|(nominal, tolerance)| nominal + tolerance < top);
+    let lines = harmonics().filter(|(nominal, tolerance)| nominal + tolerance < top);
     let height = |(nominal, tolerance): (f64, f64)| {
         let seen: Vec<f64> = all.iter().filter_map(|s| s.height(nominal, tolerance)).collect();
         // A line that the excitation of every step hides may be there.

@@ -239,3 +239,37 @@ fn leg(points: Vec<Point>, motion: &mut dyn Motion, direction: Direction) -> Res
     let end = End { direction, frequency, phase, state, regime: portrait.pattern.regime, relative_phase };
     Ok(Leg { direction, points, end, portrait })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::sweep::{Observable, Pace};
+    use crate::model::{Rig, Simulation, Sine};
+    use crate::record::Fact;
+    use std::f64::consts::PI;
+
+    /// Starts half a cycle later and beyond fail: two of the three other phases.
+    #[test]
+    fn starts_at_other_phases_that_fail_are_counted() {
+        let (rig, start) = (Rig::thesis(), State::default());
+        let make = |excitation: &Excitation, state: State, phase: f64| -> Result<Moving> {
+            if state == start && phase >= PI {
+                return Err(Error::refused("the masses stick."));
+            }
+            Ok(Box::new(Simulation::from_state(&rig, excitation, state, phase)?))
+        };
+        let pace = Pace::Steps { points: 2, settle: 5, measure: 5 };
+        let plan = Plan { from: 3.0, to: 3.5, pace, observable: Observable::Fundamental };
+        let excitation = Sine { force: 0.01, frequency: 3.0 }.into();
+        let runs = |make: &(dyn Fn(&Excitation, State, f64) -> Result<Moving> + Sync)| {
+            Runs::of(make, (start, 0.0), &excitation, &plan, None, &[&[Direction::Up]]).unwrap()
+        };
+        let found = runs(&make).starts_failed().unwrap();
+        assert_eq!((found.get("n"), found.get("all")), (Some(2.0), Some(3.0)));
+        assert_eq!(found.fact("why"), Some(&Fact::Name("the masses stick".to_owned())));
+        let whole = |excitation: &Excitation, state: State, phase: f64| -> Result<Moving> {
+            Ok(Box::new(Simulation::from_state(&rig, excitation, state, phase)?))
+        };
+        assert_eq!(runs(&whole).starts_failed(), None);
+    }
+}
