@@ -66,8 +66,8 @@ pub fn lettered(mut figure: Figure) -> Figure {
     figure
 }
 
-/// Axis of the values of a record: its quantity and unit. A sound file has neither, and its values are parts of
-/// full scale.
+/// Axis of the values of a record: its quantity and unit. A sound file has neither, and its values are
+/// parts of full scale.
 pub fn value_axis(quantity: &str, unit: &str) -> AxisSpec {
     match (quantity, unit) {
         ("other", "FS") => AxisSpec::new("Signal, parts of full scale", ""),

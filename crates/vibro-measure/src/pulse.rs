@@ -1,8 +1,9 @@
 //! Contact pulses: damping ratio and contact frequency from two instants, or from fits to the whole pulse.
 //!
 //! The model of spring and damper (Kelvin–Voigt) gives the answer unless the record prefers another. Fitted
-//! beside it are those of Hertz, of Hunt and Crossley, of a power law with free exponents, and of a yielding
-//! spring. Restitution, duration and velocity have the spread between likely models in their uncertainty. The instrument's low-pass is applied to the models in closed form.
+//! beside it are those of Hertz, of Hunt and Crossley, of a power law with free exponents, and of a
+//! yielding spring. Restitution, duration and velocity have the spread between likely models in their
+//! uncertainty. The instrument's low-pass is applied to the models in closed form.
 
 mod contact;
 mod fit;

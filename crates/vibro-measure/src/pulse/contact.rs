@@ -120,7 +120,8 @@ impl Rebound {
             (n * exponent).exp() + alpha * (s * exponent).exp() * v
         };
         let h = STEP;
-        // Over the first step zⁿ and zˢ are not smooth: there z = t, and the force is integrated term by term.
+        // Over the first step zⁿ and zˢ are not smooth: there z = t, and the force is integrated term by
+        // term.
         let early = |t: f64| {
             let (spring, loss) = (t.powf(n + 1.0) / (n + 1.0), alpha * t.powf(s + 1.0) / (s + 1.0));
             (t - spring * t / (n + 2.0) - loss * t / (s + 2.0), 1.0 - spring - loss)
@@ -335,8 +336,8 @@ mod curved {
         assert!((impulse - 1.6).abs() < STEP, "{impulse}");
     }
 
-    /// A loss of a small exponent rises within the first step. Reference: the semi-implicit Euler formula with
-    /// 4000 steps in each of those of [`Rebound`].
+    /// A loss of a small exponent rises within the first step. Reference: the semi-implicit Euler formula
+    /// with 4000 steps in each of those of [`Rebound`].
     #[test]
     fn a_loss_that_rises_at_once_is_integrated() {
         for (alpha, n, s) in [(0.3, 1.5, 0.1), (0.5, 1.2, 0.3), (0.2, 2.0, 0.02)] {
@@ -358,8 +359,9 @@ mod curved {
                 z += h * v;
                 t += h;
             }
-            // Both take the force as straight over a part of a step at the end: below h² of the velocity. Where
-            // the first step is taken term by term, terms of the order α²h^(1 + s) of the loss are left out.
+            // Both take the force as straight over a part of a step at the end: below h² of the velocity.
+            // Where the first step is taken term by term, terms of the order α²h^(1 + s) of the loss are
+            // left out.
             let tolerance = STEP * STEP + alpha * alpha * STEP.powf(1.0 + s);
             assert!((contact.restitution + v).abs() < tolerance, "{s} {} {v}", contact.restitution);
             assert!((contact.duration - t).abs() < STEP * STEP + tolerance, "{s} {} {t}", contact.duration);
