@@ -18,6 +18,9 @@ mapfile -t all < <(pythons | cut -d' ' -f2)
 
 "${all[-1]}" -m pip --quiet wheel --no-deps --wheel-dir "$work/wheels" "$root/python"
 wheel=$(ls "$work"/wheels/*.whl)
+for licence in MIT APACHE DejaVu uPlot; do
+  "${all[-1]}" -m zipfile --list "$wheel" | grep -q "LICENSE-$licence" || { echo "the wheel lacks LICENSE-$licence"; exit 1; }
+done
 echo "$(basename "$wheel"): $(($(stat -c %s "$wheel") / 1000)) kB"
 
 # Tests one Python; all that it prints goes into a file.

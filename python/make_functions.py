@@ -15,9 +15,12 @@ import textwrap
 from pathlib import Path
 from typing import Any
 
-from vibroimpact._native import questions
-
 HERE = Path(__file__).parent / "vibroimpact"
+# The sources alone are no package: an installed one is taken.
+if not list(HERE.glob("_native*.so")):
+    sys.path = [place for place in sys.path if Path(place or ".").resolve() != HERE.parent]
+
+from vibroimpact._native import questions  # noqa: E402
 WIDTH = 110
 
 # Options of the command line alone: files that it writes, and how it prints.

@@ -316,7 +316,7 @@ pub fn main(words: impl IntoIterator<Item = OsString>) -> u8 {
         Ok(typed) => typed,
         // A command line that cannot be parsed may still ask for JSON.
         Err(error) => {
-            let json = typed::words().take_while(|a| *a != "--").any(|a| a == "--json");
+            let json = typed::words().take_while(|a| a != "--").any(|a| a == "--json");
             return complain::usage(&error, json);
         }
     };

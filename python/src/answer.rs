@@ -13,6 +13,7 @@ use std::path::PathBuf;
 use vibroimpact::analysis::Answer;
 use vibroimpact::cli;
 use vibroimpact::read::{Folder, Format, Recording};
+use vibroimpact::record::Finding;
 use vibroimpact::report::Table;
 
 /// Records made in memory, by the word that stands for them among the words of a question.
@@ -27,9 +28,15 @@ pub fn ask<'py>(
     show: Option<&Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyAny>> {
     let recording = |(path, records): &Made<'py>| {
+        let mut findings: Vec<Finding> = Vec::new();
+        for found in records.iter().flat_map(|(head, _)| head.get().of_file()) {
+            if !findings.contains(found) {
+                findings.push(found.clone());
+            }
+        }
         let records = records.iter().map(|(head, values)| head.get().with(values));
         let records = records.collect::<PyResult<Vec<_>>>()?;
-        Ok(Recording { path: path.clone(), format: Format::Memory, records, findings: Vec::new() })
+        Ok(Recording { path: path.clone(), format: Format::Memory, records, findings })
     };
     let recordings = made.iter().map(recording).collect::<PyResult<Vec<_>>>()?;
     let answer = watched(py, show, move |progress| {

@@ -7,6 +7,7 @@ use num_complex::Complex64;
 use numpy::{PyArray1, PyReadonlyArray1};
 use pyo3::prelude::*;
 use std::path::PathBuf;
+use std::sync::Arc;
 use vibroimpact::Error;
 use vibroimpact::cli;
 use vibroimpact::read::write::{Precision, Storage, Target};
@@ -18,9 +19,12 @@ use vibroimpact::report::Output;
 use vibroimpact::report::words::{Voice, sentence};
 use vibroimpact::units::Unit;
 
-/// A record without its values.
+/// A record without its values, and the findings on its file.
 #[pyclass(frozen, module = "vibroimpact._native")]
-pub struct Head(Record);
+pub struct Head {
+    record: Record,
+    of_file: Arc<Vec<Finding>>,
+}
 
 /// A record as Python holds it: all but the values, and the values.
 type Held<'py> = (Head, Bound<'py, PyAny>);
@@ -39,11 +43,16 @@ pub fn told(finding: &Finding) -> Told {
 impl Head {
     /// The record, with an empty list of values.
     pub fn record(&self) -> &Record {
-        &self.0
+        &self.record
+    }
+
+    /// The findings on the file that it is from.
+    pub fn of_file(&self) -> &[Finding] {
+        &self.of_file
     }
 
     /// Splits a record; the values are moved, not copied.
-    fn split(py: Python<'_>, mut record: Record) -> Held<'_> {
+    fn split<'py>(py: Python<'py>, mut record: Record, of_file: &Arc<Vec<Finding>>) -> Held<'py> {
         let values = match &mut record {
             Record::Trace(Trace { values, .. })
             | Record::Spectrum(Spectrum { values: Values::Real(values), .. }) => {
@@ -54,7 +63,7 @@ impl Head {
                 PyArray1::from_vec(py, std::mem::take(values)).into_any()
             }
         };
-        (Head(record), values)
+        (Head { record, of_file: of_file.clone() }, values)
     }
 
     /// The record with these values.
@@ -65,7 +74,7 @@ impl Head {
         let complex = || -> PyResult<Vec<Complex64>> {
             Ok(values.extract::<PyReadonlyArray1<'_, Complex64>>()?.as_array().to_vec())
         };
-        let mut record = self.0.clone();
+        let mut record = self.record.clone();
         let n = match &mut record {
             Record::Trace(trace) => {
                 trace.values = real()?;
@@ -95,7 +104,8 @@ impl Head {
 impl Head {
     /// A head for `n` values: a trace over time, a spectrum of peak values or a response function over
     /// frequency, by `kind`. The axis is `even`, with its start and step, or has the values `at`; without both it
-    /// counts. Returned with the factor that takes values of `unit` to SI.
+    /// counts. Values within twice `resolution` of an even axis are on it. Returned with the factor that takes
+    /// values of `unit` to SI.
     #[staticmethod]
     #[pyo3(signature = (kind, n, name, unit, even, at))]
     fn made(
@@ -105,19 +115,21 @@ impl Head {
         name: String,
         unit: &str,
         even: Option<(f64, f64)>,
-        at: Option<Vec<f64>>,
+        at: Option<(Vec<f64>, f64)>,
     ) -> PyResult<(Head, f64)> {
         let unknown = || {
             let expected = "a unit such as m, mm/s, g, m/s², V, (m/s²)/N";
             exception(py, &Error::usage(format!("the unit {unit:?} is not known"), expected).setting("unit"))
         };
-        let unit = if unit.is_empty() { Unit::opaque("") } else { Unit::parse(unit).ok_or_else(unknown)? };
-        let (meta, factor) = (Meta::new(name, unit.si()), unit.factor());
+        if !unit.is_empty() && Unit::parse(unit).is_none() {
+            return Err(unknown());
+        }
+        let mut meta = Meta::new(name, Unit::opaque(""));
+        let factor = if unit.is_empty() { 1.0 } else { meta.adopt_unit(unit) };
         let of = if kind == "trace" { AxisKind::Time } else { AxisKind::Frequency };
         let axis = match (even, at) {
             (Some((start, step)), _) => Axis { kind: of, grid: Grid::Even { start, step, n } },
-            // Numbers of a program have all digits; one in the last is the error of a step added up.
-            (None, Some(at)) => Axis::from_values(of, at, 0.0),
+            (None, Some((at, resolution))) => Axis::from_values(of, at, resolution),
             (None, None) => Axis::index(n),
         };
         let record = match kind {
@@ -133,43 +145,43 @@ impl Head {
                 Record::Spectrum(Spectrum { meta, axis, values, scaling, window: None, enbw: None })
             }
         };
-        Ok((Head(record), factor))
+        Ok((Head { record, of_file: Arc::default() }, factor))
     }
 
     /// `trace`, `spectrum` or `frf`.
     #[getter]
     fn kind(&self) -> &'static str {
-        self.0.kind()
+        self.record.kind()
     }
 
     /// Name of the channel.
     #[getter]
     fn name(&self) -> &str {
-        &self.0.meta().name
+        &self.record.meta().name
     }
 
     /// Name of the quantity.
     #[getter]
     fn quantity(&self) -> &'static str {
-        self.0.meta().quantity.name()
+        self.record.meta().quantity.name()
     }
 
     /// SI unit of the values.
     #[getter]
     fn unit(&self) -> &str {
-        self.0.meta().unit.symbol()
+        self.record.meta().unit.symbol()
     }
 
     /// Number of values.
     #[getter]
     fn n(&self) -> usize {
-        self.0.axis().len()
+        self.record.axis().len()
     }
 
     /// Unit of the axis: `s`, `Hz`, or empty.
     #[getter]
     pub fn x_unit(&self) -> &'static str {
-        match self.0.axis().kind {
+        match self.record.axis().kind {
             AxisKind::Time => "s",
             AxisKind::Frequency => "Hz",
             AxisKind::Index | AxisKind::Other(_) => "",
@@ -179,29 +191,29 @@ impl Head {
     /// First value of the axis.
     #[getter]
     fn start(&self) -> f64 {
-        self.0.axis().start()
+        self.record.axis().start()
     }
 
     /// Step of the axis; `None` if it is uneven.
     #[getter]
     fn step(&self) -> Option<f64> {
-        self.0.axis().step()
+        self.record.axis().step()
     }
 
     /// Values of the axis.
     fn axis<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        PyArray1::from_vec(py, self.0.axis().values())
+        PyArray1::from_vec(py, self.record.axis().values())
     }
 
     /// Whether the values are complex.
     #[getter]
     fn complex(&self) -> bool {
-        self.0.is_complex()
+        self.record.is_complex()
     }
 
     /// Header lines and steps that made the record.
     fn meta<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        let meta = self.0.meta();
+        let meta = self.record.meta();
         let notes: serde_json::Map<_, _> =
             meta.notes.iter().map(|(key, value)| (key.clone(), value.clone().into())).collect();
         let history = serde_json::to_value(&meta.history).unwrap_or_default();
@@ -210,7 +222,7 @@ impl Head {
 
     /// Findings: severity, code, sentence.
     fn findings(&self) -> Vec<Told> {
-        self.0.meta().findings.iter().map(told).collect()
+        self.record.meta().findings.iter().map(told).collect()
     }
 }
 
@@ -228,7 +240,8 @@ pub fn read<'py>(
         reader.from_path(path)
     })?;
     let findings = recording.findings.iter().map(told).collect();
-    let records = recording.records.into_iter().map(|record| Head::split(py, record)).collect();
+    let of_file = Arc::new(recording.findings);
+    let records = recording.records.into_iter().map(|record| Head::split(py, record, &of_file)).collect();
     Ok((recording.format.name(), findings, records))
 }
 
@@ -245,17 +258,19 @@ pub fn write(
 ) -> PyResult<()> {
     let records =
         records.iter().map(|(head, values)| head.get().with(values)).collect::<PyResult<Vec<_>>>()?;
-    watched(py, None, move |_| {
+    watched(py, None, move |progress| {
         let target = Target::of(&path)?;
         let precision = if single { Precision::Single } else { Precision::Double };
         let mut bytes = Vec::new();
         target.write(&records, Storage { binary, precision }, &mut bytes)?;
-        let name = path.file_name().map(|name| name.to_string_lossy().into_owned());
-        let name = name.ok_or_else(|| Error::usage("no file name", "a file"))?;
+        let name = path.file_name().and_then(|name| name.to_str()).map(str::to_owned);
+        let name = name.ok_or_else(|| Error::usage("no file name of Unicode", "a file"))?;
         let parent = path.parent().unwrap_or(&path);
         let mut output = Output::new(Folder::from(parent), Owner::Recordings)?.replace(replace);
         output.expect(|known| known == name)?;
         output.write(&name, &bytes)?;
+        // Ends here if it was interrupted.
+        progress.at(1, 1);
         output.commit().map(drop)
     })
 }

@@ -18,7 +18,7 @@ mod _native {
     #[pymodule_export]
     use crate::answer::{ask, questions, run};
     #[pymodule_export]
-    use crate::command::{demo, main, version};
+    use crate::command::{demo, limit, main, version};
     #[pymodule_export]
     use crate::drawing::Drawing;
     #[pymodule_export]

@@ -31,6 +31,7 @@ pub fn exception(py: Python<'_>, error: &Error) -> PyErr {
 /// A setting as a keyword argument: `low_pass=30000`.
 fn keyword(key: &str, value: &str) -> String {
     match Voice::Campaign.set(key, value) {
+        option if option.starts_with("--") => option,
         named if value.is_empty() => named.replace('`', "") + "=",
         set => set.replace('`', "").replacen(" = ", "=", 1),
     }

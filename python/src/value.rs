@@ -33,21 +33,18 @@ fn within<'py>(py: Python<'py>, value: Value, unit: &str) -> PyResult<Bound<'py,
     })
 }
 
-/// Unit of a number with a standard uncertainty beside it, `frequency` with `frequency_std`; `amplitude` is in
-/// the unit of the object around it.
-fn unit_of<'a>(name: &str, unit: &'a str) -> &'a str {
+/// Unit of a number with a standard uncertainty beside it, `frequency` with `frequency_std`, where its name or
+/// the object around it tells. An amplitude is in the `unit` of the object.
+fn unit_of<'a>(name: &str, unit: &'a str) -> Option<&'a str> {
     match name {
-        "frequency" | "excitation" => "Hz",
-        "force" => "N",
-        "phase" => "rad",
-        "interval" => "s",
-        name if name.starts_with("amplitude") => unit,
-        _ => "",
+        "frequency" | "excitation" => Some("Hz"),
+        name if name.starts_with("amplitude") && !unit.is_empty() => Some(unit),
+        _ => None,
     }
 }
 
 /// Named values as an object of the class `Fields`, or as an `Estimate`. A number with its uncertainty beside
-/// it, under the same name with `_std`, is an `Estimate`, too.
+/// it, under the same name with `_std`, is an `Estimate`, too, where its unit is known.
 fn fields_of<'py>(py: Python<'py>, fields: Map<String, Value>, unit: &str) -> PyResult<Bound<'py, PyAny>> {
     static FIELDS: PyOnceLock<Py<PyType>> = PyOnceLock::new();
     static OF_ESTIMATE: PyOnceLock<Py<PyType>> = PyOnceLock::new();
@@ -62,8 +59,8 @@ fn fields_of<'py>(py: Python<'py>, fields: Map<String, Value>, unit: &str) -> Py
     let beside = |name: &String| fields.get(&format!("{name}_std")).filter(is_std).map(Value::as_f64);
     let stds: Vec<Option<Option<f64>>> = fields.keys().map(beside).collect();
     for ((name, value), std) in fields.into_iter().zip(stds) {
-        let of_value = match (value.as_f64(), std) {
-            (Some(value), Some(std)) => estimate()?.call1((value, std, unit_of(&name, &unit)))?,
+        let of_value = match (value.as_f64(), std, unit_of(&name, &unit)) {
+            (Some(value), Some(std), Some(unit)) => estimate()?.call1((value, std, unit))?,
             _ => within(py, value, &unit)?,
         };
         made.set_item(name, of_value)?;

@@ -64,13 +64,13 @@ def test_a_frequency_response_and_its_modes():
     found = vi.modal(both, reference="force")
     mode = found.modes[0]
     assert abs(mode.frequency.value - 100.0) < 4 * mode.frequency.std
-    assert "lines" in vi.frf(both, "force", channel="x") or vi.frf(both, "force").figures
+    assert len(vi.frf(both, "force", channel="x").frequency) > 100
 
 
 def test_a_refusal_has_its_reason():
     with pytest.raises(vi.Refused) as refused:
         vi.decay(np.zeros(500) + 1e-12, rate=RATE)
-    assert str(refused.value) and isinstance(refused.value.code, (str, type(None)))
+    assert len(str(refused.value)) > 10
     with pytest.raises(vi.BadInput, match="rate"):
         vi.decay(ringing())
     with pytest.raises(vi.BadInput, match="its own"):
@@ -89,7 +89,7 @@ def test_a_refusal_has_its_reason():
 
 def test_messages_speak_of_functions_and_arguments(tmp_path):
     for asked, said in [
-        (lambda: vi.decay(ringing(), rate=RATE, modes=2.5), "modes=2.5|modes= is 2.5"),
+        (lambda: vi.decay(ringing(), rate=RATE, modes=2.5), "modes is 2.5"),
         (lambda: vi.decay(ringing(), rate=RATE, band=12), "band"),
         (lambda: vi.spectrum(ringing(), rate=RATE, method="welsh"), "method='welch'"),
         (lambda: vi.Rig().simulate(force=0.5, frequency=11, model="kv"), "model"),
@@ -124,10 +124,30 @@ def test_estimates_are_compared_by_value():
 def test_several_files_and_series_are_taken(tmp_path):
     record = vi.Record.of(ringing(), rate=RATE, unit="mm/s", name="v")
     assert vi.decay(record.to_pandas()).modes[0].frequency.value == pytest.approx(50.0, abs=0.05)
+    with pytest.raises(vi.BadInput, match="index of times"):
+        vi.decay(record.to_pandas(), rate=4000)
+    with pytest.raises(vi.BadInput, match="arrays beside files"):
+        vi.spectrum(ringing(), tmp_path / "a.uff", rate=RATE)
     paths = [tmp_path / "a.uff", tmp_path / "b.uff"]
     for path in paths:
         vi.write_uff(path, record)
     assert len(vi.spectrum(paths).figures) >= 1
+
+
+def test_a_doubt_of_the_file_goes_with_its_records(tmp_path):
+    path = tmp_path / "row.csv"
+    rows = [f"{k / RATE:.4f};{1e3 * v:.6f}" for k, v in enumerate(ringing())]
+    path.write_text("\n".join(["t [s];v [mm/s]", "ms;mm/s", *rows]) + "\n")
+    of_file, of_records = vi.decay(path), vi.decay(vi.read(path))
+    assert {f.code for f in of_file.findings} == {f.code for f in of_records.findings}
+    for mode, same in zip(of_file.modes, of_records.modes, strict=True):
+        assert (mode.frequency.value, mode.frequency.std) == (same.frequency.value, same.frequency.std)
+    assert any(f.severity == "doubt" for f in of_records.findings)
+
+
+def test_masked_values_are_missing():
+    with pytest.raises(vi.BadInput, match="allow_missing="):
+        vi.decay(np.ma.masked_array(ringing(), ringing() > 0.5), rate=RATE)
 
 
 def test_a_rig_answers_with_orbits_and_figures():

@@ -70,8 +70,29 @@ def test_impossible_records_are_bad_input():
         vi.Record.of([1.0, 2.0], rate=1.0, unit="furlong")
     with pytest.raises(vi.BadInput, match="above 0"):
         vi.Record.of([1.0, 2.0], rate=0.0)
+    for wrong in ({"rate": 1.0, "kind": "spectrum"}, {"frequency": [1.0, 2.0], "kind": "trace"}, {"kind": "x"}):
+        with pytest.raises(vi.BadInput, match="kind is|expected"):
+            vi.Record.of([1.0, 2.0], **wrong)
+    with pytest.raises(vi.BadInput, match="finite"):
+        vi.Record.of([1.0, 2.0], time=[0.0, np.nan])
+    with pytest.raises(vi.BadInput, match="start"):
+        vi.Record.of([1.0, 2.0], rate=1.0, start=np.nan)
     with pytest.raises(vi.BadInput, match="shape"):
         vi.Record.of(np.zeros((2, 2)), rate=1.0)
+
+
+@pytest.mark.parametrize(
+    "time",
+    [np.arange(4000, dtype=np.float32) / 2000, np.cumsum(np.full(4000, 1 / 2000)), np.round(np.arange(4000) / 2048, 7)],
+)
+def test_times_that_are_nearly_even_are_even(time):
+    assert vi.Record.of(np.zeros(4000), time=time).rate == pytest.approx(4000 / (time[-1] - time[0]), rel=1e-3)
+
+
+def test_a_unit_that_is_stated_again_is_not_applied_twice():
+    made = vi.Record.of(np.sin(np.arange(2000) * 0.3), rate=1000.0, unit="mm")
+    first, again = (np.nanmax(vi.spectrum(made, unit=unit).value) for unit in (None, "mm"))
+    assert first == pytest.approx(again, rel=1e-12)
 
 
 numbers = st.lists(st.floats(-1e6, 1e6), min_size=2, max_size=60)

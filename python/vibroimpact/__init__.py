@@ -33,6 +33,7 @@ from ._measure import (
     spectrum,
     waterfall,
 )
+from ._native import limit as _limit
 from ._native import version as _version
 from ._reading import read
 from ._record import Record, Recording, write, write_uff
@@ -44,6 +45,14 @@ __version__ = _version()
 def show_progress(shown: bool | None = None) -> None:
     """Shows the progress of long work always, never, or, with ``None``, at a terminal and in a notebook."""
     _progress.shown = shown
+
+
+def max_memory(size: str) -> None:
+    """States the memory that a file and its analysis may take, such as ``"2GB"``; a quarter of the machine's by default.
+
+    Raises ``BadInput`` where it is no size.
+    """
+    _limit(size)
 
 
 __all__ = [
@@ -68,6 +77,7 @@ __all__ = [
     "excitation",
     "frf",
     "impacts",
+    "max_memory",
     "modal",
     "pulse",
     "read",

@@ -82,7 +82,7 @@ class Answer(Fields):
             [finding(told, record) for record, told in findings],
             [_table(table) for table in tables],
             {name: Figure(name, drawing) for name, drawing in figures},
-            spoken(text),
+            text,
         )
 
     def __reduce__(self) -> tuple[Any, ...]:

@@ -36,8 +36,10 @@ def ask(command: Sequence[str], sources: Sequence[Any], options: Mapping[str, An
         stated = [name for name in OF_FILES if given.get(name)]
         if stated:
             raise BadInput(f"{stated[0]}= says how a file is read, and this record is in memory")
-        given.pop("rate", None)
         if any(_is_numbers(source) for source in flat):
+            if not all(_is_numbers(source) for source in flat):
+                raise BadInput("arrays beside files or records; expected records: Record.of(array, rate=…, unit=…)")
+            given.pop("rate", None)
             given.pop("unit", None)
     typed = [*command, *words(given)] + (["--", *places] if places else [])
     bar = Bar()
@@ -85,18 +87,20 @@ def _place(source: Any, options: Mapping[str, Any], made: Made) -> str:
 def _of_array(source: Any, options: Mapping[str, Any]) -> list[Record]:
     """The records of an array: one dimension, or a row for each channel."""
     rate, unit = options.get("rate"), options.get("unit") or ""
+    if not isinstance(unit, str):
+        raise BadInput("several units for an array; expected one: a record for each, Record.of(array, rate=…, unit=…)")
     over_time = str(getattr(getattr(source, "index", None), "name", "")) in ("time [s]", "frequency [Hz]")
-    if over_time and rate is None:
+    if over_time and rate is not None:
+        raise BadInput("rate= beside an index of times; expected one of them")
+    if over_time:
         columns = [source[name] for name in source.columns] if hasattr(source, "columns") else [source]
-        return [Record.from_pandas(column, unit=unit or None) for column in columns]
+        return [Record.from_pandas(column, unit=unit) for column in columns]
     try:
-        array = np.asarray(source)
+        array = source if isinstance(source, np.ndarray) else np.asarray(source)
     except ValueError:
         raise BadInput("rows of different lengths; expected channels of one length") from None
     if array.dtype.kind not in "biufc" or array.ndim == 0:
         raise BadInput(f"{source!r:.60}; expected a file, a record, or numbers")
-    if not isinstance(unit, str):
-        raise BadInput("several units for an array; expected one: a record for each, Record.of(array, rate=…, unit=…)")
     if array.ndim == 1:
         return [Record.of(array, rate=rate, unit=unit)]
     if array.ndim == 2:

@@ -42,16 +42,18 @@ def spoken(text: str) -> str:
 
     def argument(found: re.Match[str]) -> str:
         name, value = found[1].replace("-", "_"), (found[2] or "").strip(" =")
-        if value in ("is", "stands", "has", "needs", "without"):
+        if name == "max_memory":
+            return f"vibroimpact.max_memory({value!r})"
+        if value in ("is", "stands", "has", "needs", "without", "in", "and", "or", "to"):
             return f"{name} {value}"
         if not value or re.fullmatch(r"<.*>|[A-Z:]+", value):
             return f"{name}="
         return f"{name}={value if _NUMBER.fullmatch(value) else repr(value)}"
 
-    text = re.sub(r"\bvibro --help", "help(vibroimpact)", text)
+    text = re.sub(r"(?<![\w/.-])vibro --help", "help(vibroimpact)", text)
     text = re.sub(r"\bvibro needs <([A-Z]+)>\.*", lambda found: f"no {found[1].lower()} is named", text)
-    text = re.sub(r"\bvibro (" + "|".join(_COMMANDS) + r")\b( [^\s`,;()]+)?", called, text)
-    text = re.sub(r"--([a-z][a-z-]+)((?:=| )(?:<[^>]*>|[^\s`,;()]+))?", argument, text)
+    text = re.sub(r"(?<![\w/.-])vibro (" + "|".join(_COMMANDS) + r")(?![\w/.-])( [^\s`,;()]+)?", called, text)
+    text = re.sub(r"(?<![\w/.-])--([a-z][a-z-]+)(?![\w./])((?:=| )(?:<[^>]*>|[^\s`,;()]+))?", argument, text)
     return re.sub(r"try: ls\b *(.*)", lambda found: f"try: os.listdir({found[1] or '.'!r})", text)
 
 

@@ -53,7 +53,8 @@ class Figure:
         Returns the first axes that were drawn on; ``.figure.axes`` has all. Waterfalls and maps of classes are
         left out: they are in ``svg()``.
         """
-        panels = [panel["Plot"] for panel in self.data()["panels"] if "Plot" in panel]
+        plots = [panel["Plot"] for panel in self.data()["panels"] if "Plot" in panel]
+        panels = [plot for plot in plots if plot.get("series") and not plot.get("heatmap")]
         if not panels:
             raise ValueError(f"the figure {self.name} has no panel that matplotlib draws here; use svg()")
         if ax is not None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import html
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from os import PathLike, fspath
-from typing import TYPE_CHECKING, Any, overload
+from typing import TYPE_CHECKING, Any, Literal, overload
 
 import numpy as np
 import numpy.typing as npt
@@ -49,14 +49,14 @@ class Record:
         time: npt.ArrayLike | None = None,
         frequency: npt.ArrayLike | None = None,
         start: float = 0.0,
-        unit: str = "",
+        unit: str | None = None,
         name: str = "",
-        kind: str | None = None,
+        kind: Literal["trace", "spectrum", "frf"] | None = None,
     ) -> Record:
         """A record of an array.
 
         State ``rate`` in Hz (the first sample is at ``start`` in s), the instants ``time`` in s, or the
-        ``frequency`` of lines in Hz. ``unit`` is that of the values, such as ``"mm/s"``; they are kept in SI.
+        ``frequency`` of lines in Hz. Instants within a thousandth of a step of an even axis are on it. ``unit`` is that of the values, such as ``"mm/s"``; they are kept in SI.
         ``kind`` is ``trace``, ``spectrum`` (peak values) or ``frf``; by default complex values over frequency
         are a frf, real ones a spectrum.
 
@@ -71,16 +71,33 @@ class Record:
         at = None if over is None else numbers(over)
         if at is not None and at.shape != array.shape:
             raise BadInput(f"{len(array)} values over an axis of {at.size}; expected equal numbers")
-        if kind is None:
-            kind = "trace" if frequency is None else "frf" if np.iscomplexobj(array) else "spectrum"
-        if kind == "spectrum" and np.iscomplexobj(array):
-            kind = "complex spectrum"
-        if kind == "trace" and np.iscomplexobj(array):
+        if at is not None and (np.iscomplexobj(at) or not np.isfinite(at).all()):
+            raise BadInput("an axis with values that are not finite; expected real numbers")
+        if not np.isfinite(start) or (start and rate is None):
+            raise BadInput(f"start is {start} s; expected a number beside rate=")
+        if kind not in (None, "trace", "spectrum", "frf"):
+            raise BadInput(f"kind is {kind!r}; expected 'trace', 'spectrum' or 'frf'")
+        if kind is not None and (frequency is None) != (kind == "trace"):
+            axis = "rate= or time=" if kind == "trace" else "frequency="
+            raise BadInput(f"a {kind} over another axis; expected {axis}")
+        made: str | None = kind
+        if made is None:
+            made = "trace" if frequency is None else "frf" if np.iscomplexobj(array) else "spectrum"
+        if made == "spectrum" and np.iscomplexobj(array):
+            made = "complex spectrum"
+        if made == "frf":
+            array = array.astype(complex)
+        if made == "trace" and np.iscomplexobj(array):
             raise BadInput("complex values over time; expected real ones, or frequency=")
         if rate is not None:
             rate = above_zero("rate", rate)
         even = None if rate is None else (start, 1.0 / rate)
-        head, factor = Head.made(kind, len(array), name, unit, even, None if at is None else at.tolist())
+        uneven = None
+        if at is not None:
+            step = abs(float(at[-1] - at[0])) / max(len(at) - 1, 1) if len(at) else 0.0
+            digits = np.finfo(np.asarray(over).dtype).eps if np.asarray(over).dtype.kind == "f" else 0.0
+            uneven = (at.tolist(), 1e-3 * step + float(digits) * float(np.abs(at).max(initial=0.0)))
+        head, factor = Head.made(made, len(array), name, unit or "", even, uneven)
         if factor != 1.0:
             array *= factor
         return cls(head, array)
@@ -177,17 +194,16 @@ class Record:
     def from_pandas(cls, series: pandas.Series[Any], *, unit: str | None = None) -> Record:
         """The record of a series whose index is named ``time [s]`` or ``frequency [Hz]``, as ``to_pandas`` makes it.
 
-        Its unit is that of ``attrs["unit"]``, unless ``unit`` states it.
+        ``unit`` is that of its values: ``attrs`` are not read, since pandas keeps them when values are changed.
 
         Raises ``BadInput`` where the index has another name.
         """
         over = {"time [s]": "time", "frequency [Hz]": "frequency"}.get(str(series.index.name))
         if over is None:
             raise BadInput(f"an index named {series.index.name!r}; expected 'time [s]' or 'frequency [Hz]'")
-        stated = str(series.attrs.get("unit", "")) if unit is None else unit
         name = "" if series.name is None else str(series.name)
         at: dict[str, Any] = {over: series.index.to_numpy()}
-        return cls.of(series.to_numpy(), unit=stated, name=name, **at)
+        return cls.of(series.to_numpy(), unit=unit, name=name, **at)
 
     def to_xarray(self) -> xarray.DataArray:
         """An array with its axis as coordinate; ``attrs`` have the units."""
@@ -215,10 +231,10 @@ class Record:
         Raises ``BadInput`` where the unit is not known, or there is neither ``fs`` nor ``time``.
         """
         rate, time = series.get("fs"), series.get("time")
-        if rate is None and time is None:
-            raise BadInput("neither 'fs' nor 'time'; expected one of them")
+        if "data" not in series or (rate is None and time is None):
+            raise BadInput("a series needs 'data', and 'fs' or 'time'")
         given: dict[str, Any] = {"rate": rate} if rate is not None else {"time": time}
-        return cls.of(series["data"], unit=series.get("unit_str", ""), name=series.get("name", ""), **given)
+        return cls.of(series["data"], unit=series.get("unit_str"), name=str(series.get("name", "")), **given)
 
     def __array__(self, dtype: Any = None, copy: bool | None = None) -> Array:
         return np.array(self.values, dtype, copy=copy) if copy else np.asarray(self.values, dtype)
@@ -283,8 +299,8 @@ class Recording(Sequence[Record]):
         """
         import pandas
 
-        axes = [(r.axis_unit, len(r), r._head.start, r._head.step) for r in self.records]
-        if any(axis != axes[0] for axis in axes):
+        first = self.records[0]
+        if any(r.axis_unit != first.axis_unit or not np.array_equal(r.axis, first.axis) for r in self.records):
             raise BadInput("records over different axes; expected one axis: use to_pandas() of each record")
         return pandas.concat([record.to_pandas() for record in self.records], axis=1)
 
@@ -350,6 +366,8 @@ def numbers(values: Any) -> Array:
         array = np.asarray(values)
         if array.dtype.kind not in "biufc":
             raise TypeError
+        if np.ma.is_masked(values):
+            return np.asarray(np.ma.filled(values.astype(array.dtype if array.dtype.kind == "c" else float), np.nan))
         return np.array(array, complex if np.iscomplexobj(array) else float)
     except (TypeError, ValueError):
         raise BadInput(f"{type(values).__name__}; expected numbers in one dimension") from None
@@ -371,4 +389,6 @@ def above_zero(name: str, value: Any) -> float:
 
 def _plain(record: Record) -> Array:
     """The values as an array that Rust takes."""
+    if np.iscomplexobj(record.values) and not record._head.complex:
+        raise BadInput(f"complex values in the {record.kind} {record.name!r}; expected real ones")
     return np.ascontiguousarray(record.values, complex if record._head.complex else float)

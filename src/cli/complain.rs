@@ -62,7 +62,7 @@ pub fn usage(complaint: &clap::Error, json: bool) -> u8 {
 
 /// The hint of an error, with the words that were typed filled in.
 fn spelt(hint: &Hint, error: &Error) -> String {
-    let words = || typed_words().skip(1).cloned();
+    let words = || typed_words().skip(1);
     match hint {
         Hint::OfFile(command) => match file_of(error, words().skip(1)) {
             Some(file) => format!("{command} {}", typed(file)),

@@ -39,7 +39,7 @@ fn matching_files(word: OsString, command: &str) -> Vec<OsString> {
 
 /// Whether standard input, `-`, is named more than once: it can be read only once.
 pub fn repeats_stdin() -> bool {
-    typed::words().filter(|word| *word == "-").count() > 1
+    typed::words().filter(|word| word == "-").count() > 1
 }
 
 /// Joins a number and the unit typed after it, so that the error about the unit names its option: `--height
@@ -63,7 +63,7 @@ fn joined_units(mut typed: Vec<OsString>) -> Vec<OsString> {
 
 /// The typed words with patterns expanded and current spellings.
 pub fn args() -> impl Iterator<Item = OsString> {
-    let typed = joined_units(typed::words().cloned().collect());
+    let typed = joined_units(typed::words().collect());
     let words = typed.iter().skip(1).filter_map(|word| word.to_str()).filter(|word| !word.starts_with('-'));
     let command = words.take(2).collect::<Vec<_>>().join(" ");
     let first = command.split(' ').next().unwrap_or_default().to_owned();

@@ -1,16 +1,16 @@
 //! The words that were typed, with the name of the program first.
 
 use std::ffi::OsString;
-use std::sync::OnceLock;
+use std::sync::{Mutex, PoisonError};
 
-static WORDS: OnceLock<Vec<OsString>> = OnceLock::new();
+static WORDS: Mutex<Vec<OsString>> = Mutex::new(Vec::new());
 
-/// States the words, once. A program that asks by [`super::answer`] has typed none.
+/// States the words. A program that asks by [`super::answer`] has typed none.
 pub fn state(words: impl IntoIterator<Item = OsString>) {
-    WORDS.get_or_init(|| words.into_iter().collect());
+    *WORDS.lock().unwrap_or_else(PoisonError::into_inner) = words.into_iter().collect();
 }
 
 /// The words; none if nothing was typed.
-pub fn words() -> impl Iterator<Item = &'static OsString> {
-    WORDS.get().into_iter().flatten()
+pub fn words() -> impl Iterator<Item = OsString> {
+    WORDS.lock().unwrap_or_else(PoisonError::into_inner).clone().into_iter()
 }

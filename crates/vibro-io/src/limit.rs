@@ -1,7 +1,7 @@
 //! Limit of the memory that a reader may use. It is checked before memory is reserved for a size that a
 //! file declares.
 
-use std::sync::OnceLock;
+use std::sync::atomic::{AtomicU64, Ordering};
 use vibro_record::units::notation::significant;
 use vibro_record::{Error, Result};
 
@@ -13,8 +13,8 @@ const UNKNOWN: f64 = 4.0 * GB;
 /// need the rest.
 const MOST_OF_MACHINE: f64 = 0.8;
 
-/// Limit in bytes stated for all readers of the program.
-static STATED: OnceLock<f64> = OnceLock::new();
+/// Bits of the limit in bytes stated for all readers of the program; 0 where none is stated.
+static STATED: AtomicU64 = AtomicU64::new(0);
 
 /// Largest memory in bytes for the values of a file and the results computed from them.
 ///
@@ -30,14 +30,15 @@ pub struct Limit(pub f64);
 impl Default for Limit {
     /// The limit from [`Limit::state`], else a quarter of the machine's memory.
     fn default() -> Limit {
-        Limit(STATED.get().copied().unwrap_or_else(|| machine() / 4.0))
+        let stated = f64::from_bits(STATED.load(Ordering::Relaxed));
+        Limit(if stated > 0.0 { stated } else { machine() / 4.0 })
     }
 }
 
 impl Limit {
-    /// Makes this limit the default of all readers; only the first call has an effect.
+    /// Makes this limit the default of all readers.
     pub fn state(self) {
-        let _ = STATED.set(self.0);
+        STATED.store(self.0.to_bits(), Ordering::Relaxed);
     }
 
     /// Parses a size above 0, such as `2GB` or `500MB`.

@@ -2,20 +2,26 @@
 
 use crate::held::{Contents, scale};
 use crate::missing;
-use crate::options::Options;
+use crate::options::{Options, POSSIBLE};
 use crate::source::Source;
 use rayon::prelude::*;
-use vibro_record::{Error, Frf, Place, Record, Result, Spectrum, Trace, Values};
+use vibro_record::{AxisKind, Error, Frf, Place, Record, Result, Spectrum, Trace, Values};
 
 /// Reads the records of a source that was made in memory.
 ///
 /// # Errors
-/// If a record has no values, if values are missing and that is not allowed, or if one overflows a double.
+/// If a record has no values or an impossible rate, if values are missing and that is not allowed, or if one overflows a double.
 pub fn read(source: &Source, options: &Options, _survey: bool) -> Result<Contents> {
     let Some(made) = source.in_records() else { return Ok(Contents::default()) };
     if let Some(empty) = made.records.iter().find(|record| record.is_empty()) {
         let found = format!("the record {:?} has no values", empty.meta().name);
         return Err(Error::input(Place::default(), found, "two values at least"));
+    }
+    let rates = made.records.iter().filter_map(|record| Some((record, 1.0 / record.axis().step()?)));
+    let mut of_time = rates.filter(|(record, _)| record.axis().kind == AxisKind::Time);
+    if let Some((record, rate)) = of_time.find(|(_, rate)| !POSSIBLE.contains(rate)) {
+        let found = format!("the record {:?} has a sampling rate of {rate:e} Hz", record.meta().name);
+        return Err(Error::input(Place::default(), found, "a possible number of hertz"));
     }
     let mut records = made.records.clone();
     let mut values: Vec<Values> = records.iter_mut().map(taken).collect();
