@@ -51,7 +51,8 @@ impl Measured {
         let window = frf.meta.averaged_with();
         let all = Measured::of(&frf.axis, frf.values.clone(), frf.meta.quantity);
         let record = frf.axis.step().map(|step| (1.0 - 1.0 / BEFORE as f64) / step);
-        Measured { window, after_blow: record.filter(|_| frf.meta.from_blows()), ..all }
+        let after_blow = frf.meta.after_blow().or(record.filter(|_| frf.meta.from_blows()));
+        Measured { window, after_blow, ..all }
     }
 
     fn of(axis: &Axis, values: Vec<Complex64>, kind: Quantity) -> Measured {
