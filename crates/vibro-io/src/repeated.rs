@@ -48,9 +48,10 @@ impl Reader {
         };
         let in_order = pairs.iter().all(|[a, b]| b.wrapping_sub(*a) == pairs[0][1].wrapping_sub(pairs[0][0]));
         let joined = in_order && all.iter().all(|pair| (0..2).all(|i| alike(&pair[i], &all[0][i])));
-        let found = match joined {
-            true => Finding::note("records-joined").count("n", all.len()),
-            false => Finding::caution("records-unused").count("n", all.len() - 1),
+        let found = if joined {
+            Finding::note("records-joined").count("n", all.len())
+        } else {
+            Finding::caution("records-unused").count("n", all.len() - 1)
         };
         let found = found.name("channel", names[pairs[1][1]]).name("reference", names[pairs[1][0]]);
         let [mut force, mut response] = all.remove(0);
