@@ -6,6 +6,7 @@
 mod alike;
 mod folder;
 mod found;
+mod frequency_response;
 mod joined;
 mod notes;
 mod trial;

@@ -186,7 +186,10 @@ impl Keys {
             elsewhere.and_then(|(file, name)| Some(((source.beside)("reference", file).ok()?, name)));
         let Some((file, name)) = elsewhere.filter(|(file, _)| source.folder.exists(file)) else {
             let (named, factor) = (channel.channel.as_deref(), channel.calibration);
-            return reader.stream_chosen(source.path, reference, named, factor);
+            return match reference.filter(|_| self.hammer) {
+                Some(reference) => reader.stream_repeated(source.path, reference, named, factor),
+                None => reader.stream_chosen(source.path, reference, named, factor),
+            };
         };
         let reference_recording = reader.from_path(&file)?;
         let force = reference_recording.trace(Some(name), None)?;

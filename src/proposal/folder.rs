@@ -274,8 +274,12 @@ impl FileSeries {
 
     /// The force channel and the others, if there is exactly one force.
     pub(super) fn force_and_responses(&self) -> Option<(usize, Vec<usize>)> {
-        let traces: Vec<usize> =
-            (0..self.headers.len()).filter(|k| self.headers[*k].kind == "trace").collect();
+        self.force_among((0..self.headers.len()).collect())
+    }
+
+    /// The force channel and the others among some channels, if there is exactly one force.
+    pub(super) fn force_among(&self, mut traces: Vec<usize>) -> Option<(usize, Vec<usize>)> {
+        traces.retain(|k| self.headers[*k].kind == "trace");
         let is_force = |k: &usize| self.headers[*k].quantity == "force";
         let motion =
             |k: &usize| matches!(self.headers[*k].quantity, "displacement" | "velocity" | "acceleration");

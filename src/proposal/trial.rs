@@ -36,12 +36,6 @@ fn doubts_analysis(found: &Finding) -> bool {
 /// Codes of the doubts about a friction-damped decay, whose amplitude falls by a constant step per swing.
 const FRICTION_DOUBTS: [&str; 2] = [code::DECAY_UNEXPLAINED, code::DECAY_CHANGES];
 
-/// A frequency response needs at least this many segments without overlap.
-const LEAST_SEGMENTS: usize = 4;
-/// Samples of a segment that always suffice. Where a record gives fewer, the length of its segments is
-/// stated.
-const LONG_SEGMENT: usize = 8192;
-
 /// Least share of the rest of the record that a decay takes from its start. A shorter one may be the
 /// ringing after one of several impacts.
 const LEAST_DECAY_SHARE: f64 = 0.2;
@@ -106,7 +100,7 @@ impl Trial<'_> {
 
     /// The first table with a plausible answer; the next answering one instead if the first is a decay that
     /// fills little of the record, or a drop whose decay starts at once.
-    fn first_plausible(&self, tables: &[Table]) -> Option<Table> {
+    pub(super) fn first_plausible(&self, tables: &[Table]) -> Option<Table> {
         let with_answer = |table| Some((table, self.plausible_answer(from_ref(table))?));
         let mut plausible = tables.iter().filter_map(with_answer);
         let (first, answer) = plausible.next()?;
@@ -135,7 +129,7 @@ impl Trial<'_> {
     }
 
     /// The answers of the tables, if they are plausible and no finding is a doubt about the analysis.
-    fn plausible_answer(&self, tables: &[Table]) -> Option<Answer> {
+    pub(super) fn plausible_answer(&self, tables: &[Table]) -> Option<Answer> {
         let is_plausible = |answer: &Answer| {
             answer.findings.iter().all(|(_, f)| !doubts_analysis(f)) && fits_kind(tables, answer)
         };
@@ -211,6 +205,9 @@ impl Trial<'_> {
             }
             return found;
         }
+        if let Some(blows) = self.repeated_blows(series, name) {
+            return blows;
+        }
         let (channels, values) = (series.headers.len().min(CHANNELS), series.values());
         if values > MOST_VALUES {
             let why = format!(
@@ -231,6 +228,14 @@ impl Trial<'_> {
             None => self.channel(series, k, name),
         });
         by_channel.collect::<Vec<FoundTables>>().into_iter().for_each(|tables| found.add(tables));
+        if let Some(first) = series.headers.get(channels) {
+            let (all, name) = (series.headers.len(), &first.name);
+            let why = format!(
+                "channels {} to {all}, from {name:?} on: {channels} channels a file are tried",
+                channels + 1
+            );
+            found.add(FoundTables::left(file, why));
+        }
         found
     }
 
@@ -286,40 +291,10 @@ impl Trial<'_> {
     }
 
     /// The table if its analysis gives an answer, else the reason why there is none.
-    fn with_answer(&self, table: Table) -> FoundTables {
+    pub(super) fn with_answer(&self, table: Table) -> FoundTables {
         match self.answers(from_ref(&table)) {
             Ok(_) => FoundTables::table(table),
             Err(refusal) => FoundTables::left(table.files, refusal.why),
-        }
-    }
-
-    /// The frequency response between two channels: under a lasting excitation, else of hammer blows.
-    fn frequency_response(
-        &self,
-        series: &FileSeries,
-        name: &str,
-        [force, response]: [usize; 2],
-    ) -> FoundTables {
-        let file = &series.files[0];
-        let title = format!("{name} {}", series.headers[response].name);
-        let table = |about| {
-            let table = Table::new("frf", about, file).found("name", &title).found("file", file);
-            let table = table.found("channel", series.channel(response));
-            table.guessed("reference", series.channel(force), "the channel in N")
-        };
-        let steady = table("force and response");
-        let steady = match series.headers[response].n / LEAST_SEGMENTS {
-            few if few < LONG_SEGMENT => steady.guessed(
-                "segment",
-                1 << few.max(1).ilog2(),
-                "seven averages of half-overlapping segments",
-            ),
-            _ => steady,
-        };
-        let blows = table("a hammer test").guessed("hammer", true, "the force is zero between blows");
-        match self.first_plausible(&[steady.clone(), blows]) {
-            Some(table) => FoundTables::table(table),
-            None => self.with_answer(steady),
         }
     }
 

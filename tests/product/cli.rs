@@ -1,6 +1,7 @@
 //! The command line as a user or a program meets it: exit codes, JSON keys, error messages.
 
 mod answers;
+mod blows;
 mod campaign;
 mod choose;
 mod complaints;

@@ -316,8 +316,18 @@ fn of_train(found: &Impacts) -> Vec<Finding> {
             .then(|| Finding::caution("impacts-missed").count("n", found.missed)),
         (found.doubled > 0).then(|| Finding::caution("impacts-doubled").count("n", found.doubled)),
         irregular.map(|s| Finding::caution("impacts-irregular").number("spread", s / found.median_interval)),
+        irregular.filter(|_| bounces(&found.times)).map(|_| Finding::caution("impacts-bounce")),
     ];
     all.into_iter().flatten().collect()
+}
+
+/// Fewest intervals that show a bouncing body: at random, one order in 120 of five falls throughout.
+const FALLING: usize = 5;
+
+/// Whether each interval is shorter than the one before, as the flights of a bouncing body.
+fn bounces(times: &[f64]) -> bool {
+    let steps: Vec<f64> = times.windows(2).map(|w| w[1] - w[0]).collect();
+    steps.len() >= FALLING && steps.is_sorted_by(|a, b| a > b)
 }
 
 #[cfg(test)]

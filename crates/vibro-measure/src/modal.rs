@@ -5,6 +5,8 @@
 //! for a mobility, −ω² for an accelerance). The largest line, the half-power bandwidth and the circle fit are
 //! given for comparison.
 
+#[cfg(test)]
+mod blows;
 mod classical;
 mod leakage;
 #[cfg(test)]

@@ -43,8 +43,8 @@ pub struct Restitution {
     pub restitution: Estimate,
     /// All answers.
     pub by: Vec<MethodAnswer>,
-    /// Whether the answers agree within their uncertainties; null where an answer without uncertainty leaves
-    /// that open. A single answer counts as agreeing.
+    /// Whether the answers agree within their uncertainties; null for one answer alone, and where an answer
+    /// without uncertainty leaves that open.
     pub agree: Option<bool>,
     /// Standard deviation of the restitution by drops over 2000 resamples of the drops with replacement
     /// (Efron 1979), from a fixed seed: the scatter of the drops alone. Null for fewer than five drops.
@@ -226,12 +226,12 @@ fn contact(measured: &Measured) -> (f64, f64) {
 /// uncertainties of the other: R scatters by 2 % from bounce to bounce, and the ratio of two by √2 of that.
 const GROSS: f64 = 1.96 * std::f64::consts::SQRT_2 * SCATTER;
 
-/// Whether every pair of answers agrees at 95 %, and a doubt for each that does not; `None` where one has no
-/// uncertainty and the others agree.
+/// Whether every pair of answers agrees at 95 %, and a doubt for each that does not; `None` for one answer
+/// alone, and where one has no uncertainty and the others agree.
 /// Methods may share data, as a drop and its train do, with unknown correlation: the uncertainties of two
 /// answers are added, which covers the worst case.
 fn agreement(by: &[MethodAnswer]) -> (Option<bool>, Vec<Doubt>) {
-    let (mut agree, mut doubts) = (Some(true), Vec::new());
+    let (mut agree, mut doubts) = ((by.len() > 1).then_some(true), Vec::new());
     for (i, a) in by.iter().enumerate() {
         for b in &by[i + 1..] {
             let (first, second) = (a.restitution.value, b.restitution.value);

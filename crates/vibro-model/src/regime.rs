@@ -180,7 +180,14 @@ impl Watch {
     fn repeated(&self, strikes: &VecDeque<Strike>) -> Option<Repeated> {
         let compared = ComparedStrikes::new(strikes, self.frequency);
         let longest = (LONGEST as usize).min(strikes.len() / 2);
-        (1..=longest).find_map(|p| compared.last(p).filter(|r| r.distance <= SAME || compared.falls(p)))
+        let repeats = |p| compared.last(p).filter(|r| r.distance <= SAME || compared.falls(p));
+        let found = (1..=longest).find_map(repeats)?;
+        // Two impacts that alternate about one, ever less, may pass the test for two before that for one.
+        let left = compared.left(found.impacts);
+        let part =
+            |d: usize| Some(d).filter(|d| found.impacts.is_multiple_of(*d)).and_then(|d| compared.last(d));
+        let shorter = (1..found.impacts).filter_map(part).find(|shorter| shorter.distance <= 2.0 * left);
+        Some(shorter.unwrap_or(found))
     }
 }
 
@@ -216,6 +223,18 @@ impl ComparedStrikes<'_> {
         let distance = self.largest(n - p..n, p);
         let counts = (1.0..=f64::from(LONGEST)).contains(&cycles) && distance <= SETTLING_DISTANCE;
         counts.then_some(Repeated { impacts: p, cycles: cycles as u32, distance })
+    }
+
+    /// Remaining change of the impacts of a pattern of `p`. If its differences fall by the ratio ρ from one
+    /// repetition to the next, it is 1/(1 − ρ) times the last; ρ is that of the largest in both halves of the
+    /// watched impacts, which cannot show a slower fall than over all their repetitions.
+    fn left(&self, p: usize) -> f64 {
+        let n = self.strikes.len();
+        let half = ((n - p) / 2).max(1);
+        let [before, last] = [p..n - half, n - half..n].map(|range| self.largest(range, p));
+        let ratio = (last / before).powf(p as f64 / half as f64);
+        let repetitions = n as f64 / p as f64;
+        last * if ratio < 1.0 { (1.0 - ratio).recip().min(repetitions) } else { repetitions }
     }
 
     /// Whether the differences over `p` impacts fall. The largest of each third of the watched impacts are

@@ -162,6 +162,12 @@ impl Meta {
         self.history.iter().rev().find(|step| step.name == "blows")?.argument("count")?.parse().ok()
     }
 
+    /// Time in s from the single blow of a hammer to the end of its record, from the history.
+    pub fn after_blow(&self) -> Option<f64> {
+        let made = self.history.iter().rev().find(|step| step.name == "one_blow")?;
+        made.argument("after")?.parse().ok()
+    }
+
     /// Takes over the unit that an instrument wrote: stores its SI unit and quantity, notes the conversion in
     /// the history, and returns the factor by which the values must be multiplied. An unknown unit is kept,
     /// with a finding and factor 1.

@@ -146,7 +146,8 @@ pub fn from_blows(
 ) -> Result<BlowTransfer> {
     let rate = rate_of(force, response, how)?;
     let blows = find(force, response, how, rate);
-    let kept: Vec<usize> = blows.iter().filter(|b| b.rejected.is_none()).map(|b| b.start).collect();
+    let clean: Vec<&Blow> = blows.iter().filter(|b| b.rejected.is_none()).collect();
+    let kept: Vec<usize> = clean.iter().map(|b| b.start).collect();
     if kept.is_empty() {
         return Err(none_clean(&blows, force, how)?);
     }
@@ -178,6 +179,11 @@ pub fn from_blows(
         .frf
         .meta
         .step("blows", &[("count", &kept.len()), ("length", &how.length), ("before", &how.before)]);
+    // What each of several blows leaves to the next is as large as what the end of its record cuts off.
+    if let [blow] = clean[..] {
+        let after = ((how.length - how.before) as f64 - delay(force, blow, how)) / rate;
+        transfer.frf.meta.step("one_blow", &[("after", &after)]);
+    }
     let left = left::widen(&mut transfer, &response.values, &kept, how, &weights[1]);
     let force = &averages.auto[0];
     let noise = noise * weights[0].iter().map(|w| w * w).sum::<f64>();
@@ -207,6 +213,26 @@ pub fn from_blows(
             [usize::from(how.force_window.is_some()) + 2 * usize::from(how.left_at_end.is_some())],
         enbw: how.length as f64 * squares / (sum * sum),
     })
+}
+
+/// Delay in samples from the trigger of a blow to the centre of its force, with the ringing of filters within
+/// four contact times.
+///
+/// With the transform F(s) of the force, a mode of pole s that rings at the end T of the record lacks e^((s −
+/// iω)T) F(s)/F(iω) of its transform. Near the mode F(s)/F(iω) is e^((iω − s)c), where c is that centre: the
+/// record ends T − c after an impulse.
+fn delay(force: &Trace, blow: &Blow, how: &Blows) -> f64 {
+    let part = &force.values[blow.start..blow.start + how.length];
+    let quiet = how.before / 2;
+    let level = part[..quiet].iter().sum::<f64>() / quiet.max(1) as f64;
+    let share = |v: &f64| (v - level) / blow.peak;
+    let contact = part[how.before..].iter().take_while(|v| share(v) > TRIGGER).count();
+    let from = how.before.saturating_sub(4 * contact).max(quiet);
+    let around = &part[from..(how.before + 5 * contact).min(how.length)];
+    let [moment, sum] = around.iter().enumerate().fold([0.0, 0.0], |[moment, sum], (i, v)| {
+        [moment + ((from + i) as f64 - how.before as f64) * share(v), sum + share(v)]
+    });
+    if sum > 0.0 { moment / sum } else { 0.0 }
 }
 
 /// Longest record in samples that holds a single blow: the shortest interval between blows, or from the last

@@ -142,10 +142,17 @@ pub fn levels(values: &[f64], block: usize) -> Vec<f64> {
 }
 
 /// The record filtered to the lines of a band.
+///
+/// The transform is periodic: alone, the onset at the beginning of a record would ring before it, at the end
+/// of the record, like a new event. So the record is followed by its mirror image, whose lines lie twice as
+/// dense.
 fn within(values: &[f64], band: Range<usize>) -> Vec<f64> {
-    let transform = Transform::new(values.len());
-    let mut lines = transform.forward(values);
-    lines.truncate(band.end);
-    lines[..band.start].fill(Complex64::ZERO);
-    transform.inverse(&lines)
+    let mirrored: Vec<f64> = values.iter().chain(values.iter().rev()).copied().collect();
+    let transform = Transform::new(mirrored.len());
+    let mut lines = transform.forward(&mirrored);
+    lines.truncate(2 * band.end);
+    lines[..2 * band.start].fill(Complex64::ZERO);
+    let mut filtered = transform.inverse(&lines);
+    filtered.truncate(values.len());
+    filtered
 }

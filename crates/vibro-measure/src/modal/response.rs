@@ -54,7 +54,7 @@ impl Measured {
         let window = frf.meta.averaged_with();
         let all = Measured::of(&frf.axis, frf.values.clone(), frf.meta.quantity);
         let record = frf.axis.step().map(|step| (1.0 - 1.0 / BEFORE as f64) / step);
-        let after_blow = record.filter(|_| frf.meta.from_blows());
+        let after_blow = frf.meta.after_blow().or(record.filter(|_| frf.meta.from_blows()));
         Measured { window, after_blow, blows: frf.meta.blows(), ..all }
     }
 

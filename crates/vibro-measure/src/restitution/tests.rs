@@ -276,6 +276,9 @@ fn a_record_that_begins_with_the_second_impact_is_told_by_the_square() {
 
 #[test]
 fn what_cannot_be_compared_is_left_open() {
+    let alone = Train { intervals: vec![0.5, 0.4, 0.32, 0.256, 0.2048], ..Train::default() };
+    let found = of(&Measured { trains: vec![alone], contact_time: Some(0.0), ..Measured::default() });
+    assert_eq!((found.agree, found.by.len()), (None, 1), "{found:?}");
     let train = Train { intervals: vec![0.144, 0.03], ..Train::default() };
     let d = Drop { interval_std: Some(0.001), height_std: Some(0.001), ..drop(0.57, 0.144) };
     let found =
@@ -464,10 +467,10 @@ fn findings_of_steady_trains_do_not_concern_bounces() {
     let values = (0..15_000).map(|i| times.iter().map(|at| pulse(f64::from(i) * 1e-4 - at)).sum()).collect();
     let meta = Meta::new("contact", Unit::parse("V").unwrap());
     let trace = Trace { meta, axis: Axis::time(0.0, 1e-4, 15_000), values };
-    let irregular = |findings: &[Finding]| {
-        findings.iter().any(|f| ["impacts-irregular", "intervals-drift"].contains(&f.code.as_ref()))
-    };
-    assert!(irregular(&impacts(&trace, &ImpactsOptions::default()).unwrap().findings));
+    let concerns = ["impacts-irregular", "intervals-drift", "impacts-bounce"];
+    let irregular = |findings: &[Finding]| findings.iter().any(|f| concerns.contains(&f.code.as_ref()));
+    let steady = impacts(&trace, &ImpactsOptions::default()).unwrap().findings;
+    assert!(irregular(&steady) && steady.iter().any(|f| f.code == "impacts-bounce"), "{steady:?}");
     let found = Train::of(&trace, &ImpactsOptions::default(), None).unwrap().1;
     assert!(found.times.len() == 8 && !irregular(&found.findings), "{:?}", found.findings);
 }

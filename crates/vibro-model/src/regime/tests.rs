@@ -32,6 +32,16 @@ fn a_pattern_is_named_while_it_still_settles() {
     assert!(!found.settled && found.distance.unwrap() > SAME, "{found:?}");
 }
 
+/// The largest multipliers at 11.2 Hz are −0.957 ± 0.061i: impacts alternate about one, and their difference
+/// beats with a period of 49 cycles, longer than a third of the cycles watched.
+#[test]
+fn impacts_that_alternate_ever_less_are_one() {
+    for settle in [120, 180, 240, 300] {
+        let found = of(&Rig::thesis(), 0.5, 11.2, settle, 60);
+        assert_eq!(found.regime, Regime::Periodic { impacts: 1, cycles: 1 }, "{settle}: {found:?}");
+    }
+}
+
 #[test]
 fn differences_that_do_not_fall_are_no_pattern() {
     // Phases of a logistic map at 4 (chaotic), and of a circle map with an irrational rotation.

@@ -86,7 +86,9 @@ pub(super) fn widen(
     weights: &[f64],
 ) -> Option<[Left; 2]> {
     let quarter = (how.length - how.before) / PARTS;
-    if quarter < FEWEST || how.before < 2 || kept.is_empty() {
+    // A blow begins below its trigger, and the response with it: only the first half is quiet.
+    let before = how.before / 2;
+    if quarter < FEWEST || before < 2 || kept.is_empty() {
         return None;
     }
     let transform = Transform::new(quarter);
@@ -97,9 +99,9 @@ pub(super) fn widen(
     let mut noise = f64::INFINITY;
     for start in kept {
         let part = values.get(*start..start + how.length)?;
-        let quiet = &part[..how.before];
-        let level = quiet.iter().sum::<f64>() / how.before as f64;
-        let variance = quiet.iter().map(|v| (v - level).powi(2)).sum::<f64>() / (how.before - 1) as f64;
+        let quiet = &part[..before];
+        let level = quiet.iter().sum::<f64>() / before as f64;
+        let variance = quiet.iter().map(|v| (v - level).powi(2)).sum::<f64>() / (before - 1) as f64;
         noise = noise.min(variance);
         for (from, power) in &mut powers {
             let seen = part[*from..].iter().zip(&weights[*from..]).zip(&hann);
@@ -115,9 +117,9 @@ pub(super) fn widen(
     let strong = STRONG * head.iter().copied().fold(0.0, f64::max);
     let part = |(k, (head, tail)): (usize, (&f64, &f64))| {
         // The subtracted level is uncertain; the Hann window spreads this error over two lines.
-        let level = if k < 2 { sum * sum / how.before as f64 } else { 0.0 };
+        let level = if k < 2 { sum * sum / before as f64 } else { 0.0 };
         let noise = noise * weight * weight * (squares + level);
-        let scatter = noise * (n.recip().sqrt() + (2.0 / how.before as f64).sqrt());
+        let scatter = noise * (n.recip().sqrt() + (2.0 / before as f64).sqrt());
         let excess = tail / n - noise;
         if excess <= BEYOND * scatter || *head <= 0.0 {
             return 0.0;

@@ -119,6 +119,13 @@ fn a_motion_that_repeats_nothing_is_on_no_orbit() {
     assert!(on.rung(Model::ClosedForm).valid, "{:?}", on.findings);
 }
 
+#[test]
+fn impacts_that_alternate_ever_less_are_no_second_motion() {
+    let choice = asked(Rig::thesis().restitution, 0.5, 11.2, None);
+    let patterns: Vec<String> = choice.motions.iter().map(|m| m.pattern.to_string()).collect();
+    assert_eq!((patterns, choice.chosen), (vec!["1/1".to_owned()], Some(Model::ClosedForm)));
+}
+
 /// Number of impacts of the thesis' rig in 240 cycles, after 3000 cycles from a state at phase 0.
 fn impacts_from(restitution: f64, force: f64, frequency: f64, state: State) -> usize {
     let rig = Rig { restitution, ..Rig::thesis() };
