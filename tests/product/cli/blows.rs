@@ -84,13 +84,13 @@ fn a_campaign_takes_all_blows_of_a_file() {
 fn channels_that_are_not_tried_are_named() {
     let folder = tempfile::tempdir().unwrap();
     let mut noise = Noise::new(8);
-    let mut table: String =
-        "time [s]".to_owned() + &(1..11).map(|k| format!(",c{k} [V]")).collect::<String>() + "\n";
+    let row = |first: String, others: Vec<String>| first + "," + &others.join(",");
+    let mut rows = vec![row("time [s]".to_owned(), (1..11).map(|k| format!("c{k} [V]")).collect())];
     for i in 0..600 {
-        let values: String = (0..10).map(|_| format!(",{:.5}", noise.normal())).collect();
-        table += &format!("{:.4}{values}\n", f64::from(i) * 1e-3);
+        let values = (0..10).map(|_| format!("{:.5}", noise.normal())).collect();
+        rows.push(row(format!("{:.4}", f64::from(i) * 1e-3), values));
     }
-    fs::write(folder.path().join("many.csv"), table).unwrap();
+    fs::write(folder.path().join("many.csv"), rows.join("\n")).unwrap();
     let said = vibro(&["init", text(folder.path())]);
     let said = String::from_utf8([said.stdout, said.stderr].concat()).unwrap();
     assert!(said.contains("channels 9 to 10") && said.contains("c9"), "{said}");
