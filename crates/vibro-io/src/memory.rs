@@ -10,7 +10,8 @@ use vibro_record::{AxisKind, Error, Frf, Place, Record, Result, Spectrum, Trace,
 /// Reads the records of a source that was made in memory.
 ///
 /// # Errors
-/// If a record has no values or an impossible rate, if values are missing and that is not allowed, or if one overflows a double.
+/// If a record has no values or an impossible rate, if values are missing and that is not allowed, or if
+/// one overflows a double.
 pub fn read(source: &Source, options: &Options, _survey: bool) -> Result<Contents> {
     let Some(made) = source.in_records() else { return Ok(Contents::default()) };
     if let Some(empty) = made.records.iter().find(|record| record.is_empty()) {
