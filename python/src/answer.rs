@@ -10,9 +10,9 @@ use pyo3::sync::PyOnceLock;
 use pyo3::types::PyType;
 use serde_json::{Value, json};
 use std::path::PathBuf;
+use vibro_io::{Folder, Format, Recording};
 use vibroimpact::analysis::Answer;
 use vibroimpact::cli;
-use vibroimpact::read::{Folder, Format, Recording};
 use vibroimpact::record::Finding;
 use vibroimpact::report::Table;
 

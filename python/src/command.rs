@@ -5,8 +5,8 @@ use crate::watched::watched;
 use pyo3::prelude::*;
 use std::ffi::OsString;
 use std::path::PathBuf;
+use vibro_io::Limit;
 use vibroimpact::Error;
-use vibroimpact::read::Limit;
 
 /// Runs a command line, which begins with the name of the program, and gives the exit code.
 #[pyfunction]

@@ -8,10 +8,10 @@ use numpy::{PyArray1, PyReadonlyArray1};
 use pyo3::prelude::*;
 use std::path::PathBuf;
 use std::sync::Arc;
+use vibro_io::write::{Precision, Storage, Target};
+use vibro_io::{Folder, Owner, Reader};
 use vibroimpact::Error;
 use vibroimpact::cli;
-use vibroimpact::read::write::{Precision, Storage, Target};
-use vibroimpact::read::{Folder, Owner, Reader};
 use vibroimpact::record::{
     Axis, AxisKind, Finding, Frf, Grid, Meta, Record, Scaling, Spectrum, Trace, Values,
 };
