@@ -1,14 +1,12 @@
 //! Contact pulses: damping ratio and contact frequency from two instants, or from fits to the whole pulse.
 //!
 //! The model of spring and damper (Kelvin–Voigt) gives the answer unless the record prefers another. Fitted
-//! beside it are those of Hertz, of Hunt and Crossley, of a power law with free exponents, and of a
-//! yielding spring. Restitution, duration and velocity have the spread between likely models in their
-//! uncertainty. The instrument's low-pass is applied to the models in closed form.
+//! beside it are those of Hertz, of Hunt and Crossley, of a power law with free exponents, and of a yielding
+//! spring. The instrument's low-pass is applied to the models in closed form.
 
 mod contact;
 mod fit;
 mod instants;
-mod losses;
 mod low_pass;
 mod normalised;
 mod result;
@@ -149,12 +147,13 @@ pub fn pulse(trace: &Trace, options: &PulseOptions) -> Result<PulseResult> {
         let near = Finding::caution("pulse-near-corner").number("duration", duration);
         say(duration * filter.corner < 2.0, near.number("corner", filter.corner));
     }
-    let (fits, unfitted) = rivals(&samples, main);
-    result.unfitted = unfitted;
+    let fits = rivals(&samples, main);
     let best = fits.iter().min_by(|a, b| a.aicc().total_cmp(&b.aicc()));
     let unexplained = best.is_some_and(|best| samples.unexplained(best));
     result.fits = fits.iter().map(|f| scale.report(f, options.mass, known && !unexplained)).collect();
-    let led = result.led_by_best(best.map_or(1.0, |best| samples.dispersion(&best.fit)));
+    let also = fits.iter().flat_map(|f| &f.also);
+    let also: Vec<_> = also.map(|f| scale.report(f, options.mass, known && !unexplained)).collect();
+    let led = result.led_by_best(&also, best.map_or(1.0, |best| best.whiteness.inflation.max(1.0)));
     if led.is_none() || result.restitution.value.is_nan() {
         found.extend(impossible.into_iter().flatten().map(|doubt| doubt.of(&mut result)));
     }
@@ -164,7 +163,6 @@ pub fn pulse(trace: &Trace, options: &PulseOptions) -> Result<PulseResult> {
     found.extend(more.then(|| gained(&result).of(&mut result)));
     found.extend(unexplained.then(|| Finding::doubt("pulse-unexplained").of(&mut result)));
     found.extend(undamped(&result.xi));
-    found.extend(implausible(&result, trace.meta.quantity, options.mass));
     result = result.by_clock(trace.meta.clock);
     result.findings = found;
     result.picture = Some(scale.picture(&samples, &fits));
@@ -228,43 +226,18 @@ fn check(trace: &Trace, options: &PulseOptions) -> Result<()> {
     Ok(())
 }
 
-/// Energy of an impact in J above which a mass is doubted: a sledgehammer of 10 kg at 14 m/s.
-const LARGEST_ENERGY: f64 = 1e3;
-
-/// Velocity in m/s below which a mass is doubted, as after a fall of 5 µm.
-const LEAST_VELOCITY: f64 = 0.01;
-
-/// Caution that a stated mass does not go with the pulse, as one in grams does not. An acceleration has its
-/// velocity from the pulse, which gives the energy; a force has its momentum, which gives the velocity.
-fn implausible(result: &PulseResult, quantity: Quantity, mass: Option<f64>) -> Option<Finding> {
-    let (mass, velocity) = (mass?, result.initial_velocity.as_ref()?.value);
-    let energy = 0.5 * mass * velocity * velocity;
-    let strange = match quantity {
-        Quantity::Force => velocity < LEAST_VELOCITY || energy > LARGEST_ENERGY,
-        _ => energy > LARGEST_ENERGY,
-    };
-    let found = Finding::caution("pulse-mass-implausible").number("mass", mass);
-    strange.then(|| found.number("velocity", velocity).number("energy", energy))
-}
-
 /// Fits all models to the samples, spring and damper first. The power law is skipped where spring and damper
-/// leaves white residuals and is clearly ahead of the other models, unless a low-pass hides the jump of the
-/// force. The second value has the models without a fit, and why.
-fn rivals(samples: &Samples<'_>, main: FittedPulse) -> (Vec<FittedPulse>, Vec<(ContactModel, String)>) {
-    let (mut fits, mut unfitted) = (vec![main], Vec::new());
+/// leaves white residuals and is clearly ahead of the other models.
+fn rivals(samples: &Samples<'_>, main: FittedPulse) -> Vec<FittedPulse> {
+    let mut fits = vec![main];
     for rival in ContactModel::RIVALS {
         let behind = fits[1..].iter().all(|fit| fit.aicc() - fits[0].aicc() > NO_SUPPORT);
-        let ahead = behind && !fits[0].whiteness.rejected() && samples.filter.is_none();
-        if rival == ContactModel::PowerLaw && ahead {
-            unfitted.push((rival, "not needed: spring and damper is clearly ahead".to_owned()));
+        if rival == ContactModel::PowerLaw && behind && !fits[0].whiteness.rejected() {
             continue;
         }
-        match samples.fit(rival) {
-            Ok(fit) => fits.push(fit),
-            Err(error) => unfitted.push((rival, error.to_string())),
-        }
+        fits.extend(samples.fit(rival));
     }
-    (fits, unfitted)
+    fits
 }
 
 fn gained(result: &PulseResult) -> Doubt {

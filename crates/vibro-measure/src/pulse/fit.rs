@@ -1,13 +1,12 @@
 //! Models of a contact fitted to the samples of a pulse.
 
 use super::ringing::Ringing;
-use super::{ContactModel, KelvinVoigt, LowPass, Rebound};
+use super::{ContactModel, KelvinVoigt, LowPass};
 use crate::converter::{concealed, hidden, rounding};
 use crate::mean::{average, scatter};
 use crate::residuals::{Whiteness, aicc, student};
 use nalgebra::{DMatrix, DVector};
-use std::cell::RefCell;
-use vibro_math::{Fit, Minimum, minimise};
+use vibro_math::{Fit, least_squares};
 use vibro_record::{Error, Result, sort_by_number};
 
 /// Samples scaled to the pulse: time from its rising flank over its length, value over its height.
@@ -24,14 +23,11 @@ pub(super) struct Samples<'a> {
     pub quantum: f64,
     /// Ringing after the pulse, which may occur within it, too.
     pub rings: Option<Ringing>,
-    /// The contact integrated last, with its model and shape: most steps of a fit keep it.
-    pub last: RefCell<Option<(ContactModel, Vec<f64>, Rebound)>>,
 }
 
 /// The best fit of a model. Its parameters are onset, baseline, velocity of approach, and those of the
 /// shape: ξ and f (Kelvin–Voigt); duration (Hertz); duration and α (Hunt–Crossley) or restitution
 /// (yielding); duration, α and both exponents (power law).
-#[derive(Clone)]
 pub(super) struct FittedPulse {
     pub model: ContactModel,
     pub fit: Fit,
@@ -42,9 +38,12 @@ pub(super) struct FittedPulse {
     pub widening: Option<f64>,
     /// Index of the first sample inside the contact, where the model begins with a jump.
     first: Option<usize>,
-    /// Of a power law: its fits with given losses, each with the logarithm of its weight.
-    pub losses: Vec<(f64, FittedPulse)>,
+    /// Fits at further minima of the sum of squares over the exponent of the loss.
+    pub also: Vec<FittedPulse>,
 }
+
+/// Fits whose exponents of the loss differ by less than this belong to one minimum.
+const APART: f64 = 0.05;
 
 /// Least standard deviation of the noise, over the height of the pulse: about the digits of a converter.
 const DIGITS: f64 = 3e-4;
@@ -69,18 +68,13 @@ const COARSE: usize = 48;
 /// samples.
 const FAST: f64 = 0.1;
 
-/// Part of the sum of squares, and of the parameters, by which the last step of a fit of a power law changes
-/// them.
-const GAIN: f64 = 1e-6;
-
-/// Least first guess of the exponent of the loss: far below it no residual depends on its logarithm.
-const LEAST_EXPONENT: f64 = 0.02;
-
-/// Index of the exponent of the loss among the parameters of a power law.
-pub(super) const LOSS_EXPONENT: usize = 6;
-
 /// Half-width of the interval around the onset, over the pulse's length, in which a wrong low-pass shows.
 const AROUND: f64 = 0.1;
+
+/// Prior mean and standard deviation of the exponents of spring and loss: from flat to pointed bodies for
+/// the spring (Johnson 1985, 5.3), from losses that hardly depend on the indentation to losses that grow
+/// with its square. Without losses only the prior determines the second.
+const LIKELY: [(f64, f64); 2] = [(1.5, 0.5), (1.0, 0.75)];
 
 impl Samples<'_> {
     /// Delay of the low-pass, in lengths of the pulse.
@@ -112,11 +106,7 @@ impl Samples<'_> {
                 }
             }
             _ if p[3] > 0.0 => {
-                let mut last = self.last.borrow_mut();
-                if !last.as_ref().is_some_and(|(of, shape, _)| *of == model && *shape == p[4..]) {
-                    *last = Some((model, p[4..].to_vec(), model.rebound(&p[4..])?));
-                }
-                last.as_ref()?.2.decelerations(p[3], self.filter, &since.collect::<Vec<_>>())
+                model.rebound(&p[4..])?.decelerations(p[3], self.filter, &since.collect::<Vec<_>>())
             }
             _ => return None,
         };
@@ -166,18 +156,23 @@ impl Samples<'_> {
             let free = fit.fit.degrees_of_freedom() as f64;
             (outside, fit.fit.sum_of_squares() * (1.0 + (beyond / std).powi(2) / free))
         };
-        let fits = from.into_iter().filter_map(|(start, first)| self.from(model, noise, &start, first, None));
+        let fits = from.into_iter().filter_map(|(start, first)| self.from(model, noise, &start, first));
         let mut fits: Vec<((bool, f64), FittedPulse)> = fits.map(|fit| (held(&fit), fit)).collect();
         fits.sort_by(|(a, _), (b, _)| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
         self.between_samples(&mut fits);
-        let best = if model == ContactModel::PowerLaw {
-            let free: Vec<FittedPulse> = fits.into_iter().map(|(_, fit)| fit).collect();
-            self.over_losses(&free, &starts, noise).map(|fit| (false, fit))
-        } else {
-            fits.into_iter().next().map(|((outside, _), fit)| (outside, fit))
+        let mut fits = fits.into_iter().map(|((outside, _), fit)| self.judged(fit, outside));
+        let Some(mut best) = fits.next() else {
+            return Err(Error::refused(format!("the fit of the model {} does not converge", model.name())));
         };
-        let unlike = || Error::refused(format!("the fit of the model {} does not converge", model.name()));
-        best.map(|(outside, fit)| self.judged(fit, outside)).ok_or_else(unlike)
+        if model == ContactModel::PowerLaw {
+            for fit in fits {
+                let known = std::iter::once(&best).chain(&best.also);
+                if known.clone().all(|k| (fit.loss_exponent() - k.loss_exponent()).abs() > APART) {
+                    best.also.push(fit);
+                }
+            }
+        }
+        Ok(best)
     }
 
     /// Replaces the best of the `fits` whose onsets lie between different samples by the mean over all
@@ -235,13 +230,8 @@ impl Samples<'_> {
             let student = student(fitted.fit.degrees_of_freedom()).unwrap_or(f64::NAN);
             let inside = (fitted.end() - fitted.fit.parameters[0]) / self.step;
             let rings = self.rings.map_or(1.0, |rings| rings.widening(inside, fitted.fit.variance()));
-            let widening = Some(fitted.whiteness.inflation * student * rings.sqrt());
-            for (_, given) in &mut fitted.losses {
-                self.round(&mut given.fit);
-                given.widening = widening;
-            }
             self.round(&mut fitted.fit);
-            fitted.widening = widening;
+            fitted.widening = Some(fitted.whiteness.inflation * student * rings.sqrt());
         }
         fitted
     }
@@ -250,28 +240,16 @@ impl Samples<'_> {
     /// converter. Such a flat baseline does not show the rounding noise within the pulse, and has itself a
     /// rounding error that all samples share.
     fn round(&self, fit: &mut Fit) {
-        let (hidden, variance) = (self.noise().1, fit.variance());
+        let (noise, hidden) = self.noise();
+        let variance = fit.variance();
         if hidden == 0.0 || variance <= 0.0 {
             return;
         }
         // Parameters change by C_ib/C_bb for a change of the baseline b.
         let slopes = fit.cofactor.column(1) / fit.cofactor[(1, 1)];
         let baseline = &slopes * slopes.transpose() * (hidden * hidden / variance);
-        fit.cofactor *= self.rounded(fit);
+        fit.cofactor *= (noise * noise / variance).max(1.0);
         fit.cofactor += baseline;
-    }
-
-    /// Variance of the noise within the contact over that of the residuals. It is 1 unless rounding conceals
-    /// the noise of the baseline.
-    fn rounded(&self, fit: &Fit) -> f64 {
-        let ((noise, hidden), variance) = (self.noise(), fit.variance());
-        if hidden == 0.0 || variance <= 0.0 { 1.0 } else { (noise * noise / variance).max(1.0) }
-    }
-
-    /// Factor by which differences of sums of squares, over the variance of the residuals, exceed those for
-    /// white noise: for correlated residuals, and for rounding that a flat baseline does not show.
-    pub fn dispersion(&self, fit: &Fit) -> f64 {
-        Whiteness::of(&[&fit.residuals]).inflation.powi(2) * self.rounded(fit)
     }
 
     /// Standard deviation of the noise well before the pulse, over the pulse's height, at least [`DIGITS`];
@@ -317,55 +295,35 @@ impl Samples<'_> {
         near.0 / near.1 > limit * (far.0 / far.1).max(rounding(self.quantum).powi(2))
     }
 
-    /// The fit from one first guess; `None` where it does not converge. The parameter `held` keeps its value.
-    pub(super) fn from(
+    /// The fit from one first guess; `None` where it does not converge.
+    fn from(
         &self,
         model: ContactModel,
         noise: f64,
         start: &[f64],
         first: Option<usize>,
-        held: Option<usize>,
     ) -> Option<FittedPulse> {
-        let free: Vec<usize> = (0..start.len()).filter(|i| Some(*i) != held).collect();
-        let whole = |of: &[f64]| {
-            let mut p = start.to_vec();
-            free.iter().zip(of).for_each(|(i, value)| p[*i] = *value);
-            // The exponent of the loss has no values below 0: its logarithm is fitted.
-            p.iter_mut().skip(LOSS_EXPONENT).for_each(|s| *s = s.exp());
-            p
-        };
-        let n = self.times.len();
-        let residuals = |of: &[f64], out: &mut [f64]| {
-            let p = whole(of);
-            match self.model(model, &p, &self.times, first) {
-                Some(values) => {
-                    out.iter_mut().zip(&self.values).zip(values).for_each(|((r, v), m)| *r = v - m);
-                    let unlikely = model.unlikely(&p);
-                    out[n..].iter_mut().zip(unlikely).for_each(|(r, unlikely)| *r = noise * unlikely);
-                }
-                None => out.fill(f64::NAN),
+        let scale: Vec<f64> = start.iter().map(|p| p.abs().max(0.1)).collect();
+        let (n, likely) = (self.times.len(), if model == ContactModel::PowerLaw { &LIKELY[..] } else { &[] });
+        let residuals = |p: &[f64], out: &mut [f64]| match self.model(model, p, &self.times, first) {
+            Some(values) => {
+                out.iter_mut().zip(&self.values).zip(values).for_each(|((r, v), m)| *r = v - m);
+                let exponents = likely.iter().zip(p.iter().skip(5));
+                out[n..].iter_mut().zip(exponents).for_each(|(r, (l, p))| *r = noise * (p - l.0) / l.1);
             }
+            None => out.fill(f64::NAN),
         };
-        let fitted =
-            |i: &usize| if *i == LOSS_EXPONENT { start[*i].max(LEAST_EXPONENT).ln() } else { start[*i] };
-        let begin: Vec<f64> = free.iter().map(fitted).collect();
-        let scale: Vec<f64> = begin.iter().map(|p| p.abs().max(0.1)).collect();
-        // A series of fits needs no more digits than its weights.
-        let gain = (model == ContactModel::PowerLaw).then_some(GAIN);
-        let rows = n + model.unlikely(start).len();
-        let mut fit = minimise(residuals, rows, &begin, &scale, gain).and_then(Minimum::fit).ok()?;
+        let mut fit = least_squares(residuals, n + likely.len(), start, &scale).ok()?;
         fit.residuals.truncate(n);
-        fit.parameters = whole(&fit.parameters);
-        if let (Some(s), last) = (fit.parameters.get(LOSS_EXPONENT), free.len() - 1) {
-            fit.cofactor.row_mut(last).scale_mut(*s);
-            fit.cofactor.column_mut(last).scale_mut(*s);
-        }
-        if let Some(held) = held {
-            fit.cofactor = fit.cofactor.insert_row(held, 0.0).insert_column(held, 0.0);
-        }
         let whiteness = Whiteness { p_value: None, inflation: 1.0 };
-        let losses = Vec::new();
-        fit.converged.then_some(FittedPulse { model, fit, whiteness, widening: None, first, losses })
+        fit.converged.then_some(FittedPulse {
+            model,
+            fit,
+            whiteness,
+            widening: None,
+            first,
+            also: Vec::new(),
+        })
     }
 
     /// A better guess of a contact of spring and damper, from a finer grid around a first one, on all
@@ -456,6 +414,10 @@ impl Samples<'_> {
 }
 
 impl FittedPulse {
+    fn loss_exponent(&self) -> f64 {
+        self.fit.parameters.get(6).copied().unwrap_or(f64::NAN)
+    }
+
     /// The fitted model at any rising times.
     pub fn at(&self, samples: &Samples<'_>, times: &[f64]) -> Option<Vec<f64>> {
         let first = self.first.and_then(|f| samples.times.get(f)).map(|first| {
@@ -467,7 +429,7 @@ impl FittedPulse {
 
     /// Corrected Akaike criterion (`AICc`).
     pub fn aicc(&self) -> f64 {
-        aicc(self.fit.sum_of_squares(), self.fit.residuals.len(), self.determined())
+        aicc(self.fit.sum_of_squares(), self.fit.residuals.len(), self.fit.parameters.len())
     }
 
     /// Time at which the contact ends, in lengths of the pulse.

@@ -247,10 +247,7 @@ fn the_contact_of_hunt_and_crossley_is_preferred_where_it_is_one() {
     assert!((alpha.value - 0.3).abs() < 5.0 * alpha.std.unwrap(), "{alpha:?}");
     // That model leads, and values that only spring and damper gives have no uncertainty.
     let restitution = &result.restitution;
-    // It is a mean, and other exponents are likely, too.
-    let own = &result.fits[2].parameters["restitution"];
-    let std = restitution.std.unwrap();
-    assert!((restitution.value - own.value).abs() < std && std > own.std.unwrap(), "{restitution:?} {own:?}");
+    assert_eq!(restitution.value, result.fits[2].parameters["restitution"].value);
     assert!(
         (restitution.value - contact.restitution).abs() < 5.0 * restitution.std.unwrap(),
         "{restitution:?}"
@@ -275,46 +272,6 @@ fn contacts_of_a_yielding_spring_and_of_other_exponents_keep_their_restitution()
             .collect();
         assert_eq!(doubts, ["pulse-other-model"]);
     }
-}
-
-/// A loss of the exponent n − 1 only moves the pulse, to first order. So the loss is hardly determined, which
-/// the uncertainty must show; and no other loss may be taken for certain.
-#[test]
-fn a_loss_that_only_moves_the_pulse_is_covered() {
-    let mut noise = Noise::new(17);
-    let (n, instrument) = (1.5, Instrument::Flat);
-    for loss in [0.1, 0.3] {
-        let contact = Rebound::power_law(loss, n, n - 1.0).unwrap();
-        let times: Vec<f64> = (0..240).map(|i| f64::from(i) * DT - 80.4e-6).collect();
-        let shape = contact.decelerations(60e-6, None, &times);
-        let peak = shape.iter().copied().fold(0.0, f64::max);
-        let values = shape.iter().map(|v| v + 0.01 * peak * noise.normal()).collect();
-        let options = PulseOptions { instrument: instrument.clone(), mass: None };
-        let result = pulse(&trace(values, "m/s²"), &options).unwrap();
-        let velocity = result.initial_velocity.as_ref().unwrap();
-        let truths = [(&result.restitution, contact.restitution), (&result.duration, 60e-6), (velocity, 1.0)];
-        for (estimate, truth) in truths {
-            let std = estimate.std.unwrap();
-            assert!((estimate.value - truth).abs() < 4.0 * std, "{loss} {truth} {estimate:?}");
-        }
-        assert!(result.restitution.std.unwrap() > 0.01, "{:?}", result.restitution);
-    }
-}
-
-#[test]
-fn a_model_without_a_fit_has_its_reason_and_a_mass_in_grams_is_named() {
-    let of = |mass: f64, unit: &str| {
-        let options = PulseOptions { mass: Some(mass), instrument: Instrument::Flat };
-        pulse(&trace(record(), unit), &options).unwrap()
-    };
-    let result = of(0.4, "m/s²");
-    let all = result.fits.len() + result.unfitted.len();
-    assert!(all == ContactModel::RIVALS.len() + 1 && result.unfitted.iter().all(|u| !u.1.is_empty()));
-    assert!(!says(&result, "pulse-mass-implausible") && !says(&of(0.4, "N"), "pulse-mass-implausible"));
-    // 400 kg at 3 m/s have 1.8 kJ. As a force, 3 N s stop them from 7.5 mm/s.
-    assert!(
-        says(&of(400.0, "m/s²"), "pulse-mass-implausible") && says(&of(400.0, "N"), "pulse-mass-implausible")
-    );
 }
 
 /// A contact through a low-pass of 30 kHz, fitted without a low-pass.
