@@ -366,8 +366,10 @@ def numbers(values: Any) -> Array:
         array = np.asarray(values)
         if array.dtype.kind not in "biufc":
             raise TypeError
-        if np.ma.is_masked(values):
-            return np.asarray(np.ma.filled(values.astype(array.dtype if array.dtype.kind == "c" else float), np.nan))
+        # Not all versions of NumPy state the types of its masked arrays.
+        masked: Any = np.ma
+        if masked.is_masked(values):
+            return np.asarray(masked.filled(values.astype(array.dtype if array.dtype.kind == "c" else float), np.nan))
         return np.array(array, complex if np.iscomplexobj(array) else float)
     except (TypeError, ValueError):
         raise BadInput(f"{type(values).__name__}; expected numbers in one dimension") from None
