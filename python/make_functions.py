@@ -58,8 +58,6 @@ FILES_ONLY = {"response": "sweep", "waterfall": "sweep", "excitation": "sweep", 
 
 HEAD = '"""{about}\n\nWritten by make_functions.py from the options of the commands.\n"""\n\n'
 
-NUMBER, WHOLE = "float", "int"
-
 
 def argument(option: dict[str, Any]) -> str:
     """The name of a keyword argument; a word of Python gets an underscore."""

@@ -2,7 +2,6 @@
 
 use crate::drawing::Drawing;
 use crate::head::{Passed, Told, told};
-use crate::refused::class;
 use crate::value::object;
 use crate::watched::watched;
 use pyo3::prelude::*;
@@ -74,7 +73,7 @@ fn python(py: Python<'_>, answer: Answer) -> PyResult<Bound<'_, PyAny>> {
         answer.figures.into_iter().map(|(name, figure)| (name, Drawing(figure))).collect();
     let result = object(py, Value::Object(answer.result))?;
     let (tables, text) = (object(py, Value::Array(tables))?, text.join("\n"));
-    class(py, &ANSWER, "vibroimpact._answer", "Answer")?.call1((result, findings, tables, text, figures))
+    ANSWER.import(py, "vibroimpact._answer", "Answer")?.call1((result, findings, tables, text, figures))
 }
 
 /// The questions that [`ask`] takes: name, purpose, and for each option its name, help, placeholder, whether

@@ -7,23 +7,14 @@ use vibroimpact::Error;
 use vibroimpact::error::Hint;
 use vibroimpact::report::words::Voice;
 
-/// A class of the package, imported once.
-pub fn class<'py>(
-    py: Python<'py>,
-    cell: &'static PyOnceLock<Py<PyType>>,
-    module: &str,
-    name: &str,
-) -> PyResult<&'py Bound<'py, PyType>> {
-    cell.import(py, module, name)
-}
-
 /// The exception for an error: `Refused` where the data allow no answer, else `BadInput`.
 pub fn exception(py: Python<'_>, error: &Error) -> PyErr {
     static REFUSED: PyOnceLock<Py<PyType>> = PyOnceLock::new();
     static INPUT: PyOnceLock<Py<PyType>> = PyOnceLock::new();
     let (cell, name) = if error.exit_code() == 1 { (&REFUSED, "Refused") } else { (&INPUT, "BadInput") };
     let text = error.text_with(keyword, Hint::to_string);
-    let made = class(py, cell, "vibroimpact._errors", name)
+    let made = cell
+        .import(py, "vibroimpact._errors", name)
         .and_then(|class| class.call1((text, error.code(), error.advice())));
     made.map_or_else(|failed| failed, PyErr::from_value)
 }

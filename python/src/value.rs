@@ -1,6 +1,5 @@
 //! JSON values as Python objects: lists of numbers as arrays, values with an uncertainty as `Estimate`.
 
-use crate::refused::class;
 use numpy::{PyArray1, PyArrayMethods as _};
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
@@ -48,7 +47,7 @@ fn unit_of<'a>(name: &str, unit: &'a str) -> Option<&'a str> {
 fn fields_of<'py>(py: Python<'py>, fields: Map<String, Value>, unit: &str) -> PyResult<Bound<'py, PyAny>> {
     static FIELDS: PyOnceLock<Py<PyType>> = PyOnceLock::new();
     static OF_ESTIMATE: PyOnceLock<Py<PyType>> = PyOnceLock::new();
-    let estimate = || class(py, &OF_ESTIMATE, "vibroimpact._estimate", "Estimate");
+    let estimate = || OF_ESTIMATE.import(py, "vibroimpact._estimate", "Estimate");
     if fields.len() == ESTIMATE.len() && ESTIMATE.iter().all(|key| fields.contains_key(*key)) {
         let [value, std, unit, n, method] = ESTIMATE.map(|key| object(py, fields[key].clone()));
         return estimate()?.call1((value?, std?, unit?, n?, method?));
@@ -65,7 +64,7 @@ fn fields_of<'py>(py: Python<'py>, fields: Map<String, Value>, unit: &str) -> Py
         };
         made.set_item(name, of_value)?;
     }
-    class(py, &FIELDS, "vibroimpact._fields", "Fields")?.call1((made,))
+    FIELDS.import(py, "vibroimpact._fields", "Fields")?.call1((made,))
 }
 
 /// A list: of numbers as an array, NaN where one is missing; of equally long lists of numbers as a matrix.

@@ -299,8 +299,9 @@ class Recording(Sequence[Record]):
         """
         import pandas
 
-        first = self.records[0]
-        if any(r.axis_unit != first.axis_unit or not np.array_equal(r.axis, first.axis) for r in self.records):
+        first, *others = self.records
+        axis = first.axis
+        if any(r.axis_unit != first.axis_unit or not np.array_equal(r.axis, axis) for r in others):
             raise BadInput("records over different axes; expected one axis: use to_pandas() of each record")
         return pandas.concat([record.to_pandas() for record in self.records], axis=1)
 

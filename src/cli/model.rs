@@ -47,6 +47,10 @@ pub struct ModelArgs<K: Args> {
 }
 
 impl Question for Model {
+    fn allow_outside(&self) -> bool {
+        false
+    }
+
     fn work(&self) -> &'static str {
         "computing"
     }

@@ -26,9 +26,9 @@ pub trait Question {
         Vec::new()
     }
 
-    /// Whether names in a file may lead outside its folder.
+    /// Whether names in a file may lead outside its folder. A record that was typed may lie anywhere.
     fn allow_outside(&self) -> bool {
-        false
+        true
     }
 
     /// What the progress bar shows at first.

@@ -174,10 +174,6 @@ impl Question for OfKind {
         vec![self.file.clone()]
     }
 
-    fn allow_outside(&self) -> bool {
-        true
-    }
-
     fn answer(&self, asked: &Asked<'_>) -> Result<Answer> {
         self.record.measured(asked, &self.file, |source| self.keys.measure(source))
     }
@@ -240,10 +236,6 @@ impl Question for Spectrum {
         self.files.iter().map(|typed| self.place(typed).0).collect()
     }
 
-    fn allow_outside(&self) -> bool {
-        true
-    }
-
     /// The answer of one record, or of several beside each other.
     fn answer(&self, asked: &Asked<'_>) -> Result<Answer> {
         let places: Vec<(PathBuf, Channel)> = self.files.iter().map(|file| self.place(file)).collect();
@@ -275,10 +267,6 @@ impl Question for Impacts {
 
     fn files(&self) -> Vec<PathBuf> {
         vec![self.of.file.clone()]
-    }
-
-    fn allow_outside(&self) -> bool {
-        true
     }
 
     fn answer(&self, asked: &Asked<'_>) -> Result<Answer> {
@@ -352,10 +340,6 @@ impl Question for Modal {
         vec![self.of.file.clone()]
     }
 
-    fn allow_outside(&self) -> bool {
-        true
-    }
-
     fn answer(&self, asked: &Asked<'_>) -> Result<Answer> {
         let mut answers = match self.sweep(asked.folder)? {
             Some(function) => vec![self.keys.modes(&function.meta.name, &function)?],
@@ -385,10 +369,6 @@ impl Question for Pulse {
         self.file.iter().cloned().collect()
     }
 
-    fn allow_outside(&self) -> bool {
-        true
-    }
-
     fn answer(&self, asked: &Asked<'_>) -> Result<Answer> {
         self.keys.usable(self.file.is_some())?;
         match &self.file {
@@ -409,10 +389,6 @@ impl Question for Restitution {
 
     fn files(&self) -> Vec<PathBuf> {
         self.files.clone()
-    }
-
-    fn allow_outside(&self) -> bool {
-        true
     }
 
     /// The restitution by every method that the data allow.
@@ -439,10 +415,6 @@ impl Question for Drill {
 
     fn files(&self) -> Vec<PathBuf> {
         vec![self.of.file.clone()]
-    }
-
-    fn allow_outside(&self) -> bool {
-        true
     }
 
     /// Speed, impacts and the average turn; every turn goes into a file of its own if one is named.
