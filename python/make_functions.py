@@ -24,7 +24,7 @@ from vibroimpact._native import questions  # noqa: E402
 WIDTH = 110
 
 # Options of the command line alone: files that it writes, and how it prints.
-LEFT_OUT = {"out", "style", "replace", "json", "help", "each_cycle", "write_lists", "max_memory"}
+LEFT_OUT = {"out", "style", "replace", "json", "help", "each_cycle", "write_lists", "max_memory", "shard"}
 
 # Commands that measure records.
 MEASURE = [

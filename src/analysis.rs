@@ -28,6 +28,7 @@ mod recordings;
 mod run;
 pub(crate) mod source;
 pub(crate) mod spectrum;
+pub mod study;
 pub(crate) mod sweep;
 pub(crate) mod tone;
 mod twice;
@@ -37,6 +38,7 @@ pub(crate) mod headline;
 mod page;
 
 pub use answer::Answer;
+pub(crate) use answer::unwritten;
 pub use evidence::Evidence;
 pub use kept::AnswerCache;
 pub use kinds::{errors, files, open, open_in, parse};

@@ -2,6 +2,7 @@
 //! in the library uses this folder.
 
 mod campaign;
+mod campaigns;
 mod complain;
 mod convert;
 mod demo;
@@ -16,6 +17,7 @@ mod record;
 mod respelt;
 mod shell;
 mod stdout;
+mod study;
 mod sweep;
 mod typed;
 
@@ -34,11 +36,12 @@ pub use campaign::RunResults;
 pub use clap::builder::StyledStr;
 pub use clap::{Arg, ArgAction, Command};
 pub use demo::written as demo;
-pub use program::{answer, questions, reading, run};
+pub use program::{answer, questions, reading, run, study};
 use question::Question;
 use std::any::TypeId;
 use std::ffi::OsString;
 use std::path::PathBuf;
+pub use study::Shared;
 
 /// All commands by purpose, in the order of the help. Each row states an example, without `vibro`, and what
 /// the command does. A new command is a new row. [`MEASURE`] has the commands of kinds of records, too.
@@ -122,6 +125,10 @@ const GROUPS: &[(&str, &[CommandRow])] = &[
                 "Compare the measured responses of a campaign with the model; fit parameters of the rig",
             )
             .of_campaigns(),
+            CommandRow::of::<study::Merge>(
+                "merge parts --out figures",
+                "Join the parts that --shard computed: of a map, a Monte Carlo, a benchmark, campaigns",
+            ),
             CommandRow::of::<precision::Precision>(
                 "precision --quick",
                 "Speed and accuracy of every method on scenes with a known truth",

@@ -186,7 +186,7 @@ fn branches() -> Result<Sheet> {
         top > 9.0,
         "a sweep down finds the other motion",
     )];
-    let figure = figures::branches("Response with all its branches", &found).height(125.0);
+    let figure = figures::branches("Response with all its branches", &found, None).height(125.0);
     Ok(Sheet::new(
         "branches",
         "Beside 4.11 to 4.15: response with its branches and the backbone",

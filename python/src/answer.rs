@@ -57,7 +57,7 @@ pub fn run<'py>(
 }
 
 /// An object of the class `Answer`.
-fn python(py: Python<'_>, answer: Answer) -> PyResult<Bound<'_, PyAny>> {
+pub fn python(py: Python<'_>, answer: Answer) -> PyResult<Bound<'_, PyAny>> {
     static ANSWER: PyOnceLock<Py<PyType>> = PyOnceLock::new();
     let mut findings: Vec<(String, Told)> = Vec::new();
     for (record, finding) in &answer.findings {

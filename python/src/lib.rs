@@ -9,6 +9,7 @@ mod command;
 mod drawing;
 mod head;
 mod refused;
+mod study;
 mod value;
 mod watched;
 
@@ -23,4 +24,6 @@ mod _native {
     use crate::drawing::Drawing;
     #[pymodule_export]
     use crate::head::{Head, read, write};
+    #[pymodule_export]
+    use crate::study::{merged, part, study};
 }

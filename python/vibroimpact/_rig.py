@@ -9,7 +9,7 @@ from typing import Any
 from ._answer import Answer
 from ._ask import ask
 from ._rig_questions import RigQuestions
-from ._words import word
+from ._words import word, words
 
 
 class Rig(RigQuestions):
@@ -33,8 +33,14 @@ class Rig(RigQuestions):
         return rig
 
     def _ask(self, command: Sequence[str], options: Mapping[str, Any]) -> Answer:
-        stated = [f"{key}={_toml(value)}" for key, value in _flat(self.keys)]
-        return ask(command, [self._file] if self._file else [], {"set": stated, **options})
+        return ask(command, [self._file] if self._file else [], {"set": self._stated(), **options})
+
+    def _words(self, command: Sequence[str], options: Mapping[str, Any]) -> list[str]:
+        """The words of a command on the rig."""
+        return [*command, *words({"set": self._stated(), **options}), *(["--", self._file] if self._file else [])]
+
+    def _stated(self) -> list[str]:
+        return [f"{key}={_toml(value)}" for key, value in _flat(self.keys)]
 
     def __repr__(self) -> str:
         stated = [repr(self._file)] if self._file else []

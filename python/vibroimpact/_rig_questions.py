@@ -93,6 +93,7 @@ class RigQuestions:
         points: int | None = None,
         cycles: int | None = None,
         gap_std: float | None = None,
+        monte_carlo: int | None = None,
     ) -> Answer:
         """All motions with one impact a period over frequency, with folds and stability limits.
 
@@ -108,8 +109,10 @@ class RigQuestions:
             points: Number of frequencies.
             cycles: Excitation cycles from impact to impact.
             gap_std: Standard uncertainty of the gap in m: a motion nearer to grazing is not robust.
+            monte_carlo: Draw the parameters N times from [uncertainty] in the rig's file: bands that hold 95
+                % of the draws.
         """
-        return self._ask(["model", "response"], {"from": from_, "to": to, "force": force, "impulse": impulse, "width": width, "points": points, "cycles": cycles, "gap_std": gap_std})
+        return self._ask(["model", "response"], {"from": from_, "to": to, "force": force, "impulse": impulse, "width": width, "points": points, "cycles": cycles, "gap_std": gap_std, "monte_carlo": monte_carlo})
 
     def backbone(
         self,

@@ -1,18 +1,59 @@
 //! Speed against accuracy, and failures: figures and tables of scenes and of borders.
 
+mod benchmark;
 mod chart;
 mod map;
 
-pub use chart::chart;
-pub use map::maps;
+pub use benchmark::Benchmark;
+use chart::chart;
+use map::maps;
 
-use crate::precision::{BenchmarkScene, BorderCell, FailureMap, Family, MeasuredMethod};
+use crate::analysis::Answer;
+use crate::error::Result;
+use crate::precision::{BenchmarkScene, BorderCell, FailureMap, Family, MeasuredMethod, Results};
+use crate::record::Finding;
+use crate::report::files;
 use crate::report::layout::{headed, table};
 use crate::report::{Cell, Table};
 use map::OUTCOMES;
 
+/// Families in the order of their results.
+const FAMILIES: [Family; 2] = [Family::Models, Family::Estimators];
+
+/// The answer of all results: charts, tables, failure maps.
+///
+/// # Errors
+/// If it cannot be written as JSON.
+pub fn answer(results: &Results, findings: &[Finding]) -> Result<Answer> {
+    let mut answer = Answer::of(results)?;
+    answer.add("", findings);
+    let Results { scenes, failures } = results;
+    for scene in scenes {
+        answer.figure(format!("precision_{}", files::slug(&scene.name)), chart(scene));
+        let bound = scene.bound.map_or(String::new(), |b| format!("; Cramér–Rao bound: {b:.1e}"));
+        let BenchmarkScene { name, says, error_of, .. } = scene;
+        let mut table = self::scene(scene);
+        table.title = format!("{name}\n{says}\nError: {error_of}{bound}");
+        answer.tables.push(table);
+    }
+    answer.csv("precision", &precision(scenes));
+    if !failures.is_empty() {
+        answer.csv("failures", &self::failures(failures));
+    }
+    for family in FAMILIES {
+        let part = failures.of(family);
+        for (name, figure) in maps(family, &part) {
+            answer.figure(format!("failures_{}", files::slug(&name)), figure);
+        }
+        if !part.is_empty() {
+            answer.tables.push(borders(family, &part));
+        }
+    }
+    Ok(answer)
+}
+
 /// Every method of every scene with its error and time, for other programs.
-pub fn precision(scenes: &[BenchmarkScene]) -> Table {
+fn precision(scenes: &[BenchmarkScene]) -> Table {
     type Row<'a> = (&'a BenchmarkScene, &'a MeasuredMethod);
     let rows = scenes.iter().flat_map(|scene| scene.methods.iter().map(move |m| (scene, m)));
     table(
@@ -44,7 +85,7 @@ fn yes(yes: bool) -> Cell {
 const CODE: [&str; 3] = ["vibro", "vibro, a common method", "other program"];
 
 /// The methods of one scene, for a reader.
-pub fn scene(scene: &BenchmarkScene) -> Table {
+fn scene(scene: &BenchmarkScene) -> Table {
     table(
         "",
         &scene.methods,
@@ -68,7 +109,7 @@ fn time(ns: f64) -> String {
 }
 
 /// Every cell of a failure map with its reason.
-pub fn failures(map: &FailureMap) -> Table {
+fn failures(map: &FailureMap) -> Table {
     table(
         "Failures",
         &map.cells,
@@ -85,7 +126,7 @@ pub fn failures(map: &FailureMap) -> Table {
 }
 
 /// Number of outcomes of each kind, for each method of a family.
-pub fn borders(family: Family, map: &FailureMap) -> Table {
+fn borders(family: Family, map: &FailureMap) -> Table {
     let columns: Vec<_> = std::iter::once(("method", "")).chain(OUTCOMES.map(|o| (o.0.name(), ""))).collect();
     let mut table = headed(format!("Borders of {}", family.name()), &columns);
     for method in map.methods() {

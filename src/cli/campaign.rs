@@ -1,12 +1,13 @@
 //! `vibro run` and `vibro compare`: runs a campaign, and compares its responses with the model.
 
+use super::campaigns::Campaigns;
 use super::print::folder_of;
 use super::question::{Asked, Question};
 use super::{complain, init, print, stdout};
 use crate::analysis::sweep::modelled;
 use crate::analysis::{self, Answer, AnswerCache, CampaignOutcome, Progress, REPORT};
 use crate::campaign::{Campaign, FitEntry, Reading};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::proposal::Proposal;
 use crate::read::{Folder, Occupant, Owner};
 use crate::record::{shown, typed};
@@ -22,9 +23,9 @@ use std::time::{Duration, SystemTime};
 
 #[derive(Debug, clap::Args)]
 pub struct Run {
-    /// campaign.toml, or a folder of recordings
-    #[arg(index = 1, default_value = ".")]
-    campaign: PathBuf,
+    /// campaign.toml, or a folder of recordings; several, each into its own folder in --out
+    #[arg(index = 1, value_name = "CAMPAIGN", default_value = ".")]
+    campaigns: Vec<PathBuf>,
     /// Folder for results [default: `out` in the campaign, else `results` beside it]
     #[arg(value_name = "DIR")]
     out: Option<PathBuf>,
@@ -34,6 +35,9 @@ pub struct Run {
     again: bool,
     /// Run again whenever a file of the folder changes, until Ctrl+C
     watch: bool,
+    /// Run part I of N of several campaigns; `vibro merge` joins the table of all
+    #[arg(value_name = "I/N", conflicts_with = "watch")]
+    shard: Option<String>,
 }
 
 #[derive(Debug, clap::Args)]
@@ -92,7 +96,18 @@ pub struct RunResults {
 impl Run {
     /// A run of this campaign with the default folder for results.
     pub fn of(campaign: PathBuf) -> Run {
-        Run { campaign, out: None, allow_outside: false, again: false, watch: false }
+        let (campaigns, out, shard) = (vec![campaign], None, None);
+        Run { campaigns, out, allow_outside: false, again: false, watch: false, shard }
+    }
+
+    /// A run of this campaign into this folder.
+    pub fn into_folder(campaign: PathBuf, out: PathBuf, allow_outside: bool, again: bool) -> Run {
+        Run { out: Some(out), allow_outside, again, ..Run::of(campaign) }
+    }
+
+    /// The campaign; the first of several.
+    fn campaign(&self) -> &Path {
+        self.campaigns.first().map_or(Path::new("."), PathBuf::as_path)
     }
 }
 
@@ -100,14 +115,19 @@ impl super::CommandArgs for Run {
     const VOICE: Voice = Voice::Campaign;
 
     fn run(&self, json: bool) -> Result<u8> {
-        if !self.watch {
+        if self.campaigns.len() > 1 || self.shard.is_some() {
+            if self.watch {
+                return Err(Error::usage("several campaigns to watch", "one"));
+            }
+            let out = self.out.as_deref();
+            let all = Campaigns::of(&self.campaigns, out, self.allow_outside, self.again)?;
+            return all.printed(self.shard.as_deref(), json);
+        }
+        let campaign = self.campaign();
+        if !self.watch || !campaign.exists() {
             return self.once(json);
         }
-        if !self.campaign.exists() {
-            return self.once(json);
-        }
-        let is_folder = self.campaign.is_dir();
-        let folder = if is_folder { self.campaign.as_path() } else { folder_of(&self.campaign) };
+        let folder = if campaign.is_dir() { campaign } else { folder_of(campaign) };
         loop {
             // Stamps are taken before the run: a change during it starts the next one.
             let before = self.stamps(folder);
@@ -140,7 +160,7 @@ impl Run {
     /// Stamps of the recordings of a folder and of the files that its campaign names; results are excluded.
     fn stamps(&self, folder: &Path) -> Stamps {
         let within = self.within().at(folder);
-        let named = opened(&within, &self.campaign).and_then(|campaign| analysis::files(&campaign));
+        let named = opened(&within, self.campaign()).and_then(|campaign| analysis::files(&campaign));
         let seen = analysis::recordings(&within).unwrap_or_default();
         let all = seen.files.into_iter().chain(seen.others).chain(named.unwrap_or_default());
         all.map(|path| (path.clone(), within.stamp(&path))).collect()
@@ -151,7 +171,7 @@ impl Run {
     /// # Errors
     /// If the campaign or one of its files cannot be read, or results cannot be written.
     pub fn results(&self, progress: &dyn Progress) -> Result<RunResults> {
-        let campaign = opened(&self.within(), &self.campaign)?;
+        let campaign = opened(&self.within(), self.campaign())?;
         let folder = self.out.clone().unwrap_or_else(|| campaign.out());
         let results = campaign.within().at(&folder);
         let kept = if self.again { AnswerCache::none(&results) } else { AnswerCache::of(&results) };

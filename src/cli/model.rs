@@ -1,6 +1,7 @@
 //! `vibro model`: predicted motion of a rig.
 
 use super::question::{Asked, Question};
+use super::study::Shared;
 use crate::analysis::Answer;
 use crate::analysis::model::{backbone, branch, choose, map, orbit, response, simulate, sweep};
 use crate::error::Result;
@@ -22,7 +23,7 @@ enum Which {
     /// Simulated motion: regime, traces, phase plane, Poincaré section
     Simulate(ModelArgs<simulate::Keys>),
     /// All motions with one impact a period over frequency, with folds and stability limits
-    Response(ModelArgs<response::Keys>),
+    Response(PartArgs<response::Keys>),
     /// Response of one mass on its curved spring without impacts: jumps and backbone, beside exact motions
     Backbone(ModelArgs<backbone::Keys>),
     /// Motions with P impacts in Q cycles followed over frequency, force, gap or restitution, through folds,
@@ -33,7 +34,7 @@ enum Which {
     /// The simplest adequate model of a scene, and why
     Choose(ModelArgs<choose::Keys>),
     /// Regime and stability over two parameters
-    Map(ModelArgs<map::Keys>),
+    Map(PartArgs<map::Keys>),
 }
 
 /// The keys of an analysis, and the folder for results.
@@ -44,6 +45,16 @@ pub struct ModelArgs<K: Args> {
     /// Folder for figures as SVG and PNG, and tables as CSV
     #[arg(value_name = "DIR")]
     out: Option<PathBuf>,
+}
+
+/// The keys of a study that is computed at once or in parts, and the folder for results or parts.
+#[derive(Debug, Args)]
+pub struct PartArgs<K: Args> {
+    #[command(flatten)]
+    of: ModelArgs<K>,
+    /// Compute part I of N into --out; `vibro merge` joins them. Started again, it computes what is missing
+    #[arg(value_name = "I/N")]
+    shard: Option<String>,
 }
 
 impl Question for Model {
@@ -72,25 +83,41 @@ impl Question for Model {
         match &self.question {
             Which::Orbit(of) => of.out.as_deref(),
             Which::Simulate(of) => of.out.as_deref(),
-            Which::Response(of) => of.out.as_deref(),
+            Which::Response(response) => response.of.out.as_deref(),
             Which::Backbone(of) => of.out.as_deref(),
             Which::Continue(of) => of.out.as_deref(),
             Which::Sweep(of) => of.out.as_deref(),
             Which::Choose(of) => of.out.as_deref(),
-            Which::Map(of) => of.out.as_deref(),
+            Which::Map(map) => map.of.out.as_deref(),
         }
+    }
+
+    fn shard(&self) -> Option<&str> {
+        match &self.question {
+            Which::Map(map) => map.shard.as_deref(),
+            Which::Response(response) => response.shard.as_deref(),
+            _ => None,
+        }
+    }
+
+    fn study(&self) -> Result<Option<Shared>> {
+        Ok(match &self.question {
+            Which::Map(map) => Some(Shared::Map(map.of.keys.study()?)),
+            Which::Response(response) => response.of.keys.study()?.map(Shared::Response),
+            _ => None,
+        })
     }
 
     fn answer(&self, asked: &Asked<'_>) -> Result<Answer> {
         match &self.question {
             Which::Orbit(of) => of.keys.answer(),
             Which::Simulate(of) => of.keys.answer(),
-            Which::Response(of) => of.keys.answer(),
+            Which::Response(response) => response.of.keys.answer(asked.progress),
             Which::Backbone(of) => of.keys.answer(),
             Which::Continue(of) => of.keys.answer(),
             Which::Sweep(of) => of.keys.answer(),
             Which::Choose(of) => of.keys.answer(),
-            Which::Map(of) => of.keys.answer(asked.progress),
+            Which::Map(map) => map.of.keys.answer(asked.progress),
         }
     }
 }

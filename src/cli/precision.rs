@@ -1,13 +1,14 @@
 //! `vibro precision`: speed and accuracy of methods, and their limits.
 
+use super::study::Shared;
 use super::{CommandArgs, print};
-use crate::analysis::Answer;
-use crate::analysis::precision as shown;
+use crate::analysis::precision::{self as shown, Benchmark};
+use crate::analysis::study::{Computed, Study};
 use crate::error::{Error, Result};
-use crate::precision::{BenchmarkScene, Family, Results};
+use crate::precision::{Family, Results};
 use crate::read::Folder;
 use crate::record::Finding;
-use crate::report::files::{self, Names};
+use indicatif::ProgressBar;
 use std::path::PathBuf;
 
 #[derive(Debug, clap::Args)]
@@ -35,23 +36,28 @@ pub struct Precision {
     /// docs/precision.md says what each scene asks; benches/peers/peers.py writes such a file.
     #[arg(long, value_name = "FILE")]
     add: Vec<PathBuf>,
+    /// Measure part I of N into --out; `vibro merge` joins them. Started again, it measures what is missing
+    #[arg(value_name = "I/N", conflicts_with_all = ["results", "add"])]
+    shard: Option<String>,
     /// Folder for charts as SVG and PNG, and tables as CSV
     #[arg(value_name = "DIR")]
     out: Option<PathBuf>,
 }
 
-/// Names of written files: one chart a scene, one failure map a method.
-const NAMES: Names = Names::Named(&["precision", "failures"]);
-
-const FAMILIES: [Family; 2] = [Family::Models, Family::Estimators];
-
 impl CommandArgs for Precision {
     /// Benchmarks the methods, or reads earlier results, and prints them.
     fn run(&self, json: bool) -> Result<u8> {
-        let output = print::results(&Folder::default(), self.out.as_deref(), NAMES)?;
-        let mut results = match &self.results {
-            Some(path) => Results::from_path(path)?,
-            None => self.measured(json)?,
+        if let Some(shard) = &self.shard {
+            return Shared::Precision(self.benchmark()).printed(shard.parse()?, self.out.as_deref(), json);
+        }
+        let output = print::results(&Folder::default(), self.out.as_deref(), Benchmark::FILES)?;
+        let mut results = if let Some(path) = &self.results {
+            Results::from_path(path)?
+        } else {
+            let benchmark = self.benchmark();
+            print::busy(json, benchmark.what(), |bar: &ProgressBar| {
+                Benchmark::results(&mut Computed::new(&benchmark, 0..benchmark.cells(), bar))
+            })?
         };
         results.retain(|family| self.family.is_none_or(|only| only == family));
         let nothing = results.failures.is_empty();
@@ -72,46 +78,14 @@ impl CommandArgs for Precision {
         if self.results.is_none() && cfg!(debug_assertions) {
             findings.push(Finding::caution("development-build"));
         }
-        let mut answer = Answer::of(&results)?;
-        answer.add("", &findings);
-        let Results { scenes, failures } = &results;
-        for scene in scenes {
-            answer.figure(format!("precision_{}", files::slug(&scene.name)), shown::chart(scene));
-            let bound = scene.bound.map_or(String::new(), |b| format!("; Cramér–Rao bound: {b:.1e}"));
-            let BenchmarkScene { name, says, error_of, .. } = scene;
-            let mut table = shown::scene(scene);
-            table.title = format!("{name}\n{says}\nError: {error_of}{bound}");
-            answer.tables.push(table);
-        }
-        answer.csv("precision", &shown::precision(scenes));
-        if !nothing {
-            answer.csv("failures", &shown::failures(failures));
-        }
-        for family in FAMILIES {
-            let part = failures.of(family);
-            for (name, figure) in shown::maps(family, &part) {
-                answer.figure(format!("failures_{}", files::slug(&name)), figure);
-            }
-            if !part.is_empty() {
-                answer.tables.push(shown::borders(family, &part));
-            }
-        }
+        let answer = shown::answer(&results, &findings)?;
         print::answer(answer, output, json)
     }
 }
 
 impl Precision {
-    fn measured(&self, json: bool) -> Result<Results> {
-        print::busy(json, "scenes", |bar| {
-            let mut results = Results::default();
-            let mut tell = |scene: &str| {
-                bar.set_message(scene.to_owned());
-                bar.inc(1);
-            };
-            for family in FAMILIES.into_iter().filter(|f| self.family.is_none_or(|only| only == *f)) {
-                results.measure(family, self.quick, self.failures, &mut tell)?;
-            }
-            Ok(results)
-        })
+    /// What is to be measured.
+    fn benchmark(&self) -> Benchmark {
+        Benchmark { family: self.family, quick: self.quick, failures: self.failures }
     }
 }

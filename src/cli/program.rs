@@ -1,6 +1,7 @@
 //! What a program asks by the words of a command line.
 
-use super::question::Asked;
+use super::question::{Asked, Question};
+use super::study::Shared;
 use super::{CommandRow, CommandSource, campaign, command_of, complain, numbers, options, rows};
 use crate::analysis::{Answer, Progress};
 use crate::campaign::Reading;
@@ -14,15 +15,29 @@ use clap::{Args, Command as Typed};
 /// # Errors
 /// If the words are no question, or the data allow no answer.
 pub fn answer(words: &[String], folder: &Folder, progress: &dyn Progress) -> Result<Answer> {
+    let question = question(words)?;
+    let folder = &folder.clone().allow_outside(question.allow_outside());
+    question.answer(&Asked { folder, progress })
+}
+
+/// The study that the words of a command line ask for, without `vibro`: its parts may be computed elsewhere.
+///
+/// # Errors
+/// If the words are no question, or one that is not computed in parts.
+pub fn study(words: &[String]) -> Result<Shared> {
+    let whole = || Error::usage(format!("{} is one cell", words.join(" ")), "work in cells, such as a map");
+    question(words)?.study()?.ok_or_else(whole)
+}
+
+/// The question of the words of a command line.
+fn question(words: &[String]) -> Result<Box<dyn Question>> {
     let unknown = || Error::usage(format!("{} asks nothing", words.join(" ")), "a command with an answer");
     let row = rows().find(|row| words.first().is_some_and(|word| word == row.name())).ok_or_else(unknown)?;
     let typed =
         options(command_of(&row)).try_get_matches_from(words).map_err(|error| complain::plain(&error))?;
     let last = std::iter::successors(Some(&typed), |at| Some(at.subcommand()?.1)).last();
     numbers(last.unwrap_or(&typed))?;
-    let question = row.question(&typed).ok_or_else(unknown)?.map_err(|error| complain::plain(&error))?;
-    let folder = &folder.clone().allow_outside(question.allow_outside());
-    question.answer(&Asked { folder, progress })
+    row.question(&typed).ok_or_else(unknown)?.map_err(|error| complain::plain(&error))
 }
 
 /// Runs a campaign by the words of `vibro run`, without these two, and writes its results.

@@ -1,8 +1,9 @@
 //! A command that gives one answer, which is printed, or returned to a program.
 
 use super::print;
+use super::study::Shared;
 use crate::analysis::{Answer, Progress};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::read::Folder;
 use crate::report::files::Names;
 use std::path::{Path, PathBuf};
@@ -36,6 +37,19 @@ pub trait Question {
         "samples"
     }
 
+    /// The part that is asked for, as it was typed; `None` if the whole answer is.
+    fn shard(&self) -> Option<&str> {
+        None
+    }
+
+    /// The study of a question that can be computed in parts.
+    ///
+    /// # Errors
+    /// If the study is impossible.
+    fn study(&self) -> Result<Option<Shared>> {
+        Ok(None)
+    }
+
     /// Computes the answer.
     ///
     /// # Errors
@@ -48,6 +62,14 @@ pub trait Question {
 /// # Errors
 /// As [`Question::answer`]; if results cannot be written.
 pub fn printed(question: &dyn Question, json: bool) -> Result<u8> {
+    if let Some(shard) = question.shard() {
+        let study = question.study()?.ok_or_else(|| {
+            let found = format!("part {shard} of a single response");
+            Error::usage(found, "a Monte Carlo, whose draws are computed in parts")
+                .set("monte_carlo", "10000")
+        })?;
+        return study.printed(shard.parse()?, question.out(), json);
+    }
     let folder = Folder::default().allow_outside(question.allow_outside());
     question.files().iter().for_each(|file| folder.reads(file));
     let output = print::results(&folder, question.out(), question.names())?;

@@ -165,7 +165,7 @@ impl Predicting {
 
     fn scene(&self, rig: &Rig, force: f64, frequency: f64) -> Scene {
         let excitation = Some(Excitation::Sine(Sine { force, frequency }));
-        Scene { rig: *rig, excitation, contact: self.contact, buffer: None, springs: None }
+        Scene { rig: *rig, excitation, contact: self.contact, buffer: None, springs: None, uncertainty: None }
     }
 
     /// The model of all sweeps: the named one, else the highest chosen in any frequency range. Rigid

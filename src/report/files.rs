@@ -128,7 +128,7 @@ impl Names {
 }
 
 /// Endings of figures and tables.
-const ENDINGS: [&str; 4] = ["svg", "png", "csv", "uff"];
+const ENDINGS: [&str; 5] = ["svg", "png", "csv", "uff", "npy"];
 
 /// Names of the Greek letters α to ω in file names.
 const GREEK: [&str; 25] = [

@@ -23,6 +23,7 @@ mod ranges;
 pub mod rig;
 mod safe;
 mod series;
+mod shards;
 mod simulate;
 mod spectrum;
 mod springs;

@@ -6,7 +6,7 @@ mod staged;
 mod walk;
 
 pub use lock::Lock;
-pub use manifest::{Manifest, Owner, listed};
+pub use manifest::{Manifest, Owner, hexadecimal, listed};
 pub use staged::Staged;
 pub use walk::Walk;
 

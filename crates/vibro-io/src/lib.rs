@@ -80,7 +80,7 @@ mod wav;
 pub mod write;
 
 pub use assemble::longest_stretch;
-pub use folder::{Digest, Folder, Lock, Manifest, Occupant, Owner, Staged, Walk, listed, plain};
+pub use folder::{Digest, Folder, Lock, Manifest, Occupant, Owner, Staged, Walk, hexadecimal, listed, plain};
 pub use format::Format;
 pub use limit::Limit;
 pub use magnitude::MAGNITUDE;

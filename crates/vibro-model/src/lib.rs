@@ -51,6 +51,7 @@ pub mod simulate;
 mod steady;
 mod stick;
 pub mod sweep;
+mod uncertainty;
 mod waves;
 
 pub use chirp::Chirp;
@@ -78,3 +79,4 @@ pub use scene::{Buffer, ContactKeys, Draft, Scene, Springs};
 pub use simulate::{Leg, Simulation};
 pub use steady::{NoImpact, Steady};
 pub use stick::Pair;
+pub use uncertainty::Uncertainty;

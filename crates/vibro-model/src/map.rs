@@ -5,7 +5,6 @@ use super::floquet;
 use super::flow::State;
 use super::forcing::Forcing;
 use super::motion::Motion;
-use super::parallel;
 use super::parameter::Parameter;
 use super::periodic::PeriodicOrbit;
 use super::regime::{Pattern, Regime};
@@ -14,14 +13,16 @@ use super::rig::Rig;
 use super::scales;
 use super::simulate::Simulation;
 use nalgebra::Matrix4;
-use serde::Serialize;
+use serde::de::Error as _;
+use serde::{Deserialize, Deserializer, Serialize};
 use vibro_record::{Error, Result};
 
-/// Equally spaced values of one parameter: finite ends, the lower one first, and at least 2 values.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+/// Equally spaced values of one parameter: finite ends, the lower one first, and 2 to 1e6 values.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct MapAxis {
     /// The parameter.
+    #[serde(deserialize_with = "named")]
     pub key: Parameter,
     /// First value.
     pub low: f64,
@@ -29,6 +30,12 @@ pub struct MapAxis {
     pub high: f64,
     /// Number of values.
     pub n: usize,
+}
+
+/// A parameter by its name: of a map all may be varied, of a campaign's fit only some.
+fn named<'de, D: Deserializer<'de>>(from: D) -> std::result::Result<Parameter, D::Error> {
+    let name = String::deserialize(from)?;
+    Parameter::named(&name).ok_or_else(|| D::Error::custom(format!("no parameter is called {name}")))
 }
 
 impl MapAxis {
@@ -54,18 +61,29 @@ impl std::str::FromStr for MapAxis {
             let mut number = || parts.next()?.trim().parse::<f64>().ok().filter(|v| v.is_finite());
             let (low, high) = (number()?, number()?);
             let n = parts.next()?.trim().parse().ok()?;
-            (parts.next().is_none() && low < high && n >= 2).then_some(MapAxis { key, low, high, n })
+            (parts.next().is_none() && low < high && (2..=MOST_VALUES).contains(&n)).then_some(MapAxis {
+                key,
+                low,
+                high,
+                n,
+            })
         };
         parse().ok_or_else(|| {
             let names: Vec<_> = Parameter::all().map(Parameter::name).collect();
-            Error::usage(format!("axis {text:?}"), "NAME:LOW:HIGH:N with LOW below HIGH and N of 2 or more")
-                .hint(format!("NAME is one of {}", names.join(", ")))
+            Error::usage(
+                format!("axis {text:?}"),
+                "NAME:LOW:HIGH:N with LOW below HIGH and N from 2 to 1000000",
+            )
+            .hint(format!("NAME is one of {}", names.join(", ")))
         })
     }
 }
 
+/// Largest number of values of an axis.
+const MOST_VALUES: usize = 1_000_000;
+
 /// Axes, rig and excitation of a map.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Plan {
     /// The rig; the parameters of the axes are overwritten.
     pub rig: Rig,
@@ -104,7 +122,7 @@ impl Plan {
     ///
     /// # Errors
     /// If both axes vary the same parameter, or one that the excitation does not have; if a corner of the map
-    /// is impossible or has a negative gap; if there are fewer than 4 cycles a cell or more than 1e8 in all.
+    /// is impossible or has a negative gap; if there are fewer than 4 cycles a cell.
     pub fn check(&self) -> Result<()> {
         if self.x.key == self.y.key {
             return Err(Error::usage(format!("both axes vary {}", self.x.key.name()), "two parameters"));
@@ -121,7 +139,6 @@ impl Plan {
         if self.cycles < 4 {
             return Err(Error::usage(format!("{} cycles a cell", self.cycles), "at least 4"));
         }
-        scales::check_work(self.x.n as f64 * self.y.n as f64 * f64::from(self.cycles))?;
         for (column, row) in [(0, 0), (self.x.n - 1, 0), (0, self.y.n - 1), (self.x.n - 1, self.y.n - 1)] {
             let (rig, excitation) = self.at(column, row);
             scales::check(&rig, &excitation)?;
@@ -144,21 +161,24 @@ impl Plan {
         (rig, excitation)
     }
 
-    /// Computes the cells row by row, those of a row in parallel; calls `done` after each row.
+    /// Checks that the cells take at most 1e8 cycles in all.
     ///
     /// # Errors
-    /// As [`Plan::check`].
-    pub fn run(&self, mut done: impl FnMut()) -> Result<Vec<Vec<Cell>>> {
-        self.check()?;
-        let row = |row| {
-            let cells = parallel::each(self.x.n, |column| {
-                let (rig, excitation) = self.at(column, row);
-                cell(&rig, &excitation, self.cycles)
-            });
-            done();
-            cells
-        };
-        Ok((0..self.y.n).map(row).collect())
+    /// If they take more.
+    pub fn check_work(&self) -> Result<()> {
+        scales::check_work(self.x.n as f64 * self.y.n as f64 * f64::from(self.cycles))
+    }
+
+    /// Number of cells.
+    pub fn cells(&self) -> u64 {
+        self.x.n as u64 * self.y.n as u64
+    }
+
+    /// Computes a cell, counted from 0 along the rows.
+    pub fn cell(&self, number: u64) -> Cell {
+        let n = self.x.n as u64;
+        let (rig, excitation) = self.at((number % n) as usize, (number / n) as usize);
+        cell(&rig, &excitation, self.cycles)
     }
 }
 

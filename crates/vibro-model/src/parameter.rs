@@ -153,14 +153,24 @@ impl Parameter {
             *excitation = excitation.at_frequency(value);
             return Some(());
         }
-        *match (self, excitation) {
-            (Parameter::Force, Excitation::Sine(sine)) => &mut sine.force,
-            (Parameter::Force, Excitation::Pulse(pulses)) => &mut pulses.force,
-            (Parameter::Impulse, Excitation::Impulse(impulses)) => &mut impulses.impulse,
-            (Parameter::Width, Excitation::Pulse(pulses)) => &mut pulses.width,
-            _ => self.place(rig)?,
-        } = value;
+        *self.place_in(rig, excitation)? = value;
         Some(())
+    }
+
+    /// Its place in a rig or its excitation; `None` for the frequency, and where the excitation has no such
+    /// parameter.
+    pub(crate) fn place_in<'a>(
+        self,
+        rig: &'a mut Rig,
+        excitation: &'a mut Excitation,
+    ) -> Option<&'a mut f64> {
+        match (self, excitation) {
+            (Parameter::Force, Excitation::Sine(sine)) => Some(&mut sine.force),
+            (Parameter::Force, Excitation::Pulse(pulses)) => Some(&mut pulses.force),
+            (Parameter::Impulse, Excitation::Impulse(impulses)) => Some(&mut impulses.impulse),
+            (Parameter::Width, Excitation::Pulse(pulses)) => Some(&mut pulses.width),
+            _ => self.place(rig),
+        }
     }
 }
 

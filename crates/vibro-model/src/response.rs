@@ -115,7 +115,7 @@ pub fn response(
 ///
 /// # Errors
 /// If the range is invalid, or there are fewer than 2 or more than `most` points.
-pub(crate) fn axis(from: f64, to: f64, points: usize, most: usize) -> Result<impl Fn(usize) -> f64 + Sync> {
+pub fn axis(from: f64, to: f64, points: usize, most: usize) -> Result<impl Fn(usize) -> f64 + Sync> {
     if !(from.is_finite() && to.is_finite() && from > 0.0 && to > from) {
         let expected = "finite frequencies above 0, the lower one first";
         return Err(Error::usage(format!("an axis from {from} to {to} Hz"), expected));

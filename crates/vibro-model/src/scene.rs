@@ -8,6 +8,7 @@ pub use draft::Draft;
 use super::excitation::Excitation;
 use super::law::Law;
 use super::rig::Rig;
+use super::uncertainty::Uncertainty;
 use serde::{Deserialize, Serialize};
 use vibro_record::{Finding, Result};
 
@@ -15,8 +16,9 @@ use vibro_record::{Finding, Result};
 ///
 /// As a TOML file: the keys of [`Rig`] at the top, `[excitation]` with `kind` and the keys of that kind,
 /// `[contact]` with `stiffness`, `damping`, `exponent`, or `radius`, `modulus` and `poisson` in place of
-/// stiffness and exponent, `[buffer]` with `gap` and `damper_always`, and `[springs]` with `cubic1` and
-/// `cubic2`. Keys of the rig that are left out take the values of [`Rig::thesis`].
+/// stiffness and exponent, `[buffer]` with `gap` and `damper_always`, `[springs]` with `cubic1` and `cubic2`,
+/// and `[uncertainty]` with standard uncertainties of keys of the rig and the excitation. Keys of the rig
+/// that are left out take the values of [`Rig::thesis`].
 ///
 /// ```
 /// use vibro_model::{Excitation, Scene, Sine};
@@ -42,6 +44,9 @@ pub struct Scene {
     /// Curvature of the springs. Only [`Duffing`](crate::Duffing) has it; the ladder checks its effect.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub springs: Option<Springs>,
+    /// Standard uncertainties of the parameters, from which a Monte Carlo draws.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub uncertainty: Option<Uncertainty>,
 }
 
 /// Cubic coefficients k₃ in N/m³ of the springs' forces kx + k₃x³: above 0 a spring hardens, below 0 it
@@ -111,11 +116,18 @@ impl Buffer {
 
 impl Scene {
     /// Names of its tables in files; every other key is the rig's.
-    pub const TABLES: [&str; 4] = ["excitation", "contact", "buffer", "springs"];
+    pub const TABLES: [&str; 5] = ["excitation", "contact", "buffer", "springs", "uncertainty"];
 
     /// The rig of the thesis, without excitation.
     pub fn thesis() -> Scene {
-        Scene { rig: Rig::thesis(), excitation: None, contact: None, buffer: None, springs: None }
+        Scene {
+            rig: Rig::thesis(),
+            excitation: None,
+            contact: None,
+            buffer: None,
+            springs: None,
+            uncertainty: None,
+        }
     }
 
     /// Reads the text of a file.

@@ -16,20 +16,16 @@ mod sine;
 mod trial;
 
 use super::failure::BorderQuestion;
-use super::{BenchmarkScene, FailureMap, Family};
+use super::{BenchmarkScene, FailureMap, Family, Measurement};
 use nalgebra::DMatrix;
 pub use records::write_records;
 use trial::{Ensemble, EstimationMethod, Record, Settings, Trials};
 use vibro_record::{Spectrum, Sweep, SweepPoint, Values};
 
-/// Every scene of the estimators, each method measured; `quick` takes fewer records.
-pub(crate) fn scenes(quick: bool, progress: &mut dyn FnMut(&str)) -> Vec<BenchmarkScene> {
-    let measure = |scene: EstimatorScene| {
-        let measured = scene.measured(quick);
-        progress(&measured.name);
-        measured
-    };
-    all_scenes().into_iter().map(measure).collect()
+/// Every scene of the estimators, still to be measured; `quick` takes fewer records.
+pub(crate) fn scenes(quick: bool) -> Vec<Measurement> {
+    let measured = |scene: EstimatorScene| -> Measurement { Box::new(move || Ok(scene.measured(quick))) };
+    all_scenes().into_iter().map(measured).collect()
 }
 
 /// Every scene of the estimators, not measured yet.

@@ -8,7 +8,9 @@
 //! ```no_run
 //! use vibro_precision::{Family, Results};
 //! let mut results = Results::default();
-//! results.measure(Family::Estimators, true, false, &mut |scene| eprintln!("{scene}"))?;
+//! for measure in Results::scenes_of(Family::Estimators, true) {
+//!     results.push(measure()?);
+//! }
 //! for scene in &results.scenes {
 //!     let front = scene.methods.iter().filter(|m| m.front);
 //!     println!("{}: {:?}", scene.name, front.map(|m| &m.method).collect::<Vec<_>>());
@@ -23,7 +25,7 @@ mod results;
 mod scene;
 
 pub use failure::{BorderCell, FailureMap, Outcome};
-pub use results::Results;
+pub use results::{Measurement, Results};
 pub use scene::{BenchmarkScene, Family, MeasuredMethod};
 
 // Used by several modules.

@@ -16,6 +16,12 @@ pub struct Results {
     pub failures: FailureMap,
 }
 
+/// A scene that is still to be measured.
+///
+/// # Errors
+/// If it cannot be built.
+pub type Measurement = Box<dyn FnOnce() -> Result<BenchmarkScene>>;
+
 /// A result of another program: one method with one setting on one scene.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -31,33 +37,30 @@ struct AddedMeasurement {
 }
 
 impl Results {
-    /// Measures the scenes of a family, and with `failures` its borders; `quick` takes fewer settings,
-    /// repeats, records and cycles.
+    /// The scenes of a family, still to be measured; `quick` takes fewer settings, repeats, records and
+    /// cycles.
+    pub fn scenes_of(family: Family, quick: bool) -> Vec<Measurement> {
+        match family {
+            Family::Models => crate::models::scenes(quick),
+            Family::Estimators => crate::estimators::scenes(quick),
+        }
+    }
+
+    /// The outcomes at the borders of a family.
     ///
     /// # Errors
-    /// If a scene cannot be built.
-    pub fn measure(
-        &mut self,
-        family: Family,
-        quick: bool,
-        failures: bool,
-        progress: &mut dyn FnMut(&str),
-    ) -> Result<()> {
-        let mut scenes = match family {
-            Family::Models => crate::models::scenes(quick, progress)?,
-            Family::Estimators => crate::estimators::scenes(quick, progress),
-        };
-        scenes.iter_mut().for_each(BenchmarkScene::mark_front);
-        self.scenes.append(&mut scenes);
-        if failures {
-            progress("borders");
-            let map = match family {
-                Family::Models => crate::models::failures(quick)?,
-                Family::Estimators => crate::estimators::failures(quick),
-            };
-            self.failures.cells.extend(map.cells);
+    /// If a border cannot be built.
+    pub fn failures_of(family: Family, quick: bool) -> Result<FailureMap> {
+        match family {
+            Family::Models => crate::models::failures(quick),
+            Family::Estimators => Ok(crate::estimators::failures(quick)),
         }
-        Ok(())
+    }
+
+    /// Adds a scene.
+    pub fn push(&mut self, mut scene: BenchmarkScene) {
+        scene.mark_front();
+        self.scenes.push(scene);
     }
 
     /// Reads the results of an earlier run, perhaps of another machine, and marks the fronts again.

@@ -1,15 +1,24 @@
 //! Motions with one impact a period over frequency: `vibro model response`.
 
+mod bands;
+mod draws;
+
+pub use bands::{BandPoint, Bands};
+pub use draws::Draws;
+
 use super::{Driven, JudgedOrbit, SceneKeys, check_gap_std, figures};
-use crate::analysis::answer::Answer;
+use crate::analysis::answer::{Answer, unwritten};
+use crate::analysis::progress::Progress;
+use crate::analysis::study;
 use crate::campaign::above_zero;
 use crate::error::Result;
-use crate::model::{Response, ResponsePoint, response};
+use crate::model::{Excitation, Response, ResponsePoint, Rig, Uncertainty, response};
 use crate::record::Finding;
 use crate::report::files::Names;
 use crate::report::layout::table;
 use crate::report::{Cell, Table};
 use num_complex::Complex64;
+use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
 /// Keys of `vibro model response`.
@@ -31,28 +40,74 @@ pub struct Keys {
     pub cycles: u32,
     /// Standard uncertainty of the gap in m: a motion nearer to grazing is not robust
     pub gap_std: Option<f64>,
+    /// Draw the parameters N times from [uncertainty] in the rig's file: bands that hold 95 % of the draws
+    #[cfg_attr(feature = "cli", arg(value_name = "N"))]
+    pub monte_carlo: Option<u64>,
 }
 
 impl Keys {
     /// Names of the files in its answer.
-    pub const FILES: Names = Names::Numbered(&["response", "changes"]);
+    pub const FILES: Names = Names::Numbered(&["response", "changes", "bands"]);
 
-    /// The motions at each frequency, with the places where they appear, vanish and change.
+    /// The motions at each frequency, with the places where they appear, vanish and change; with bands if the
+    /// parameters are drawn.
     ///
     /// # Errors
     /// If the scene or a key is impossible, or nothing drives the rig.
-    pub fn answer(&self) -> Result<Answer> {
+    pub fn answer(&self, progress: &dyn Progress) -> Result<Answer> {
+        match self.study()? {
+            Some(draws) => study::whole(&draws, progress),
+            None => self.curve()?.answer(None),
+        }
+    }
+
+    /// The Monte Carlo of the response; `None` if none is asked for.
+    ///
+    /// # Errors
+    /// As [`Keys::answer`]; if no uncertainty is stated, or the number of draws is too small or too large.
+    pub fn study(&self) -> Result<Option<Draws>> {
+        self.monte_carlo.map(|draws| Draws::of(self.curve()?, draws)).transpose()
+    }
+
+    fn curve(&self) -> Result<Curve> {
         above_zero("from", Some(self.from))?;
         above_zero("to", Some(self.to))?;
         check_gap_std(self.gap_std)?;
         let Driven { scene, excitation, findings } = self.scene.driven(Some(self.from))?;
-        let found = response(&scene.rig, &excitation, self.from, self.to, self.points, self.cycles)?;
+        let &Keys { from, to, points, cycles, gap_std, .. } = self;
+        let (rig, uncertainty) = (scene.rig, scene.uncertainty);
+        let scene = serde_json::to_value(scene).map_err(unwritten)?;
+        Ok(Curve { scene, rig, excitation, uncertainty, from, to, points, cycles, gap_std, findings })
+    }
+}
+
+/// Rig, excitation and frequencies of a response.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+struct Curve {
+    /// The scene, as answers state it.
+    scene: Value,
+    rig: Rig,
+    excitation: Excitation,
+    uncertainty: Option<Uncertainty>,
+    from: f64,
+    to: f64,
+    points: usize,
+    cycles: u32,
+    gap_std: Option<f64>,
+    findings: Vec<Finding>,
+}
+
+impl Curve {
+    /// The response with the estimates of all parameters, and `bands` of drawn ones.
+    fn answer(&self, bands: Option<&Bands>) -> Result<Answer> {
+        let Curve { rig, excitation, from, to, points, cycles, .. } = self;
+        let found = response(rig, excitation, *from, *to, *points, *cycles)?;
         let mut answer = Answer::of(&json!({
-            "scene": scene,
+            "scene": self.scene,
             "points": found.points.iter().map(|p| self.point(p)).collect::<Vec<Value>>(),
             "changes": found.changes,
         }))?;
-        answer.add("", findings);
+        answer.add("", &self.findings);
         let refused = found.points.iter().filter_map(|p| p.refused.as_deref());
         if let Some(why) = refused.clone().next() {
             let some = Finding::caution("frequencies-without-answer").count("n", refused.count());
@@ -64,9 +119,12 @@ impl Keys {
         let stable =
             Finding::note("orbits-stable").count("n", found.points.iter().filter(has_stable).count());
         answer.add("", [stable.count("all", found.points.len())]);
-        answer.figure("response", figures::branches("Response with one impact a period", &found));
+        answer.figure("response", figures::branches("Response with one impact a period", &found, bands));
         answer.csv("response", &branches(&found));
         answer.table("changes", changes(&found));
+        if let Some(bands) = bands {
+            bands.add_to(&mut answer)?;
+        }
         Ok(answer)
     }
 

@@ -121,11 +121,16 @@ impl Manifest {
 /// backslash before the digest marks that.
 pub fn listed(digest: &Digest, name: &str) -> String {
     let escaped = name.replace('\\', "\\\\").replace('\n', "\\n").replace('\r', "\\r");
-    let mut line = if escaped == name { String::new() } else { "\\".to_owned() };
-    for byte in digest {
-        let _ = write!(line, "{byte:02x}");
-    }
-    line + "  " + &escaped + "\n"
+    let mark = if escaped == name { "" } else { "\\" };
+    format!("{mark}{}  {escaped}\n", hexadecimal(digest))
+}
+
+/// A digest as 64 hexadecimal digits.
+pub fn hexadecimal(digest: &Digest) -> String {
+    digest.iter().fold(String::new(), |mut text, byte| {
+        let _ = write!(text, "{byte:02x}");
+        text
+    })
 }
 
 /// Digest and name of a line that [`listed`] made.

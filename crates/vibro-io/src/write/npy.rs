@@ -26,14 +26,7 @@ pub fn write(records: &[Record], out: &mut impl Write) -> Result<()> {
     let complex = records.iter().any(Record::is_complex);
     let shape = if records.len() == 1 { format!("({n},)") } else { format!("({}, {n})", records.len()) };
     let kind = if complex { "<c16" } else { "<f8" };
-    let mut header = format!("{{'descr': '{kind}', 'fortran_order': False, 'shape': {shape}, }}");
-    // A prefix of ten bytes and a line end; the values begin at a multiple of 64 bytes.
-    let padding = (64 - (10 + header.len() + 1) % 64) % 64;
-    header.extend(std::iter::repeat_n(' ', padding));
-    header.push('\n');
-    let mut bytes = b"\x93NUMPY\x01\x00".to_vec();
-    bytes.extend((header.len() as u16).to_le_bytes());
-    bytes.extend(header.as_bytes());
+    let mut bytes = header(&format!("'{kind}'"), &shape);
     out.write_all(&bytes).map_err(failed)?;
     for record in records {
         bytes.clear();
@@ -47,6 +40,20 @@ pub fn write(records: &[Record], out: &mut impl Write) -> Result<()> {
         out.write_all(&bytes).map_err(failed)?;
     }
     Ok(())
+}
+
+/// The bytes before the values of an array, by the literals of Python for its type and shape:
+/// `[('regime', '|u1'), ('radius', '<f8')]` and `(3, 5)`.
+pub fn header(descr: &str, shape: &str) -> Vec<u8> {
+    let mut header = format!("{{'descr': {descr}, 'fortran_order': False, 'shape': {shape}, }}");
+    // A prefix of ten bytes and a line end; the values begin at a multiple of 64 bytes.
+    let padding = (64 - (10 + header.len() + 1) % 64) % 64;
+    header.extend(std::iter::repeat_n(' ', padding));
+    header.push('\n');
+    let mut bytes = b"\x93NUMPY\x01\x00".to_vec();
+    bytes.extend((header.len() as u16).to_le_bytes());
+    bytes.extend(header.as_bytes());
+    bytes
 }
 
 #[cfg(test)]

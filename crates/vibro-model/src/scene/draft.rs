@@ -5,6 +5,7 @@ use crate::excitation::{Excitation, Part};
 use crate::least::{NumberRange, number};
 use crate::parameter::Parameter;
 use crate::rig::Rig;
+use crate::uncertainty::Uncertainty;
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
 use toml::de::DeTable;
@@ -27,6 +28,7 @@ struct Sections {
     contact: Option<ContactKeys>,
     buffer: Option<Buffer>,
     springs: Option<Springs>,
+    uncertainty: Option<Uncertainty>,
 }
 
 /// Keys of all kinds of excitation.
@@ -181,7 +183,12 @@ impl Draft {
         let excitation = excitation_keys.map(|section| self.excitation(section.clone())).transpose()?;
         let contact = Some(contact).filter(|c| *c != ContactKeys::default());
         let springs = keys.springs.filter(|s| *s != Springs::default());
-        Ok(Scene { rig, excitation, contact, buffer: keys.buffer, springs })
+        for (parameter, std) in keys.uncertainty.iter().flat_map(Uncertainty::all) {
+            let key = format!("uncertainty.{}", parameter.name());
+            number(&key, std, parameter.unit(), NumberRange::Zero).map_err(|error| self.at(&key, error))?;
+        }
+        let (buffer, uncertainty) = (keys.buffer, keys.uncertainty);
+        Ok(Scene { rig, excitation, contact, buffer, springs, uncertainty })
     }
 
     /// The excitation of the table `[excitation]`, checked.
@@ -270,7 +277,8 @@ fn unread(error: &toml::de::Error) -> Error {
 fn campaign(path: &Path, text: &str) -> Option<Error> {
     let table: Table = toml::from_str(text).ok()?;
     let (key, _) = table.iter().find(|(key, value)| *key == "rig" || value.is_array())?;
-    let expected = "the keys of a rig at the top, and [excitation], [contact], [buffer], [springs]";
+    let expected =
+        "the keys of a rig at the top, and [excitation], [contact], [buffer], [springs], [uncertainty]";
     Some(Error::usage(format!("[{key}]: this is a campaign, not a rig"), expected).hint(format!(
         "put what stands under [rig] into a file of its own; `vibro run {}` does what the campaign asks for",
         path.display()
@@ -327,6 +335,8 @@ mod tests {
             ("excitation = 3", "line 1", "excitation = 3; expected a table"),
             ("[contact]\nstiffness = 0", "line 2", "contact.stiffness is 0 N/m"),
             ("[springs]\ncubic2 = inf", "line 2", "springs.cubic2 is inf N/m³"),
+            ("[uncertainty]\ngap = -1e-6", "line 2", "uncertainty.gap is -0.000001 m"),
+            ("[uncertainty]\ngapp = 1e-6", "line 2", "unknown key `gapp`"),
             ("[excitation]\nparts = [{force = 1}]", "line 2", "the key `frequency` is missing"),
             ("restitution = nan", "line 1", "restitution is NaN"),
             ("m1 =", "line 1", ""),

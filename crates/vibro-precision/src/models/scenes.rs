@@ -5,6 +5,7 @@ mod chaos;
 use super::rivals::{self as by, IntegratorKind, Locate, Method, events};
 use super::task::{Log, Task};
 use super::{ours, truth};
+use crate::results::Measurement;
 use crate::{BenchmarkScene, Family, MeasuredMethod, OutcomeWithReason, timed};
 use std::f64::consts::TAU;
 use vibro_model::{Compliance, Rig, Sine, Steady};
@@ -50,25 +51,18 @@ impl Setup {
     }
 }
 
-/// Every scene of the models, with each method measured; `quick` takes fewer settings, repeats and scenes.
-pub fn scenes(quick: bool, progress: &mut dyn FnMut(&str)) -> Result<Vec<BenchmarkScene>> {
-    let mut found = Vec::new();
-    let mut add = |setup: Setup| {
-        progress(&setup.scene.name);
-        found.push(setup.measured(quick));
-    };
-    add(scene_b(2.0)?);
-    add(scene_b(100.0)?);
-    for depth in if quick { &[1e-6, 1e-12][..] } else { &[1e-3, 1e-6, 1e-9, 1e-12] } {
-        add(grazing(*depth)?);
+/// Every scene of the models, still to be measured; `quick` takes fewer settings, repeats and scenes.
+pub fn scenes(quick: bool) -> Vec<Measurement> {
+    fn of(quick: bool, setup: impl FnOnce() -> Result<Setup> + 'static) -> Measurement {
+        Box::new(move || Ok(setup()?.measured(quick)))
     }
-    add(scene_c());
-    for (stiffness, cycles) in SOFT_CONTACTS {
-        add(soft(stiffness, cycles)?);
-    }
-    add(chaos::scene()?);
-    add(slow_sweep()?);
-    Ok(found)
+    let depths: &[f64] = if quick { &[1e-6, 1e-12] } else { &[1e-3, 1e-6, 1e-9, 1e-12] };
+    let mut all = vec![of(quick, || scene_b(2.0)), of(quick, || scene_b(100.0))];
+    all.extend(depths.iter().map(|depth| of(quick, || grazing(*depth))));
+    all.push(of(quick, || Ok(scene_c())));
+    all.extend(SOFT_CONTACTS.map(|(stiffness, cycles)| of(quick, move || soft(stiffness, cycles))));
+    all.extend([of(quick, chaos::scene), of(quick, slow_sweep)]);
+    all
 }
 
 /// Settings of a method that has none: it is run once.

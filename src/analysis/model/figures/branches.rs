@@ -1,10 +1,11 @@
 //! Response curves with all branches.
 
+use super::super::response::{BandPoint, Bands};
 use crate::model::{
     Branch, ChangeKind, Loss, Orbit, Parameter, PeriodicOrbit, Response, ResponsePoint, Validity,
 };
 use crate::report::layout::{lettered, line, points};
-use crate::report::{AxisSpec, Figure, Ink, Marker, Plot, Stroke};
+use crate::report::{AxisSpec, Figure, Ink, Marker, Plot, Series, Stroke};
 
 /// How a motion is drawn.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -48,19 +49,20 @@ impl Pieces {
 
 /// Half the peak-to-peak values of both masses over frequency: stable motions solid, unstable ones dashed,
 /// those in which the masses would pass through each other thin and grey.
-pub fn branches(title: &str, response: &Response) -> Figure {
+/// `bands` hold 95 % of rigs with drawn parameters.
+pub fn branches(title: &str, response: &Response, bands: Option<&Bands>) -> Figure {
     let mut figure = Figure::double(title).height(150.0).shared_x();
     for mass in 0..2 {
-        figure = figure.panel(panel(response, mass));
+        figure = figure.panel(panel(response, bands, mass));
     }
-    lettered(figure.caption(
-        "Half the peak-to-peak displacement. Solid: motions with one impact a period that can be and are stable; dashed: unstable; thin and \
-         grey: the masses would pass through each other. Dash-dotted: free motion without losses (backbone).",
-    ))
+    let lines = "Half the peak-to-peak displacement. Solid: motions with one impact a period that can be and are stable; dashed: unstable; \
+         thin and grey: the masses would pass through each other. Dash-dotted: free motion without losses (backbone).";
+    let drawn = " Shaded: 95 % of the rigs with drawn parameters in which the motion is stable.";
+    lettered(figure.caption(lines.to_owned() + if bands.is_some() { drawn } else { "" }))
 }
 
 /// The panel of a mass, its index from 0.
-fn panel(response: &Response, mass: usize) -> Plot {
+fn panel(response: &Response, bands: Option<&Bands>, mass: usize) -> Plot {
     let is_possible = |o: &&Orbit| look(&o.validity).is_some_and(|l| l != MotionLook::Impossible);
     let orbits = response.points.iter().flat_map(|p| p.orbits.iter().filter(is_possible));
     let free = response.points.iter().filter_map(|p| p.no_impact.filter(|n| n.possible && mass == 0));
@@ -73,6 +75,14 @@ fn panel(response: &Response, mass: usize) -> Plot {
     // From a thousandth to twice the largest amplitude.
     let y = if largest > 0.0 { y.log().limits(1.0 * largest, 2.0e3 * largest) } else { y };
     let mut plot = Plot::new(AxisSpec::frequency().limits(ends[0], ends[1]), y).title(title);
+    if let Some(bands) = bands {
+        let frequency: Vec<f64> = bands.points.iter().map(|p| p.frequency).collect();
+        let end = |end: usize| -> Vec<f64> {
+            let of = |p: &BandPoint| if mass == 0 { Some(p.impacting.x1) } else { p.impacting.x2 };
+            bands.points.iter().map(|p| of(p).map_or(f64::NAN, |amplitudes| 1e3 * amplitudes[end])).collect()
+        };
+        plot = plot.with(Series::band("95 % of draws", frequency, end(0), end(2)).ink(Ink::Nth(0)));
+    }
     let mut lines: [Pieces; 3] = Default::default();
     let (mut free, mut backbone) = (Pieces::default(), Pieces::default());
     let place = |o: &Orbit| (o.frequency, 1e3 * o.peak_to_peak[mass] / 2.0);

@@ -2,7 +2,7 @@
 
 use crate::error::Result;
 use crate::model::Regime;
-use crate::model::map::{Cell, MapAxis, Plan};
+use crate::model::map::{Cell, MapAxis};
 use crate::report::layout::{capital, lettered};
 use crate::report::{AxisSpec, Figure, Heatmap, Legend, Plot};
 use ndarray::Array2;
@@ -10,21 +10,22 @@ use ndarray::Array2;
 /// Number of patterns with a colour of their own, the most frequent ones.
 const COLOURED_PATTERNS: usize = 3;
 
-/// Regimes by colour, and the spectral radius, beside each other.
+/// Regimes by colour, and the spectral radius, beside each other: both axes with the values that are drawn,
+/// the number of cells of each regime, and the cells that are drawn.
 ///
 /// # Errors
 /// As [`Heatmap::new`].
-pub fn regimes(plan: &Plan, rows: &[Vec<Cell>]) -> Result<Figure> {
-    let (x, y) = (plan.x.values(), plan.y.values());
+pub fn regimes(
+    [(of_x, x), (of_y, y)]: [(&MapAxis, &[f64]); 2],
+    counts: &[(Regime, usize)],
+    rows: &[Vec<Cell>],
+) -> Result<Figure> {
     let matrix = |value: &dyn Fn(&Cell) -> f64| {
         Array2::from_shape_fn((y.len(), x.len()), |(row, column)| {
             rows.get(row).map_or(f64::NAN, |cells| value(&cells[column]))
         })
     };
-    let patterns = counted(rows.iter().flatten())
-        .into_iter()
-        .map(|c| c.0)
-        .filter(|r| matches!(r, Regime::Periodic { .. }));
+    let patterns = counts.iter().map(|c| c.0).filter(|r| matches!(r, Regime::Periodic { .. }));
     let coloured: Vec<Regime> = patterns.take(COLOURED_PATTERNS).collect();
     let names: Vec<String> = coloured.iter().map(Regime::to_string).collect();
     let others = ["other patterns", "irregular or not settled", "chatter", "no impact"];
@@ -36,16 +37,16 @@ pub fn regimes(plan: &Plan, rows: &[Vec<Cell>]) -> Result<Figure> {
         // A name of two characters, such as k1, is a symbol and stays as it is.
         AxisSpec::new(if name.len() == 2 { name.to_owned() } else { capital(name) }, unit)
     };
-    let plot = |title: &str| Plot::new(axis(&plan.x), axis(&plan.y)).title(title);
+    let plot = |title: &str| Plot::new(axis(of_x), axis(of_y)).title(title);
     let scale = AxisSpec::new("Spectral radius", "").limits(f64::NAN, 1.0);
     let figure = Figure::double("Regimes")
         .columns(2)
         .panel(
             plot("regime (impacts/cycles)")
-                .heatmap(Heatmap::classes(&x, &y, &regime, &names)?)
+                .heatmap(Heatmap::classes(x, y, &regime, &names)?)
                 .legend(Legend::Above),
         )
-        .panel(plot("stability").heatmap(Heatmap::new(&x, &y, &radius, scale)?))
+        .panel(plot("stability").heatmap(Heatmap::new(x, y, &radius, scale)?))
         .caption(
             "Motion from rest. (a) Its pattern of impacts, told by comparing states at impact. (b) Largest modulus of the Floquet \
              multipliers over the period of the pattern; white where there is none.",
@@ -54,14 +55,10 @@ pub fn regimes(plan: &Plan, rows: &[Vec<Cell>]) -> Result<Figure> {
 }
 
 /// Regimes with the number of their cells, the most frequent first.
-pub(in crate::analysis::model) fn counted<'a>(cells: impl Iterator<Item = &'a Cell>) -> Vec<(Regime, usize)> {
-    let mut counts: Vec<(Regime, usize)> = Vec::new();
-    for regime in cells.filter_map(|c| c.regime) {
-        match counts.iter_mut().find(|c| c.0 == regime) {
-            Some(count) => count.1 += 1,
-            None => counts.push((regime, 1)),
-        }
-    }
+pub(in crate::analysis::model) fn counted(
+    counts: impl Iterator<Item = (Regime, usize)>,
+) -> Vec<(Regime, usize)> {
+    let mut counts: Vec<(Regime, usize)> = counts.collect();
     counts.sort_by(|a, b| b.1.cmp(&a.1).then_with(|| a.0.to_string().cmp(&b.0.to_string())));
     counts
 }

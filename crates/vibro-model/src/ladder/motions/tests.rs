@@ -20,6 +20,7 @@ fn asked(restitution: f64, force: f64, frequency: f64, history: Option<Direction
         contact: Some(ContactKeys { stiffness: Some(1e9), ..ContactKeys::default() }),
         buffer: None,
         springs: None,
+        uncertainty: None,
     };
     let question = Question { history, ..Question::new(Observable::Fundamental) };
     choose(&scene, frequency, &question).unwrap()
@@ -33,6 +34,7 @@ fn speeds(restitution: f64, force: f64, frequency: f64, stiffness: f64) -> Choic
         contact: Some(ContactKeys { stiffness: Some(stiffness), ..ContactKeys::default() }),
         buffer: None,
         springs: None,
+        uncertainty: None,
     };
     choose(&scene, frequency, &Question::new(Observable::ImpactSpeed)).unwrap()
 }
@@ -187,6 +189,7 @@ fn a_contact_that_leads_from_rest_to_another_motion_asks_for_the_history() {
         contact: Some(ContactKeys { stiffness: Some(529_320.0), ..ContactKeys::default() }),
         buffer: None,
         springs: None,
+        uncertainty: None,
     };
     let question = Question { tolerance: 0.002, ..Question::new(Observable::HalfPeakToPeak) };
     let open = choose(&scene, 17.196, &question).unwrap();
@@ -268,7 +271,7 @@ fn states_that_were_not_followed_are_counted() {
         let rig = Rig { c1: damping, c2: damping, restitution: 0.98, ..Rig::thesis() };
         let excitation = Some(Excitation::Sine(Sine { force: 0.9, frequency: 9.0 }));
         let contact = Some(ContactKeys { stiffness: Some(1e8), ..ContactKeys::default() });
-        let scene = Scene { rig, excitation, contact, buffer: None, springs: None };
+        let scene = Scene { rig, excitation, contact, buffer: None, springs: None, uncertainty: None };
         choose(&scene, 9.0, &Question::new(Observable::Fundamental)).unwrap()
     };
     let short = at(1e-3);

@@ -1,0 +1,158 @@
+//! Parts of a study: `--shard I/N`, which computes one, and `vibro merge`, which joins all.
+
+use super::campaigns::Campaigns;
+use super::print;
+use super::{CommandArgs, complain, stdout};
+use crate::analysis::model::map::{self, Map};
+use crate::analysis::model::response::{self, Draws};
+use crate::analysis::precision::Benchmark;
+use crate::analysis::study::{PartHead, Parts, Shard, Study, part_in_memory, write_part};
+use crate::analysis::{Answer, Progress};
+use crate::error::{Error, Result};
+use crate::read::Folder;
+use crate::record::shown;
+use crate::report::files::Names;
+use clap::Args;
+use serde::{Deserialize, Serialize};
+use serde_json::json;
+use std::path::{Path, PathBuf};
+
+/// The studies that are computed in parts. A part states its study in its first line.
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(tag = "of", rename_all = "kebab-case")]
+pub enum Shared {
+    /// The cells of a map.
+    Map(Map),
+    /// The draws of a Monte Carlo.
+    Response(Draws),
+    /// The scenes of the benchmark.
+    Precision(Benchmark),
+    /// Campaigns.
+    Run(Campaigns),
+}
+
+impl Shared {
+    fn study(&self) -> &dyn Study {
+        match self {
+            Shared::Map(map) => map,
+            Shared::Response(draws) => draws,
+            Shared::Precision(benchmark) => benchmark,
+            Shared::Run(campaigns) => campaigns,
+        }
+    }
+
+    /// Names of the files in its answer.
+    fn names(&self) -> Names {
+        match self {
+            Shared::Map(_) => map::Keys::FILES,
+            Shared::Response(_) => response::Keys::FILES,
+            Shared::Precision(_) => Benchmark::FILES,
+            Shared::Run(_) => Campaigns::FILES,
+        }
+    }
+
+    /// The study whose parts have this head.
+    ///
+    /// # Errors
+    /// If this version knows no such study, or computes it otherwise.
+    fn of(head: &PartHead) -> Result<Shared> {
+        let unknown = |found: String| Error::usage(found, "parts of this version of vibro");
+        let study: Shared = serde_json::from_value(head.study.clone())
+            .map_err(|e| unknown(format!("the study of these parts is unknown: {e}")))?;
+        match study.head(head.shard)?.difference(head) {
+            None => Ok(study),
+            Some(difference) => Err(unknown(format!("these parts cannot be merged: {difference}"))),
+        }
+    }
+
+    /// The head of one of its parts.
+    fn head(&self, shard: Shard) -> Result<PartHead> {
+        let study = serde_json::to_value(self).map_err(crate::analysis::unwritten)?;
+        PartHead::of(study, self.study().cells(), shard)
+    }
+
+    /// Computes a part into a folder, prints what was computed, and gives the exit code.
+    ///
+    /// # Errors
+    /// As [`write_part`]; if there is no folder.
+    pub fn printed(&self, shard: Shard, out: Option<&Path>, json: bool) -> Result<u8> {
+        let folder = out.ok_or_else(|| {
+            Error::usage("a part without a folder", "a folder for the parts").set("out", "parts")
+        })?;
+        let head = self.head(shard)?;
+        let part =
+            print::busy(json, self.study().what(), |bar| write_part(folder, self.study(), &head, bar))?;
+        let (cells, kept, file) = (head.cells(), part.kept, head.file());
+        if json {
+            let PartHead { shard, fingerprint, .. } = head;
+            let said = json!({ "warnings": [], "shard": shard, "cells": cells, "kept": kept, "fingerprint": fingerprint, "files": [file] });
+            stdout::object(said)?;
+        } else {
+            if kept > 0 {
+                complain::line(&format!("{kept} of {cells} cells were there"));
+            }
+            stdout::text(&format!("{cells} of {} cells in {}\n", head.all, shown(&part.path)))?;
+        }
+        Ok(0)
+    }
+
+    /// A part, such as `3/16`, as the bytes of its file.
+    ///
+    /// # Errors
+    /// If there is no such part; as [`part_in_memory`].
+    pub fn part(&self, shard: &str, progress: &dyn Progress) -> Result<Vec<u8>> {
+        part_in_memory(self.study(), &self.head(shard.parse()?)?, progress)
+    }
+
+    /// The answer of parts in memory.
+    ///
+    /// # Errors
+    /// As [`Parts::of_bytes`]; if parts are missing.
+    pub fn merged(parts: Vec<Vec<u8>>) -> Result<Answer> {
+        let parts = Parts::of_bytes(parts)?;
+        Shared::of(&parts.head)?.study().answer(&mut parts.cells()?)
+    }
+}
+
+/// Joins the parts of a map: the result is that of one run, byte for byte.
+#[derive(Debug, Args)]
+pub struct Merge {
+    /// Folders with the parts
+    #[arg(index = 1, required = true)]
+    folders: Vec<PathBuf>,
+    /// Print which parts are missing or lack cells, as an option of sbatch; nothing if all are there
+    missing: bool,
+    /// Folder for figures as SVG and PNG, and tables as CSV and NPY
+    #[arg(value_name = "DIR")]
+    out: Option<PathBuf>,
+}
+
+impl CommandArgs for Merge {
+    fn run(&self, json: bool) -> Result<u8> {
+        let parts = print::busy(json, "parts", |bar| Parts::of_folders(&self.folders, bar))?;
+        if self.missing {
+            return missing(&parts, json);
+        }
+        let study = Shared::of(&parts.head)?;
+        let mut cells = parts.cells()?;
+        let output = print::results(&Folder::default(), self.out.as_deref(), study.names())?;
+        print::answer(study.study().answer(&mut cells)?, output, json)
+    }
+}
+
+/// Prints the numbers of the parts that are missing.
+fn missing(parts: &Parts, json: bool) -> Result<u8> {
+    let (missing, of) = (parts.missing(), parts.head.shard.of);
+    let list = Parts::listed(&missing);
+    if json {
+        let fingerprint = &parts.head.fingerprint;
+        stdout::object(
+            json!({ "warnings": [], "missing": missing, "array": list, "of": of, "fingerprint": fingerprint }),
+        )?;
+    } else if missing.is_empty() {
+        complain::line(&format!("all {of} parts are there"));
+    } else {
+        stdout::text(&format!("--array={list}\n"))?;
+    }
+    Ok(0)
+}

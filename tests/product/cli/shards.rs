@@ -1,0 +1,120 @@
+//! Work in parts: what `vibro merge` gives is what one run gives, byte for byte.
+
+use serde_json::Value;
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Output, Stdio};
+use std::time::{Duration, Instant};
+
+const MAP: &str = "model map --force 0.5 --x frequency:4:14:13 --y restitution:0.3:0.95:11";
+const DRAWS: &str = "model response --force 0.5 --from 5 --to 14 --points 20 --monte-carlo 100 \
+                     --set uncertainty.gap=5e-5 --set uncertainty.restitution=0.02";
+
+/// A command line of words, run in a folder.
+fn command(folder: &Path, words: &str) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_vibro"));
+    command.current_dir(folder).args(words.split_whitespace());
+    command
+}
+
+/// The standard output of a command line.
+fn vibro(folder: &Path, words: &str) -> String {
+    let out: Output = command(folder, words).output().unwrap();
+    assert!(out.status.success(), "{words}: {}", String::from_utf8_lossy(&out.stderr));
+    String::from_utf8(out.stdout).unwrap()
+}
+
+/// The error of a command line.
+fn error(folder: &Path, words: &str) -> String {
+    let out = command(folder, words).output().unwrap();
+    assert!(matches!(out.status.code(), Some(1 | 2)), "{words}: {:?}", out.status);
+    String::from_utf8(out.stderr).unwrap()
+}
+
+/// Files of a folder with their bytes.
+fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
+    let entries = fs::read_dir(folder).unwrap().map(Result::unwrap);
+    entries.map(|e| (e.file_name().into_string().unwrap(), fs::read(e.path()).unwrap())).collect()
+}
+
+#[test]
+fn parts_give_the_bytes_of_one_run() {
+    for (words, of) in [(MAP, 5), (DRAWS, 3)] {
+        let folder = tempfile::tempdir().unwrap();
+        let at = folder.path();
+        let whole = vibro(at, &format!("{words} --out whole --json"));
+        for number in 1..=of {
+            let said = vibro(at, &format!("{words} --shard {number}/{of} --out parts --json"));
+            let said: Value = serde_json::from_str(&said).unwrap();
+            assert_eq!(said["shard"], format!("{number}/{of}"));
+            assert_eq!(said["fingerprint"].as_str().map(str::len), Some(64));
+        }
+        assert_eq!(vibro(at, "merge parts --missing"), "");
+        assert_eq!(vibro(at, "merge parts --out merged --json"), whole);
+        assert_eq!(files(&at.join("merged")), files(&at.join("whole")));
+    }
+}
+
+#[test]
+fn a_killed_part_is_continued_where_it_ended() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let words =
+        "model map --force 0.5 --x frequency:4:14:90 --y restitution:0.3:0.95:80 --shard 2/2 --out parts";
+    let part = at.join("parts/part_2_of_2.cells");
+    let mut killed = command(at, words).stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
+    let began = Instant::now();
+    // The head is 600 bytes, a cell 25.
+    while fs::metadata(&part).map_or(0, |meta| meta.len()) < 1500 && began.elapsed() < Duration::from_secs(60)
+    {
+        std::thread::sleep(Duration::from_millis(2));
+    }
+    killed.kill().unwrap();
+    killed.wait().unwrap();
+    let list = vibro(at, "merge parts --missing");
+    assert!(list == "--array=1,2\n" || list == "--array=1\n", "{list}");
+    let before = fs::read(&part).unwrap();
+    let said: Value = serde_json::from_str(&vibro(at, &format!("{words} --json"))).unwrap();
+    assert_eq!(said["cells"], 3600);
+    assert!(said["kept"].as_u64() > Some(0), "{said}");
+    assert_eq!(vibro(at, "merge parts --missing"), "--array=1\n");
+    // What was there is still there, up to half a cell at its end.
+    assert!(fs::read(&part).unwrap().starts_with(&before[..before.len() - 25]));
+}
+
+#[test]
+fn what_cannot_be_merged_is_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    vibro(at, &format!("{MAP} --shard 2/3 --out parts"));
+    assert_eq!(vibro(at, "merge parts --missing"), "--array=1,3\n");
+    let said = error(at, "merge parts");
+    assert!(said.contains("2 of 3 parts are missing: 1,3") && said.contains("sbatch --array=1,3"), "{said}");
+    let said = error(at, &format!("{MAP} --cycles 100 --shard 2/3 --out parts"));
+    assert!(said.contains("a part of another study: plan.cycles is 200 and not 100"), "{said}");
+    for (words, found) in [
+        ("--shard 1/3", "a part without a folder"),
+        ("--shard 4/3 --out parts", "the part \"4/3\""),
+        ("--shard 1 --out parts", "the part \"1\""),
+    ] {
+        let said = error(at, &format!("{MAP} {words}"));
+        assert!(said.contains(found), "{said}");
+    }
+    let said = error(at, "model response --force 0.5 --from 5 --to 14 --shard 1/2 --out parts");
+    assert!(said.contains("part 1/2 of a single response") && said.contains("--monte-carlo"), "{said}");
+    let said = error(at, "merge .");
+    assert!(said.contains("no parts in ."), "{said}");
+}
+
+/// A map of more cycles than one command computes is done in parts; its cells are an array, not a list.
+#[test]
+fn a_part_of_a_map_beyond_one_command() {
+    let folder = tempfile::tempdir().unwrap();
+    let large = "model map --force 0.5 --x frequency:4:14:4000 --y restitution:0.3:0.95:3000";
+    let said = error(folder.path(), large);
+    assert!(said.contains("more than 1e8") && said.contains("--shard 1/16"), "{said}");
+    vibro(folder.path(), &format!("{large} --shard 7/100000 --out parts"));
+    let said = error(folder.path(), "merge parts");
+    assert!(said.contains("99999 of 100000 parts are missing: 1-6,8-100000"), "{said}");
+}
