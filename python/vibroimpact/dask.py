@@ -15,7 +15,7 @@ dies is computed by another one. Workers need this package and no files; each us
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any, Protocol
 
 from ._answer import Answer
 from ._native import merged as _merged
@@ -24,8 +24,15 @@ from ._native import study as _study
 from ._rig import Rig
 from ._rig_questions import RigQuestions
 
-if TYPE_CHECKING:
-    from distributed import Client
+
+class Client(Protocol):
+    """What is asked of ``dask.distributed.Client``."""
+
+    def nthreads(self) -> Mapping[str, int]: ...
+    def map(self, function: Any, *arguments: Sequence[Any]) -> Any: ...
+    def gather(self, futures: Any) -> Any: ...
+    def cancel(self, futures: Any) -> Any: ...
+
 
 PARTS_A_THREAD = 8
 """Parts for each thread of the cluster: a slow part then delays the end by an eighth at most."""
