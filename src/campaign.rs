@@ -44,7 +44,7 @@ pub(crate) use reading::{Channel, Reading, above_zero};
 pub(crate) use value::{LowPass, channel, channels, one_or_more, two, word};
 
 use crate::error::{Error, Place, Result};
-use crate::model::{ContactKeys, Parameter, Rig, Scene};
+use crate::model::{ContactKeys, Parameter, Rig, Scene, Uncertainty};
 use crate::read::Folder;
 use crate::record::{Finding, shown};
 use serde::Deserialize;
@@ -74,6 +74,8 @@ pub struct Campaign {
     pub rig: Option<Rig>,
     /// The excitation of the rig.
     pub excitation: Option<Drive>,
+    /// Standard uncertainties of keys of the rig and of the force, from which a Monte Carlo draws.
+    pub uncertainty: Option<Uncertainty>,
     /// Contact law of the masses; without it the contact stiffness is unknown.
     pub contact: Option<ContactKeys>,
     /// Model of the overlay's predictions, and its settings.
@@ -299,6 +301,13 @@ impl Campaign {
         };
         if let Some((key, error)) = self.rig.as_ref().and_then(Rig::fault) {
             return Err(at("rig", key, error));
+        }
+        for (parameter, std) in self.uncertainty.iter().flat_map(Uncertainty::all) {
+            if !(std.is_finite() && std >= 0.0) {
+                let found = format!("the uncertainty of {} is {std}", parameter.name());
+                let error = Error::usage(found, "a finite value of 0 or more");
+                return Err(at("uncertainty", parameter.name(), error));
+            }
         }
         let contact = self.contact.map(ContactKeys::resolved).transpose();
         let contact = contact.map_err(|(key, error)| at("contact", key, error))?;

@@ -10,7 +10,7 @@ mod prediction;
 mod simulated;
 
 pub use fit::{Block, Fit, FitPoint, FittedParameter, LeftOut, Profile, Rung, Unidentified, fit};
-pub use overlay::{Level, Overlay, overlay};
+pub use overlay::{Level, Overlay, overlay, predicted};
 pub use pair::{Pair, PeakPair, Score};
 pub use prediction::{Motion, MotionKind, Prediction, Verdict};
 

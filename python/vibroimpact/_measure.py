@@ -677,6 +677,7 @@ def compare(
     *,
     allow_outside: bool = False,
     fit: str | Sequence[str | float] | None = None,
+    monte_carlo: int | None = None,
 ) -> Answer:
     """Compare the measured responses of a campaign with the model; fit parameters of the rig.
 
@@ -687,5 +688,7 @@ def compare(
         allow_outside: Allow files outside the folder of the campaign.
         fit: Parameters to fit, separated by commas: force, restitution, c1, c2, gap, k1, k2, and m1, m2
             with a prior in [fit] [default: those of [fit] in the campaign].
+        monte_carlo: Draw the parameters N times from [uncertainty] of the campaign: bands that hold 95 %
+            of the draws.
     """
-    return ask(["compare"], [campaign], {"allow_outside": allow_outside, "fit": Joined(",", fit)})
+    return ask(["compare"], [campaign], {"allow_outside": allow_outside, "fit": Joined(",", fit), "monte_carlo": monte_carlo})

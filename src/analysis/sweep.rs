@@ -1,5 +1,6 @@
 //! Stepped-sine sweeps: `[[sweep]]`, `vibro response`, `vibro waterfall`, `vibro compare`.
 
+mod draws;
 pub mod figures;
 pub mod listed;
 pub mod modelled;
@@ -8,6 +9,7 @@ pub mod pairing;
 pub mod stored;
 pub mod tables;
 
+pub use draws::PairDraws;
 pub use listed::{Files, Listed};
 pub use stored::StoredResponseKeys;
 

@@ -3,8 +3,9 @@
 use super::campaigns::Campaigns;
 use super::print::folder_of;
 use super::question::{Asked, Question};
+use super::study::Shared;
 use super::{complain, init, print, stdout};
-use crate::analysis::sweep::modelled;
+use crate::analysis::sweep::{PairDraws, modelled};
 use crate::analysis::{self, Answer, AnswerCache, CampaignOutcome, Progress, REPORT};
 use crate::campaign::{Campaign, FitEntry, Reading};
 use crate::error::{Error, Result};
@@ -51,9 +52,21 @@ pub struct Compare {
     /// prior in [fit] [default: those of [fit] in the campaign]
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     fit: Vec<String>,
+    /// Draw the parameters N times from [uncertainty] of the campaign: bands that hold 95 % of the draws
+    #[arg(value_name = "N", conflicts_with = "fit")]
+    monte_carlo: Option<u64>,
+    /// Compute part I of N of a Monte Carlo into --out; `vibro merge` joins them. Started again, it computes
+    /// what is missing
+    #[arg(value_name = "I/N")]
+    shard: Option<String>,
     /// Folder for the overlay and the fit as SVG, PNG and CSV
     #[arg(value_name = "DIR")]
     out: Option<PathBuf>,
+}
+
+impl Compare {
+    /// Names of the files in its answer.
+    pub const FILES: Names = Names::Numbered(&["overlay", "pairs", "peaks", "fit", "fit_points", "bands"]);
 }
 
 /// Opens a campaign file, or the campaign of a folder; an empty campaign for a folder without one.
@@ -213,7 +226,7 @@ impl Run {
 
 impl Question for Compare {
     fn names(&self) -> Names {
-        Names::Numbered(&["overlay", "pairs", "peaks", "fit", "fit_points"])
+        Compare::FILES
     }
 
     fn out(&self) -> Option<&Path> {
@@ -228,8 +241,22 @@ impl Question for Compare {
         "comparing"
     }
 
+    fn shard(&self) -> Option<&str> {
+        self.shard.as_deref()
+    }
+
+    fn study(&self) -> Result<Option<Shared>> {
+        let Some(draws) = self.monte_carlo else { return Ok(None) };
+        let within = Folder::default().allow_outside(self.allow_outside);
+        let path = self.campaign.clone();
+        PairDraws::of(&within, path, self.allow_outside, draws).map(|draws| Some(Shared::Compare(draws)))
+    }
+
     /// Measured responses against the model.
     fn answer(&self, asked: &Asked<'_>) -> Result<Answer> {
+        if let Some(study) = self.study()? {
+            return study.whole(asked.progress);
+        }
         let campaign = opened(asked.folder, &self.campaign)?;
         let mut campaign = proposed(campaign, &AnswerCache::default(), asked.progress)?;
         if !self.fit.is_empty() {

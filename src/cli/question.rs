@@ -64,9 +64,9 @@ pub trait Question {
 pub fn printed(question: &dyn Question, json: bool) -> Result<u8> {
     if let Some(shard) = question.shard() {
         let study = question.study()?.ok_or_else(|| {
-            let found = format!("part {shard} of a single response");
+            let found = format!("part {shard} of one answer");
             Error::usage(found, "a Monte Carlo, whose draws are computed in parts")
-                .set("monte_carlo", "10000")
+                .hint("--monte-carlo 10000")
         })?;
         return study.printed(shard.parse()?, question.out(), json);
     }

@@ -1,12 +1,14 @@
 //! Parts of a study: `--shard I/N`, which computes one, and `vibro merge`, which joins all.
 
+use super::campaign::Compare;
 use super::campaigns::Campaigns;
 use super::print;
 use super::{CommandArgs, complain, stdout};
 use crate::analysis::model::map::{self, Map};
 use crate::analysis::model::response::{self, Draws};
 use crate::analysis::precision::Benchmark;
-use crate::analysis::study::{PartHead, Parts, Shard, Study, part_in_memory, write_part};
+use crate::analysis::study::{self, PartHead, Parts, Shard, Study, part_in_memory, write_part};
+use crate::analysis::sweep::PairDraws;
 use crate::analysis::{Answer, Progress};
 use crate::error::{Error, Result};
 use crate::read::Folder;
@@ -25,6 +27,8 @@ pub enum Shared {
     Map(Map),
     /// The draws of a Monte Carlo.
     Response(Draws),
+    /// The draws of an overlay.
+    Compare(PairDraws),
     /// The scenes of the benchmark.
     Precision(Benchmark),
     /// Campaigns.
@@ -36,6 +40,7 @@ impl Shared {
         match self {
             Shared::Map(map) => map,
             Shared::Response(draws) => draws,
+            Shared::Compare(draws) => draws,
             Shared::Precision(benchmark) => benchmark,
             Shared::Run(campaigns) => campaigns,
         }
@@ -46,6 +51,7 @@ impl Shared {
         match self {
             Shared::Map(_) => map::Keys::FILES,
             Shared::Response(_) => response::Keys::FILES,
+            Shared::Compare(_) => Compare::FILES,
             Shared::Precision(_) => Benchmark::FILES,
             Shared::Run(_) => Campaigns::FILES,
         }
@@ -94,6 +100,14 @@ impl Shared {
             stdout::text(&format!("{cells} of {} cells in {}\n", head.all, shown(&part.path)))?;
         }
         Ok(0)
+    }
+
+    /// The answer, all cells computed here.
+    ///
+    /// # Errors
+    /// Those of the study.
+    pub fn whole(&self, progress: &dyn Progress) -> Result<Answer> {
+        study::whole(self.study(), progress)
     }
 
     /// A part, such as `3/16`, as the bytes of its file.

@@ -8,6 +8,7 @@ use super::simulated::Pace;
 use crate::error::Result;
 use crate::measure::response::Response;
 use crate::model::Rig;
+use crate::model::ladder::Model;
 use crate::record::{Direction, Finding};
 use serde::Serialize;
 
@@ -38,6 +39,9 @@ pub struct Overlay {
     pub scores: Vec<Score>,
     /// The choice of a model for each level of force and direction; empty where a model is named.
     pub rungs: Vec<Rungs>,
+    /// Model of the simulated predictions.
+    #[serde(skip)]
+    pub model: Model,
     /// Findings on the comparison.
     pub findings: Vec<Finding>,
 }
@@ -73,12 +77,7 @@ pub fn overlay(
     let margin = 0.03 * (high - low);
     let ends = ((low - margin).max(low / 2.0), high + margin);
     let curve = |forcing: &Forcing| Prediction::over(rig, forcing, ends, CURVE);
-    let medians: Vec<Option<f64>> = swept.iter().map(|s| Some(s.forcing.median())).collect();
-    let grouped = levels(&medians).into_iter().filter_map(|level| {
-        let members: Vec<&Swept<'_>> = level.iter().filter_map(|i| swept.get(*i)).collect();
-        Some((Forcing::mean(&members.iter().map(|s| &s.forcing).collect::<Vec<_>>())?, members))
-    });
-    let grouped: Vec<(Forcing, Vec<&Swept<'_>>)> = grouped.collect();
+    let grouped = grouped(&swept);
     // The choice of a model for each level of force and direction.
     let mut choices = Vec::new();
     for (force, members) in grouped.iter().filter(|_| predicting.model.name.is_none()) {
@@ -108,7 +107,37 @@ pub fn overlay(
         shown.push(Level { force: mean.median(), sweeps, curve: common });
     }
     findings.extend(of_motions(&pairs, course.pace));
-    Ok(Overlay { force, levels: shown, pairs, peaks: found_peaks, scores, rungs: choices, findings })
+    Ok(Overlay { force, levels: shown, pairs, peaks: found_peaks, scores, rungs: choices, model, findings })
+}
+
+/// Amplitudes in m that a model predicts at the points of all sweeps, in the order of the pairs of an
+/// [`overlay`]; `None` where the motion cannot be followed.
+///
+/// # Errors
+/// As [`overlay`].
+pub fn predicted(
+    rig: &Rig,
+    force: Option<f64>,
+    (model, predicting): (Model, &Predicting),
+    responses: &[Response],
+) -> Result<Vec<Option<f64>>> {
+    let (swept, _) = Swept::all(force, responses)?;
+    let course = Predictor { rig, law: predicting.law(rig, model)?, model, pace: predicting.pace() };
+    let mut predicted = Vec::new();
+    for sweep in grouped(&swept).into_iter().flat_map(|(_, members)| members) {
+        predicted.extend(course.pairs(sweep)?.into_iter().map(|pair| pair.predicted));
+    }
+    Ok(predicted)
+}
+
+/// Sweeps by level of force, with the mean of their forces.
+fn grouped<'a>(swept: &'a [Swept<'a>]) -> Vec<(Forcing, Vec<&'a Swept<'a>>)> {
+    let medians: Vec<Option<f64>> = swept.iter().map(|s| Some(s.forcing.median())).collect();
+    let of_level = |level: Vec<usize>| {
+        let members: Vec<&Swept<'_>> = level.iter().filter_map(|i| swept.get(*i)).collect();
+        Some((Forcing::mean(&members.iter().map(|s| &s.forcing).collect::<Vec<_>>())?, members))
+    };
+    levels(&medians).into_iter().filter_map(of_level).collect()
 }
 
 /// Lowest and highest excitation frequency in Hz.

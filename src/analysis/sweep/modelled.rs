@@ -1,5 +1,6 @@
 //! Measured sweeps against the model: overlay and fit, in `vibro compare` and in a campaign.
 
+use super::draws::PairBands;
 use super::{figures, findings_of, responses, tables};
 use crate::analysis::answer::Answer;
 use crate::analysis::compared_rig::{ComparedRig, Sliders};
@@ -32,12 +33,12 @@ pub fn fit(campaign: &Campaign, rig: &Rig, responses: &[Response]) -> Result<Opt
 }
 
 /// The sweeps of a campaign over the prediction for a rig.
-fn overlaid(campaign: &Campaign, rig: &Rig, responses: &[Response]) -> Result<Overlay> {
+pub(super) fn overlaid(campaign: &Campaign, rig: &Rig, responses: &[Response]) -> Result<Overlay> {
     overlay(rig, campaign.excitation.and_then(|e| e.force), &predicting(campaign), responses)
 }
 
 /// Model and contact with which a campaign predicts.
-fn predicting(campaign: &Campaign) -> Predicting {
+pub(super) fn predicting(campaign: &Campaign) -> Predicting {
     Predicting { model: campaign.model, contact: campaign.contact }
 }
 
@@ -46,27 +47,53 @@ fn predicting(campaign: &Campaign) -> Predicting {
 /// # Errors
 /// If the campaign has no rig, a sweep cannot be read, or the data allow no overlay or no fit.
 pub fn compared(campaign: &Campaign, progress: &dyn Progress) -> Result<Answer> {
-    let rig = campaign.rig.ok_or_else(|| {
-        Error::input(Place::file(campaign.path()), "the campaign has no [rig]", "the rig to compare with")
-            .hint("add a [rig] table; keys left out take the values of the thesis' rig")
-    })?;
+    let rig = stated_rig(campaign)?;
     let responses = responses(campaign, progress)?;
     let overlay = overlaid(campaign, &rig, &responses)?;
-    let fit = fit(campaign, &rig, &responses)?;
-    let mut answer = shown(campaign, &responses, &overlay, fit.as_ref());
-    answer.result = Answer::of(&overlay)?.result;
+    answered(campaign, &rig, (&responses, &overlay), None)
+}
+
+/// The rig of a campaign.
+///
+/// # Errors
+/// If it has none.
+pub(super) fn stated_rig(campaign: &Campaign) -> Result<Rig> {
+    campaign.rig.ok_or_else(|| {
+        Error::input(Place::file(campaign.path()), "the campaign has no [rig]", "the rig to compare with")
+            .hint("add a [rig] table; keys left out take the values of the thesis' rig")
+    })
+}
+
+/// The answer of an overlay, with the fit that `[fit]` requests, and with bands of drawn rigs.
+pub(super) fn answered(
+    campaign: &Campaign,
+    rig: &Rig,
+    (responses, overlay): (&[Response], &Overlay),
+    bands: Option<&PairBands>,
+) -> Result<Answer> {
+    let fit = fit(campaign, rig, responses)?;
+    let mut answer = shown(campaign, responses, overlay, (fit.as_ref(), bands));
+    answer.result = Answer::of(overlay)?.result;
     answer.result.insert("fit".to_owned(), json!(fit));
-    answer.findings.extend(findings_of(&responses));
+    if let Some(bands) = bands {
+        bands.add_to(&mut answer)?;
+    }
+    answer.findings.extend(findings_of(responses));
     Ok(answer)
 }
 
 /// Findings, figures and tables of overlay and fit.
-fn shown(campaign: &Campaign, responses: &[Response], overlay: &Overlay, fit: Option<&Fit>) -> Answer {
+fn shown(
+    campaign: &Campaign,
+    responses: &[Response],
+    overlay: &Overlay,
+    (fit, bands): (Option<&Fit>, Option<&PairBands>),
+) -> Answer {
     let mut answer = Answer::default();
     // First, because every prediction depends on the assumed keys of the rig.
     answer.add("", rig_left_out("[rig]", &campaign.rig_left_out()));
     answer.add("", &overlay.findings);
-    answer.figure("overlay", figures::overlay(&campaign.name, overlay, responses));
+    answer.figure("overlay", figures::overlay(&campaign.name, overlay, responses, bands));
     answer.csv("pairs", &tables::pairs(overlay));
     answer.table("peaks", tables::peaks(overlay));
     answer.tables.extend([tables::scores(overlay), climbed(overlay)]);
@@ -100,7 +127,7 @@ pub fn run(job: &mut Job<'_>, responses: &[Response]) -> Result<Option<Table>> {
         overlay = job.found("overlay", overlaid(campaign, rig, responses));
         fitted = job.found("fit", fit(campaign, rig, responses)).flatten();
         if let Some(overlay) = &overlay {
-            job.show("", "", shown(campaign, responses, overlay, fitted.as_ref()));
+            job.show("", "", shown(campaign, responses, overlay, (fitted.as_ref(), None)));
         }
         let stiffness = campaign.contact.and_then(|contact| contact.stiffness);
         let sliders = overlay.as_ref().and_then(|overlay| Sliders::of(rig, overlay, stiffness));

@@ -1,11 +1,14 @@
 //! Work in parts: what `vibro merge` gives is what one run gives, byte for byte.
 
+use super::rig;
 use serde_json::Value;
 use std::collections::BTreeMap;
+use std::f64::consts::TAU;
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
 use std::time::{Duration, Instant};
+use vibroimpact::math::Noise;
 
 const MAP: &str = "model map --force 0.5 --x frequency:4:14:13 --y restitution:0.3:0.95:11";
 const DRAWS: &str = "model response --force 0.5 --from 5 --to 14 --points 20 --monte-carlo 100 \
@@ -56,6 +59,87 @@ fn parts_give_the_bytes_of_one_run() {
     }
 }
 
+/// A campaign of a sweep that the linear rig passes without impacts, with uncertainties.
+fn campaign(folder: &Path) {
+    rig::sweep(folder, &rig::frequencies());
+    let text = "[rig]\nm1 = 0.125\nm2 = 0.094\nk1 = 154.8\nk2 = 128.0\nc1 = 0.44\nc2 = 0.1\ngap = 1.0\nrestitution = 0.7\n\
+                [uncertainty]\nk1 = 1.5\nc1 = 0.01\nforce = 0.002\n\
+                [excitation]\nforce = 0.1\n[model]\nsettle = 20\nmeasure = 8\n\
+                [[sweep]]\nname = \"up\"\nlist = \"LIST.TXT\"\nmass = 1\ndirection = \"up\"\nscaling = \"peak\"\nunit = \"m/s\"\n";
+    fs::write(folder.join("campaign.toml"), text).unwrap();
+}
+
+/// Without impacts the amplitude is F/|k − mω² + icω|: the quantiles of drawn rigs are those of the drawn k,
+/// c and F.
+#[test]
+fn bands_of_a_linear_rig_are_those_of_its_closed_form() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    campaign(at);
+    let words = "compare campaign.toml --monte-carlo 400";
+    let whole = vibro(at, &format!("{words} --out whole --json"));
+    for number in [2, 1] {
+        vibro(at, &format!("{words} --shard {number}/2 --out parts"));
+    }
+    assert_eq!(vibro(at, "merge parts --out merged --json"), whole);
+    assert_eq!(files(&at.join("merged")), files(&at.join("whole")));
+
+    let whole: Value = serde_json::from_str(&whole).unwrap();
+    assert_eq!(whole["bands"].as_array().map(Vec::len), Some(rig::frequencies().len()));
+    let mut noise = Noise::new(1);
+    for band in whole["bands"].as_array().unwrap() {
+        let omega = TAU * band["frequency"].as_f64().unwrap();
+        let amplitude = |k: f64, c: f64, force: f64| force / (k - 0.125 * omega * omega).hypot(c * omega);
+        let drawn: Vec<f64> = (0..20_000)
+            .map(|_| {
+                let [k, c, force] = [noise.normal(), noise.normal(), noise.normal()];
+                amplitude(154.8 + 1.5 * k, 0.44 + 0.01 * c, 0.1 + 0.002 * force)
+            })
+            .collect();
+        assert_eq!(band["share"], 1.0);
+        // Of 400 draws the part below a quantile q scatters by √(q(1 − q)/400): 0.8 % at both ends and 2.5 %
+        // in the middle. The limits are five of these.
+        for (i, (q, wide)) in [(0.025, 0.039), (0.5, 0.125), (0.975, 0.039)].into_iter().enumerate() {
+            let found = band["predicted"][i].as_f64().unwrap();
+            let below = drawn.iter().filter(|a| **a < found).count() as f64 / 20_000.0;
+            assert!((below - q).abs() < wide, "{q}: {below} at {band}");
+        }
+    }
+    // Parts of recordings that changed since are not merged.
+    fs::write(at.join("campaign.toml"), fs::read_to_string(at.join("campaign.toml")).unwrap() + "# new\n")
+        .unwrap();
+    let said = error(at, "merge parts");
+    assert!(said.contains("changed since the parts were computed"), "{said}");
+    let said = error(at, &format!("{words} --shard 1/2 --out parts"));
+    assert!(said.contains("a part of another study: measured is "), "{said}");
+}
+
+#[test]
+fn several_campaigns_run_into_folders_of_their_own() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    for name in ["a", "b", "empty"] {
+        fs::create_dir(at.join(name)).unwrap();
+    }
+    campaign(&at.join("a"));
+    campaign(&at.join("b"));
+    let ran = command(at, "run a b/campaign.toml empty --out whole --json").output().unwrap();
+    assert_eq!(ran.status.code(), Some(1), "one has no answer");
+    let ran: Value = serde_json::from_slice(&ran.stdout).unwrap();
+    let answered: Vec<&Value> = ran["campaigns"].as_array().unwrap().iter().map(|c| &c["answered"]).collect();
+    assert_eq!(answered, [true, true, false]);
+    assert!(ran["campaigns"][2]["error"].as_str().unwrap().contains("no recording"));
+    for number in [1, 2] {
+        vibro(at, &format!("run a b/campaign.toml empty --shard {number}/2 --out parts"));
+    }
+    vibro(at, "merge parts --out parts");
+    let list = |of: &str| fs::read(at.join(of).join("campaigns.csv")).unwrap();
+    assert_eq!(list("parts"), list("whole"));
+    assert_eq!(files(&at.join("parts/b")), files(&at.join("whole/b")));
+    let said = error(at, "run a b");
+    assert!(said.contains("several campaigns without a folder") && said.contains("--out results"), "{said}");
+}
+
 #[test]
 fn a_killed_part_is_continued_where_it_ended() {
     let folder = tempfile::tempdir().unwrap();
@@ -102,7 +186,7 @@ fn what_cannot_be_merged_is_named() {
         assert!(said.contains(found), "{said}");
     }
     let said = error(at, "model response --force 0.5 --from 5 --to 14 --shard 1/2 --out parts");
-    assert!(said.contains("part 1/2 of a single response") && said.contains("--monte-carlo"), "{said}");
+    assert!(said.contains("part 1/2 of one answer") && said.contains("--monte-carlo"), "{said}");
     let said = error(at, "merge .");
     assert!(said.contains("no parts in ."), "{said}");
 }

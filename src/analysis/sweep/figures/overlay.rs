@@ -1,11 +1,12 @@
 //! Measured responses over the predicted branches.
 
 use super::response::{MARKS, log_limits, rank, series, shown};
+use crate::analysis::sweep::draws::PairBands;
 use crate::compare::{Motion, MotionKind, Overlay, Pair, Prediction, Verdict};
 use crate::measure::response::Response;
 use crate::model::ladder::Model;
 use crate::report::layout::{lettered, line, points};
-use crate::report::{AxisSpec, Figure, Ink, Marker, Plot, Stroke};
+use crate::report::{AxisSpec, Figure, Ink, Marker, Plot, Series, Stroke};
 use crate::units::notation::significant;
 
 /// Height of a panel in mm.
@@ -14,14 +15,15 @@ const PANEL_HEIGHT: f64 = 85.0;
 /// One panel for each mass and level of force. Observable branches are solid, unstable ones dashed, neutral
 /// ones dash-dotted, the motion without impacts thin; measured points are on top. Branches on which the
 /// masses would pass through each other are left out.
-pub fn overlay(title: &str, overlay: &Overlay, responses: &[Response]) -> Figure {
+pub fn overlay(title: &str, overlay: &Overlay, responses: &[Response], bands: Option<&PairBands>) -> Figure {
     let force = match overlay.force {
         Some(force) => format!("a force of {force:.4} N"),
         None => "the measured force".to_owned(),
     };
+    let drawn = if bands.is_some() { " Shaded: 95 % of the rigs with drawn parameters." } else { "" };
     let mut figure = Figure::double(format!("Measurement and model, {title}")).shared_x().caption(format!(
         "Fundamental of the displacement under {force}. Circles and squares: measured. Lines: motions with one impact a cycle, in closed form. \
-         Crosses: other motions, and contacts that last, from a simulated sweep at the measured frequencies. Not drawn: impossible motions, mass 2 at rest. {MARKS}"
+         Crosses: other motions, and contacts that last, from a simulated sweep at the measured frequencies. Not drawn: impossible motions, mass 2 at rest.{drawn} {MARKS}"
     ));
     for level in &overlay.levels {
         for mass in [1, 2] {
@@ -31,7 +33,7 @@ pub fn overlay(title: &str, overlay: &Overlay, responses: &[Response]) -> Figure
                 .map(|(i, r)| (rank(responses, i), r))
                 .collect();
             if !measured.is_empty() {
-                let mut plot = panel(mass, &level.curve, &overlay.pairs, &measured);
+                let mut plot = panel(mass, &level.curve, &overlay.pairs, (&measured, bands));
                 if overlay.levels.len() > 1 {
                     plot = plot.title(format!("Force {} N", significant(level.force, 3)));
                 }
@@ -44,13 +46,23 @@ pub fn overlay(title: &str, overlay: &Overlay, responses: &[Response]) -> Figure
 }
 
 /// The panel of a mass at one level of force.
-fn panel(mass: u8, curve: &Prediction, pairs: &[Pair], measured: &[(usize, &Response)]) -> Plot {
+fn panel(
+    mass: u8,
+    curve: &Prediction,
+    pairs: &[Pair],
+    (measured, bands): (&[(usize, &Response)], Option<&PairBands>),
+) -> Plot {
     let (factor, unit) = shown("m");
     let y = AxisSpec::new(format!("Displacement of mass {mass}"), unit).log();
     // The measured points set the limits: branches may run out of the picture.
     let limits = log_limits(measured.iter().map(|m| m.1)).map(|(low, high)| (factor * low, factor * high));
     let y = limits.map_or(y.clone(), |(low, high)| y.limits(low, high));
     let mut plot = Plot::new(AxisSpec::new("Excitation frequency", "Hz"), y);
+    for (_, response) in measured {
+        let Some((frequency, ends)) = bands.and_then(|bands| bands.of(&response.name)) else { continue };
+        let [low, high] = ends.map(|end| end.iter().map(|amplitude| factor * amplitude).collect::<Vec<_>>());
+        plot = plot.with(Series::band("95 % of draws", frequency, low, high).ink(Ink::Grey));
+    }
     let of_panel = |p: &&Pair| p.mass == mass && measured.iter().any(|(_, r)| r.name == p.sweep);
     let soft_models = [Model::KelvinVoigt, Model::HuntCrossley];
     let is_soft = pairs.iter().filter(of_panel).any(|p| soft_models.contains(&p.model));
