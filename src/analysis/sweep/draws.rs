@@ -29,7 +29,7 @@ pub struct PairDraws {
     /// SHA-256 of the campaign's file and of the measured responses.
     measured: String,
     #[serde(skip)]
-    loaded: OnceLock<Loaded>,
+    loaded: OnceLock<Box<Loaded>>,
 }
 
 /// A campaign with its responses, and the overlay of its rig.
@@ -60,7 +60,7 @@ impl PairDraws {
         let loaded = Loaded::of(within, &campaign)?;
         loaded.predicted(0)?;
         let measured = loaded.digest()?;
-        Ok(PairDraws { campaign, allow_outside, draws, measured, loaded: OnceLock::from(loaded) })
+        Ok(PairDraws { campaign, allow_outside, draws, measured, loaded: OnceLock::from(Box::new(loaded)) })
     }
 
     /// The campaign, read again where the study comes from a part.
@@ -76,7 +76,7 @@ impl PairDraws {
             );
             return Err(Error::usage(found, "those of the parts"));
         }
-        Ok(self.loaded.get_or_init(|| loaded))
+        Ok(self.loaded.get_or_init(|| Box::new(loaded)))
     }
 }
 
