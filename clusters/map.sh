@@ -1,6 +1,6 @@
 #!/bin/bash
 # A map in 16 parts as a job array of Slurm:  sbatch map.sh
-# Only what is missing:                        sbatch $(vibro merge parts --missing) map.sh
+# Only what is missing:  list=$(vibro merge parts --missing) && sbatch $list map.sh
 #SBATCH --job-name=map
 #SBATCH --array=1-16
 #SBATCH --cpus-per-task=1

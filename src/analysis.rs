@@ -7,6 +7,7 @@
 pub(crate) mod answer;
 mod compared_rig;
 pub(crate) mod decay;
+pub(crate) mod drawn;
 pub(crate) mod drill;
 pub(crate) mod drop;
 pub(crate) mod entries;

@@ -5,7 +5,9 @@ use crate::value::object;
 use crate::watched::watched;
 use num_complex::Complex64;
 use numpy::{PyArray1, PyReadonlyArray1};
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
+use pyo3::types::PyBytes;
 use std::path::PathBuf;
 use std::sync::Arc;
 use vibro_io::write::{Precision, Storage, Target};
@@ -102,6 +104,21 @@ impl Head {
 
 #[pymethods]
 impl Head {
+    /// For pickle: how to make the head again.
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, (Bound<'py, PyBytes>,))> {
+        let bytes = rmp_serde::to_vec(&(&self.record, &*self.of_file))
+            .map_err(|error| PyValueError::new_err(error.to_string()))?;
+        Ok((py.get_type::<Head>().getattr("kept")?, (PyBytes::new(py, &bytes),)))
+    }
+
+    /// The head that these bytes keep.
+    #[staticmethod]
+    fn kept(bytes: &[u8]) -> PyResult<Head> {
+        let (record, of_file): (Record, Vec<Finding>) =
+            rmp_serde::from_slice(bytes).map_err(|error| PyValueError::new_err(error.to_string()))?;
+        Ok(Head { record, of_file: Arc::new(of_file) })
+    }
+
     /// A head for `n` values: a trace over time, a spectrum of peak values or a response function over
     /// frequency, by `kind`. The axis is `even`, with its start and step, or has the values `at`; without both it
     /// counts. Values within twice `resolution` of an even axis are on it. Returned with the factor that takes

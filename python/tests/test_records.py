@@ -1,5 +1,8 @@
 """Records: from arrays and files, to files, frames and other libraries."""
 
+import pickle
+from pathlib import Path
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -156,3 +159,32 @@ def test_a_notebook_shows_a_record(bench):
     matplotlib.use("agg")
     axes = v.plot()
     assert axes.get_ylabel() == "velocity [m/s]"
+
+
+def test_a_record_comes_back_from_pickle_as_it_was(tmp_path: Path) -> None:
+    path = tmp_path / "odd.csv"
+    path.write_text("t [ms];v [mm/s]\n" + "".join(f"{k};{k * k}\n" for k in range(40)))
+    for record in [*vi.read(path), vi.Record.of(np.arange(9) * 1j, frequency=np.arange(9.0), unit="m/N", name="H")]:
+        again = pickle.loads(pickle.dumps(record))
+        assert np.array_equal(again.values, record.values) and np.array_equal(again.axis, record.axis)
+        assert (repr(again), again.meta, again.findings) == (repr(record), record.meta, record.findings)
+    recording = vi.read(path)
+    again = pickle.loads(pickle.dumps(recording))
+    assert (repr(again), again.findings) == (repr(recording), recording.findings)
+    with pytest.raises(ValueError, match="."):
+        vi._native.Head.kept(b"no head")
+
+
+def test_arrow_has_axis_values_and_units() -> None:
+    pyarrow = pytest.importorskip("pyarrow")
+    v = vi.Record.of([0.0, 1.0, 4.0], rate=1000, unit="mm/s", name="v")
+    table = pyarrow.table(v)
+    assert table.column_names == ["time [s]", "v"]
+    assert table["v"].to_pylist() == [0.0, 1e-3, 4e-3]
+    assert table.schema.field("v").metadata == {b"unit": b"m/s"}
+    h = vi.Record.of([1 + 2j], frequency=[5.0], unit="m/N", name="H")
+    assert pyarrow.table(h).to_pylist() == [{"frequency [Hz]": 5.0, "H, real": 1.0, "H, imaginary": 2.0}]
+    two = vi.Recording("x", "memory", [], [v, vi.Record.of([1.0, 2.0, 3.0], rate=1000, name="w")])
+    assert pyarrow.table(two).column_names == ["time [s]", "v", "w"]
+    with pytest.raises(vi.BadInput, match="different axes"):
+        vi.Recording("x", "memory", [], [v, h]).to_arrow()

@@ -22,6 +22,7 @@ from ._words import words
 
 if TYPE_CHECKING:
     import pandas
+    import pyarrow  # type: ignore[import-untyped]
     import xarray
 
 Array = npt.NDArray[Any]
@@ -214,6 +215,14 @@ class Record:
         attrs = {"units": self.unit, "quantity": self.quantity}
         return xarray.DataArray(self.values, {over: axis}, [over], self.name or None, attrs)
 
+    def to_arrow(self) -> pyarrow.Table:
+        """An Arrow table with the axis and the values; needs pyarrow. Units are in the metadata of the fields."""
+        return _arrow([self])
+
+    def __arrow_c_stream__(self, requested_schema: object | None = None) -> object:
+        """The table by the PyCapsule interface of Arrow: ``polars.DataFrame(record)`` takes a record as it is."""
+        return self.to_arrow().__arrow_c_stream__(requested_schema)
+
     def to_sep005(self) -> dict[str, Any]:
         """A dictionary by the proposal SEP-005 for time series.
 
@@ -299,11 +308,19 @@ class Recording(Sequence[Record]):
         """
         import pandas
 
-        first, *others = self.records
-        axis = first.axis
-        if any(r.axis_unit != first.axis_unit or not np.array_equal(r.axis, axis) for r in others):
-            raise BadInput("records over different axes; expected one axis: use to_pandas() of each record")
+        _one_axis(self.records)
         return pandas.concat([record.to_pandas() for record in self.records], axis=1)
+
+    def to_arrow(self) -> pyarrow.Table:
+        """An Arrow table with the axis and a column for each record; needs pyarrow.
+
+        Raises ``BadInput`` where records have different axes: convert them one by one.
+        """
+        return _arrow(self.records)
+
+    def __arrow_c_stream__(self, requested_schema: object | None = None) -> object:
+        """The table by the PyCapsule interface of Arrow: ``polars.DataFrame(recording)`` takes it as it is."""
+        return self.to_arrow().__arrow_c_stream__(requested_schema)
 
     def __repr__(self) -> str:
         lines = [f"<{self.format} {self.path}: {len(self)} records>", *(f"  {record!r}" for record in self)]
@@ -313,6 +330,32 @@ class Recording(Sequence[Record]):
         told = "".join(f"<li>{html.escape(str(finding))}</li>" for finding in self._findings)
         head = f"{html.escape(self.path)}, {self.format}<ul>{told}</ul>"
         return head + "".join(record._repr_html_() for record in self)
+
+
+def _one_axis(records: Sequence[Record]) -> Array:
+    """The axis that all records have."""
+    first, *others = records
+    axis = first.axis
+    if any(r.axis_unit != first.axis_unit or not np.array_equal(r.axis, axis) for r in others):
+        raise BadInput("records over different axes; expected one axis: convert each record by itself")
+    return axis
+
+
+def _arrow(records: Sequence[Record]) -> pyarrow.Table:
+    """A table with the axis of the records and their values; the parts of complex values are two columns."""
+    import pyarrow
+
+    over = {"s": "time [s]", "Hz": "frequency [Hz]"}.get(records[0].axis_unit, "number")
+    columns: list[tuple[str, Array, str]] = [(over, _one_axis(records), records[0].axis_unit)]
+    for record in records:
+        name = record.name or record.quantity
+        if np.iscomplexobj(record.values):
+            columns.append((f"{name}, real", record.values.real, record.unit))
+            columns.append((f"{name}, imaginary", record.values.imag, record.unit))
+        else:
+            columns.append((name, record.values, record.unit))
+    fields = [pyarrow.field(name, pyarrow.float64(), metadata={"unit": unit}) for name, _, unit in columns]
+    return pyarrow.Table.from_arrays([pyarrow.array(c) for _, c, _ in columns], schema=pyarrow.schema(fields))
 
 
 def read_file(path: str | PathLike[str], options: Mapping[str, Any]) -> Recording:

@@ -8,12 +8,13 @@
     answer = vi.dask.map(vi.Rig(), x=("frequency", 4, 14, 300), y=("restitution", 0.3, 0.95, 200), force=0.5, client=client)
 
 The answer is that of ``Rig.map``, bit for bit: the bytes of a cell depend on its number alone. A part whose worker
-dies is computed by another one. Workers need this package and no files; each uses the cores that
-``RAYON_NUM_THREADS`` states, or all.
+dies is computed by another one. Workers need this package and no files; each uses as many cores as it has threads,
+or as ``RAYON_NUM_THREADS`` states.
 """
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping, Sequence
 from typing import Any, Protocol
 
@@ -72,6 +73,10 @@ def response(rig: Rig, *, client: Client, parts: int | None = None, **options: A
 
 def _part(study: str, shard: str) -> bytes:
     """The cells of a part, on a worker."""
+    from distributed import get_worker
+
+    # Read once, when the first part of a process begins.
+    os.environ.setdefault("RAYON_NUM_THREADS", str(get_worker().state.nthreads))
     return _native_part(study, shard, None)
 
 

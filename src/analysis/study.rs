@@ -1,7 +1,7 @@
 //! Work in independent cells, such as those of a map: done at once, or in parts on several machines.
 //!
-//! Cells are numbered from 0. The bytes of a cell depend on the study and on its number alone, so that parts
-//! of any size give the answer of one run, byte for byte.
+//! Cells are numbered from 0. The bytes of a cell depend on the study, on its number and on the functions of
+//! the machine's library of mathematics, so that parts of any size give the answer of one run, byte for byte.
 
 mod computed;
 mod head;
@@ -10,7 +10,7 @@ mod parts;
 mod shard;
 
 pub use computed::Computed;
-pub use head::PartHead;
+pub use head::{PLACE, PartHead};
 pub use part::{WrittenPart, part_in_memory, write_part};
 pub use parts::Parts;
 pub use shard::Shard;
@@ -35,6 +35,16 @@ pub trait Study: Sync {
         true
     }
 
+    /// Whether a cell that is there needs not be computed again. Default: yes.
+    fn keeps(&self) -> bool {
+        true
+    }
+
+    /// Whether a cell has an answer. Default: yes.
+    fn answers(&self, _cell: &[u8]) -> bool {
+        true
+    }
+
     /// Computes a cell: what [`Study::answer`] needs of it.
     ///
     /// # Errors
@@ -54,7 +64,8 @@ pub trait Study: Sync {
 /// # Errors
 /// As [`Study::cell`] and [`Study::answer`].
 pub fn whole(study: &dyn Study, progress: &dyn Progress) -> Result<Answer> {
-    study.answer(&mut Computed::new(study, 0..study.cells(), progress))
+    let all = study.cells();
+    study.answer(&mut Computed::new(study, 0..all, all, progress).map(|(_, cell)| cell))
 }
 
 #[cfg(test)]

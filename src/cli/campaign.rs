@@ -245,16 +245,15 @@ impl Question for Compare {
         self.shard.as_deref()
     }
 
-    fn study(&self) -> Result<Option<Shared>> {
+    fn study(&self, folder: &Folder) -> Result<Option<Shared>> {
         let Some(draws) = self.monte_carlo else { return Ok(None) };
-        let within = Folder::default().allow_outside(self.allow_outside);
-        let path = self.campaign.clone();
-        PairDraws::of(&within, path, self.allow_outside, draws).map(|draws| Some(Shared::Compare(draws)))
+        let draws = PairDraws::of(opened(folder, &self.campaign)?, self.allow_outside, draws)?;
+        Ok(Some(Shared::Compare(draws)))
     }
 
     /// Measured responses against the model.
     fn answer(&self, asked: &Asked<'_>) -> Result<Answer> {
-        if let Some(study) = self.study()? {
+        if let Some(study) = self.study(asked.folder)? {
             return study.whole(asked.progress);
         }
         let campaign = opened(asked.folder, &self.campaign)?;

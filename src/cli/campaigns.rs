@@ -1,13 +1,15 @@
 //! `vibro run` over several campaigns: each into its own folder, and a table of all.
 
 use super::campaign::Run;
-use super::print;
+use super::print::{self, folder_of};
 use super::study::Shared;
 use crate::analysis::Answer;
 use crate::analysis::study::{Cells, Computed, Study};
 use crate::analysis::unwritten;
 use crate::error::{Error, Result};
+use crate::proposal::Proposal;
 use crate::read::{Folder, hexadecimal};
+use crate::record::shown;
 use crate::report::Cell;
 use crate::report::files::{self, Names};
 use crate::report::layout::table;
@@ -16,25 +18,33 @@ use serde_json::json;
 use sha2::{Digest as _, Sha256};
 use std::path::{Path, PathBuf};
 
-/// Campaigns to run, each a cell.
+/// Campaigns to run, each a cell. What lies in their folders may change, so a part begins anew each time; a
+/// run keeps the answers whose inputs are the same.
 #[derive(Debug, Serialize, Deserialize)]
 pub struct Campaigns {
-    listed: Vec<Listed>,
-    allow_outside: bool,
-    /// Folder of the folders for results. It changes nothing in them.
+    campaigns: Vec<NamedCampaign>,
+    /// Where they lie: it changes no number.
+    place: CampaignPlaces,
+    /// Folder of the folders for results.
     #[serde(skip)]
     out: PathBuf,
     #[serde(skip)]
     again: bool,
 }
 
-/// A campaign, and the name of its folder for results.
+/// A campaign by the name of its folder for results.
 #[derive(Debug, Serialize, Deserialize)]
-struct Listed {
-    path: PathBuf,
+struct NamedCampaign {
     name: String,
     /// Of its file; `None` for a folder without one.
     sha256: Option<String>,
+}
+
+/// Where campaigns lie.
+#[derive(Debug, Serialize, Deserialize)]
+struct CampaignPlaces {
+    paths: Vec<PathBuf>,
+    allow_outside: bool,
 }
 
 /// What a run of a campaign gave.
@@ -57,31 +67,49 @@ impl Campaigns {
     /// The campaigns at these places.
     ///
     /// # Errors
-    /// If there is no folder for results, or a campaign is named twice.
+    /// If there is no folder for results, if a campaign is named twice, or if its results would lie among the
+    /// recordings of a campaign.
     pub fn of(paths: &[PathBuf], out: Option<&Path>, allow_outside: bool, again: bool) -> Result<Campaigns> {
         let out = out.ok_or_else(|| {
-            Error::usage("several campaigns without a folder", "one for the results of all")
-                .hint("--out results")
+            let found = "campaigns without a folder for their results";
+            Error::usage(found, "one for the results of all").hint("--out results")
         })?;
-        if let Some(path) =
-            paths.iter().enumerate().find_map(|(i, path)| paths[..i].contains(path).then_some(path))
-        {
-            return Err(Error::usage(format!("{} stands twice", path.display()), "each campaign once"));
+        let real = |path: &Path| path.canonicalize().unwrap_or_else(|_| path.to_owned());
+        let file = |path: &PathBuf| if path.is_dir() { path.join(Proposal::FILE) } else { path.clone() };
+        let folders: Vec<PathBuf> = paths.iter().map(|path| real(folder_of(&file(path)))).collect();
+        let files: Vec<PathBuf> = paths
+            .iter()
+            .zip(&folders)
+            .map(|(path, folder)| folder.join(file(path).file_name().unwrap_or_default()))
+            .collect();
+        if let Some(i) = (0..files.len()).find(|i| files[..*i].contains(&files[*i])) {
+            return Err(Error::usage(format!("{} stands twice", shown(&paths[i])), "each campaign once"));
         }
-        let title = |path: &PathBuf| {
-            let of_file = path.extension().is_some_and(|ending| ending == "toml");
-            let path = if of_file { path.parent().unwrap_or(path) } else { path };
-            let real = path.canonicalize().unwrap_or_else(|_| path.to_owned());
-            real.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned())
+        let title = |folder: &PathBuf| {
+            folder.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned())
         };
-        let titles: Vec<String> = paths.iter().map(title).collect();
-        let names = files::slugs(titles.iter().map(String::as_str));
-        let listed = paths.iter().zip(names).map(|(path, name)| {
-            let text = std::fs::read(path).or_else(|_| std::fs::read(path.join("campaign.toml"))).ok();
-            let sha256 = text.map(|text| hexadecimal(&Sha256::digest(text).into()));
-            Listed { path: path.clone(), name, sha256 }
+        let titles: Vec<String> = folders.iter().map(title).collect();
+        // Folders of one name are told apart by the whole path, not by the order in which they are typed.
+        let titles = titles.iter().zip(paths).map(|(title, path)| {
+            let is_alone =
+                titles.iter().filter(|other| files::slug(other) == files::slug(title)).count() == 1;
+            if is_alone { title.clone() } else { path.display().to_string() }
         });
-        Ok(Campaigns { listed: listed.collect(), allow_outside, out: out.to_owned(), again })
+        let titles: Vec<String> = titles.collect();
+        let names = files::slugs(titles.iter().map(String::as_str));
+        for name in &names {
+            let results = out.join(name);
+            if folders.contains(&real(&results)) {
+                let found = format!("{} is the folder of a campaign", shown(&results));
+                return Err(Error::usage(found, "another folder for results").hint("--out results"));
+            }
+        }
+        let named = files.iter().zip(names).map(|(file, name)| {
+            let sha256 = std::fs::read(file).ok().map(|text| hexadecimal(&Sha256::digest(text).into()));
+            NamedCampaign { name, sha256 }
+        });
+        let place = CampaignPlaces { paths: paths.to_vec(), allow_outside };
+        Ok(Campaigns { campaigns: named.collect(), place, out: out.to_owned(), again })
     }
 
     /// Runs all of them, or a part, and prints what came of it. Gives the exit code: 1 if one has no answer.
@@ -94,13 +122,14 @@ impl Campaigns {
             return Shared::Run(self).printed(shard.parse()?, Some(&out), json);
         }
         let output = print::results(&Folder::default(), Some(&self.out), Campaigns::FILES)?;
+        let all = self.cells();
         let ran = |bar: &indicatif::ProgressBar| {
-            let rows = Computed::new(&self, 0..self.cells(), bar);
-            rows.map(|cell| read(&cell?)).collect::<Result<Vec<Ran>>>()
+            let rows = Computed::new(&self, 0..all, all, bar);
+            rows.map(|(_, cell)| read(&cell?)).collect::<Result<Vec<Ran>>>()
         };
         let rows = print::busy(json, self.what(), ran)?;
-        let all = rows.iter().all(|ran| ran.answered);
-        print::answer(answer(&rows)?, output, json).map(|code| code.max(u8::from(!all)))
+        let all_answered = rows.iter().all(|ran| ran.answered);
+        Ok(print::answer(answer(&rows)?, output, json)?.max(u8::from(!all_answered)))
     }
 }
 
@@ -135,7 +164,7 @@ impl Study for Campaigns {
     }
 
     fn cells(&self) -> u64 {
-        self.listed.len() as u64
+        self.campaigns.len() as u64
     }
 
     /// A campaign takes all cores.
@@ -143,9 +172,18 @@ impl Study for Campaigns {
         false
     }
 
+    fn keeps(&self) -> bool {
+        false
+    }
+
+    fn answers(&self, cell: &[u8]) -> bool {
+        read(cell).is_ok_and(|ran| ran.answered)
+    }
+
     fn cell(&self, number: u64) -> Result<Vec<u8>> {
-        let Listed { path, name, .. } = &self.listed[number as usize];
-        let run = Run::into_folder(path.clone(), self.out.join(name), self.allow_outside, self.again);
+        let CampaignPlaces { paths, allow_outside } = &self.place;
+        let (path, name) = (&paths[number as usize], &self.campaigns[number as usize].name);
+        let run = Run::into_folder(path.clone(), self.out.join(name), *allow_outside, self.again);
         let ran = Ran {
             campaign: path.clone(),
             folder: name.clone(),

@@ -5,6 +5,7 @@ use super::study::Shared;
 use crate::analysis::Answer;
 use crate::analysis::model::{backbone, branch, choose, map, orbit, response, simulate, sweep};
 use crate::error::Result;
+use crate::read::Folder;
 use crate::report::files::Names;
 use clap::{Args, Subcommand};
 use std::path::{Path, PathBuf};
@@ -100,7 +101,7 @@ impl Question for Model {
         }
     }
 
-    fn study(&self) -> Result<Option<Shared>> {
+    fn study(&self, _: &Folder) -> Result<Option<Shared>> {
         Ok(match &self.question {
             Which::Map(map) => Some(Shared::Map(map.of.keys.study()?)),
             Which::Response(response) => response.of.keys.study()?.map(Shared::Response),

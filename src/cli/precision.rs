@@ -55,8 +55,9 @@ impl CommandArgs for Precision {
             Results::from_path(path)?
         } else {
             let benchmark = self.benchmark();
+            let all = benchmark.cells();
             print::busy(json, benchmark.what(), |bar: &ProgressBar| {
-                Benchmark::results(&mut Computed::new(&benchmark, 0..benchmark.cells(), bar))
+                Benchmark::results(&mut Computed::new(&benchmark, 0..all, all, bar).map(|(_, cell)| cell))
             })?
         };
         results.retain(|family| self.family.is_none_or(|only| only == family));

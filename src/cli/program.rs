@@ -26,7 +26,7 @@ pub fn answer(words: &[String], folder: &Folder, progress: &dyn Progress) -> Res
 /// If the words are no question, or one that is not computed in parts.
 pub fn study(words: &[String]) -> Result<Shared> {
     let whole = || Error::usage(format!("{} is one cell", words.join(" ")), "work in cells, such as a map");
-    question(words)?.study()?.ok_or_else(whole)
+    question(words)?.study(&Folder::default())?.ok_or_else(whole)
 }
 
 /// The question of the words of a command line.

@@ -42,11 +42,11 @@ pub trait Question {
         None
     }
 
-    /// The study of a question that can be computed in parts.
+    /// The study of a question that can be computed in parts; its files are read through `folder`.
     ///
     /// # Errors
     /// If the study is impossible.
-    fn study(&self) -> Result<Option<Shared>> {
+    fn study(&self, _folder: &Folder) -> Result<Option<Shared>> {
         Ok(None)
     }
 
@@ -62,15 +62,15 @@ pub trait Question {
 /// # Errors
 /// As [`Question::answer`]; if results cannot be written.
 pub fn printed(question: &dyn Question, json: bool) -> Result<u8> {
+    let folder = Folder::default().allow_outside(question.allow_outside());
     if let Some(shard) = question.shard() {
-        let study = question.study()?.ok_or_else(|| {
+        let study = question.study(&folder)?.ok_or_else(|| {
             let found = format!("part {shard} of one answer");
             Error::usage(found, "a Monte Carlo, whose draws are computed in parts")
                 .hint("--monte-carlo 10000")
         })?;
         return study.printed(shard.parse()?, question.out(), json);
     }
-    let folder = Folder::default().allow_outside(question.allow_outside());
     question.files().iter().for_each(|file| folder.reads(file));
     let output = print::results(&folder, question.out(), question.names())?;
     let answer = |bar: &indicatif::ProgressBar| question.answer(&Asked { folder: &folder, progress: bar });

@@ -7,7 +7,7 @@ use super::{CommandArgs, complain, stdout};
 use crate::analysis::model::map::{self, Map};
 use crate::analysis::model::response::{self, Draws};
 use crate::analysis::precision::Benchmark;
-use crate::analysis::study::{self, PartHead, Parts, Shard, Study, part_in_memory, write_part};
+use crate::analysis::study::{self, PartHead, Parts, Shard, Study, WrittenPart, part_in_memory, write_part};
 use crate::analysis::sweep::PairDraws;
 use crate::analysis::{Answer, Progress};
 use crate::error::{Error, Result};
@@ -57,17 +57,20 @@ impl Shared {
         }
     }
 
-    /// The study whose parts have this head.
+    /// The study whose parts have this head; its files are read through `folder`.
     ///
     /// # Errors
-    /// If this version knows no such study, or computes it otherwise.
-    fn of(head: &PartHead) -> Result<Shared> {
+    /// If this version knows no such study, or computes it otherwise; if a file cannot be read, or changed.
+    fn of(head: &PartHead, folder: &Folder) -> Result<Shared> {
         let unknown = |found: String| Error::usage(found, "parts of this version of vibro");
         let study: Shared = serde_json::from_value(head.study.clone())
             .map_err(|e| unknown(format!("the study of these parts is unknown: {e}")))?;
-        match study.head(head.shard)?.difference(head) {
+        if let Shared::Compare(draws) = &study {
+            draws.load(folder)?;
+        }
+        match head.difference(&study.head(head.shard)?) {
             None => Ok(study),
-            Some(difference) => Err(unknown(format!("these parts cannot be merged: {difference}"))),
+            Some(difference) => Err(unknown(format!("these parts cannot be merged here: {difference}"))),
         }
     }
 
@@ -77,7 +80,8 @@ impl Shared {
         PartHead::of(study, self.study().cells(), shard)
     }
 
-    /// Computes a part into a folder, prints what was computed, and gives the exit code.
+    /// Computes a part into a folder, prints what was computed, and gives the exit code: 1 if a cell has no
+    /// answer.
     ///
     /// # Errors
     /// As [`write_part`]; if there is no folder.
@@ -86,20 +90,35 @@ impl Shared {
             Error::usage("a part without a folder", "a folder for the parts").set("out", "parts")
         })?;
         let head = self.head(shard)?;
-        let part =
-            print::busy(json, self.study().what(), |bar| write_part(folder, self.study(), &head, bar))?;
-        let (cells, kept, file) = (head.cells(), part.kept, head.file());
+        let work = |bar: &indicatif::ProgressBar| write_part(folder, self.study(), &head, bar);
+        let part = print::busy(json, self.study().what(), work)?;
+        let (cells, file) = (head.cells(), head.file());
+        let WrittenPart { path, kept, cut, unanswered } = part;
         if json {
             let PartHead { shard, fingerprint, .. } = head;
-            let said = json!({ "warnings": [], "shard": shard, "cells": cells, "kept": kept, "fingerprint": fingerprint, "files": [file] });
-            stdout::object(said)?;
+            stdout::object(json!({
+                "warnings": [],
+                "shard": shard,
+                "cells": cells,
+                "kept": kept,
+                "cut": cut,
+                "unanswered": unanswered,
+                "fingerprint": fingerprint,
+                "files": [file],
+            }))?;
         } else {
             if kept > 0 {
                 complain::line(&format!("{kept} of {cells} cells were there"));
             }
-            stdout::text(&format!("{cells} of {} cells in {}\n", head.all, shown(&part.path)))?;
+            if cut > 0 {
+                complain::line(&format!("{cut} bytes behind them were no whole cells and are replaced"));
+            }
+            if unanswered > 0 {
+                complain::line(&format!("{unanswered} of {cells} cells have no answer"));
+            }
+            stdout::text(&format!("{cells} of {} cells in {}\n", head.all, shown(&path)))?;
         }
-        Ok(0)
+        Ok(u8::from(unanswered > 0))
     }
 
     /// The answer, all cells computed here.
@@ -124,17 +143,17 @@ impl Shared {
     /// As [`Parts::of_bytes`]; if parts are missing.
     pub fn merged(parts: Vec<Vec<u8>>) -> Result<Answer> {
         let parts = Parts::of_bytes(parts)?;
-        Shared::of(&parts.head)?.study().answer(&mut parts.cells()?)
+        Shared::of(&parts.head, &Folder::default())?.study().answer(&mut parts.cells()?)
     }
 }
 
-/// Joins the parts of a map: the result is that of one run, byte for byte.
+/// Joins parts: the result is that of one run, byte for byte.
 #[derive(Debug, Args)]
 pub struct Merge {
     /// Folders with the parts
     #[arg(index = 1, required = true)]
     folders: Vec<PathBuf>,
-    /// Print which parts are missing or lack cells, as an option of sbatch; nothing if all are there
+    /// Print which parts are missing or lack cells, as an option of sbatch; exit code 1 if all are there
     missing: bool,
     /// Folder for figures as SVG and PNG, and tables as CSV and NPY
     #[arg(value_name = "DIR")]
@@ -147,26 +166,32 @@ impl CommandArgs for Merge {
         if self.missing {
             return missing(&parts, json);
         }
-        let study = Shared::of(&parts.head)?;
+        let folder = Folder::default();
         let mut cells = parts.cells()?;
-        let output = print::results(&Folder::default(), self.out.as_deref(), study.names())?;
-        print::answer(study.study().answer(&mut cells)?, output, json)
+        let shared = Shared::of(&parts.head, &folder)?;
+        let study = shared.study();
+        let output = print::results(&folder, self.out.as_deref(), shared.names())?;
+        let mut unanswered = false;
+        let mut watched = cells.by_ref().inspect(|cell| {
+            unanswered |= cell.as_ref().is_ok_and(|cell| !study.answers(cell));
+        });
+        let answer = study.answer(&mut watched)?;
+        Ok(print::answer(answer, output, json)?.max(u8::from(unanswered)))
     }
 }
 
-/// Prints the numbers of the parts that are missing.
+/// Prints the numbers of the parts that are missing; the exit code is 1 if there are none.
 fn missing(parts: &Parts, json: bool) -> Result<u8> {
     let (missing, of) = (parts.missing(), parts.head.shard.of);
     let list = Parts::listed(&missing);
     if json {
         let fingerprint = &parts.head.fingerprint;
-        stdout::object(
-            json!({ "warnings": [], "missing": missing, "array": list, "of": of, "fingerprint": fingerprint }),
-        )?;
+        let said = json!({ "warnings": [], "missing": missing, "array": list, "of": of, "fingerprint": fingerprint });
+        stdout::object(said)?;
     } else if missing.is_empty() {
-        complain::line(&format!("all {of} parts are there"));
+        complain::line(&format!("no part of {of} is missing"));
     } else {
         stdout::text(&format!("--array={list}\n"))?;
     }
-    Ok(0)
+    Ok(u8::from(missing.is_empty()))
 }

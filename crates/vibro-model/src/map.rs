@@ -81,6 +81,8 @@ impl std::str::FromStr for MapAxis {
 
 /// Largest number of values of an axis.
 const MOST_VALUES: usize = 1_000_000;
+/// Largest number of cells, which take 17 bytes each.
+const MOST_CELLS: u64 = 10_000_000_000;
 
 /// Axes, rig and excitation of a map.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -135,6 +137,10 @@ impl Plan {
                     "a parameter that this excitation has",
                 ));
             }
+        }
+        if self.cells() > MOST_CELLS {
+            let found = format!("a map of {:.1e} cells", self.cells() as f64);
+            return Err(Error::usage(found, "at most 1e10, which take 170 GB").hint("several maps"));
         }
         if self.cycles < 4 {
             return Err(Error::usage(format!("{} cycles a cell", self.cycles), "at least 4"));

@@ -70,6 +70,19 @@ impl Uncertainty {
         stated.into_iter().filter_map(|(parameter, std)| Some((parameter, std?)))
     }
 
+    /// Part of the drawn values of each parameter that are impossible, from 1000 of them.
+    pub fn impossible(&self, rig: &Rig, excitation: &Excitation) -> Vec<(Parameter, f64)> {
+        let part = |(parameter, std): (Parameter, f64)| {
+            let (mut rig, mut excitation) = (*rig, excitation.clone());
+            let estimate = parameter.place_in(&mut rig, &mut excitation).map_or(f64::NAN, |place| *place);
+            let mut noise = Noise::new(0);
+            let impossible =
+                (0..TRIES).filter(|_| parameter.check(estimate + std * noise.normal()).is_err()).count();
+            (parameter, impossible as f64 / TRIES as f64)
+        };
+        self.all().map(part).collect()
+    }
+
     /// Rig and excitation with parameters drawn from normal distributions, which the draws of one `number`
     /// are the same on every machine. An impossible value, such as a restitution above 1, is drawn again.
     ///

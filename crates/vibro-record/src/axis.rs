@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 /// Quantity of the abscissa.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub enum AxisKind {
     /// Seconds.
     Time,
@@ -16,7 +16,7 @@ pub enum AxisKind {
 }
 
 /// Values of the abscissa.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub enum Grid {
     /// Value `i` is `start + i·step`.
     Even {
@@ -32,7 +32,7 @@ pub enum Grid {
 }
 
 /// Abscissa: kind and grid, in SI (s or Hz).
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Axis {
     /// Quantity of the abscissa.
     pub kind: AxisKind,

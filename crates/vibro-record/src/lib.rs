@@ -57,7 +57,7 @@ pub use window::Window;
 pub use written::{Written, named};
 
 /// A record of any type.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub enum Record {
     /// Samples over time.
     Trace(Trace),

@@ -42,7 +42,7 @@ pub const FROM_BLOWS: &str = "averaged over hammer blows";
 pub const AVERAGED_WITH: &str = "averaged over segments; window ";
 
 /// Channel, quantity, unit, history and findings.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Meta {
     /// Channel or record name; may be empty.
     pub name: String,

@@ -6,7 +6,7 @@ use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
 
 /// Real or complex values of spectral lines.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub enum Values {
     /// Values without phase: magnitudes, powers, densities or coherence.
     Real(Vec<f64>),
@@ -104,7 +104,7 @@ impl Scaling {
 }
 
 /// One-sided spectrum.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Spectrum {
     /// Channel, unit, history.
     pub meta: Meta,
@@ -121,7 +121,7 @@ pub struct Spectrum {
 }
 
 /// Frequency response function, complex, over frequency in Hz.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Frf {
     /// Channel, unit, history.
     pub meta: Meta,

@@ -6,7 +6,7 @@ use crate::units::{self, Unit};
 use crate::{Error, Result};
 
 /// Samples over time, or over their index where the file does not state its sampling.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Trace {
     /// Channel, unit, history.
     pub meta: Meta,

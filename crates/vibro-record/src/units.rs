@@ -17,7 +17,7 @@ pub use quantity::Quantity;
 /// Exponents of m, kg, s, A, K and rad, doubled so that `√Hz` is a whole number.
 ///
 /// The angle is a base unit here, though SI counts it as a number: else rad/s would be Hz, wrong by 2π.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, serde::Serialize, serde::Deserialize)]
 pub struct Dimension(pub [i8; 6]);
 
 impl Dimension {
@@ -46,7 +46,7 @@ impl Dimension {
 }
 
 /// A unit: spelling, dimension and factor to SI.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Unit {
     symbol: String,
     dimension: Option<Dimension>,

@@ -3,8 +3,8 @@
 //! A cell is its length (4 bytes, little-endian), its bytes, and the CRC-32 of its number (8 bytes,
 //! little-endian) and its bytes. The end is a length of 2³² − 1 and the SHA-256 of all that precedes. A part
 //! is written from front to back: a program that is killed leaves a part without its end, and perhaps with
-//! half a cell, which is cut off when the part is continued. There is no fsync: what a power failure damages
-//! is found by the CRC-32, and computed anew.
+//! half a cell, which is cut off when the part is continued. There is no fsync: after a power failure cells
+//! may be damaged or missing, which the CRC-32 shows.
 
 use super::{Computed, PartHead, Progress, Study};
 use crate::error::{Error, Place, Result};
@@ -16,7 +16,7 @@ use std::io::{self, BufRead, BufReader, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
 /// Length that marks the end of a part.
-const END: u32 = u32::MAX;
+pub(super) const END: u32 = u32::MAX;
 /// Largest cell in bytes that is believed: a damaged length must not ask for more memory.
 const LARGEST_CELL: u32 = 1 << 30;
 /// Longest head in bytes that is read.
@@ -29,13 +29,17 @@ pub struct WrittenPart {
     pub path: PathBuf,
     /// Number of cells that were there before.
     pub kept: u64,
+    /// Number of bytes behind these cells that were cut off: half a cell, or what was damaged.
+    pub cut: u64,
+    /// Number of cells computed now that have no answer.
+    pub unanswered: u64,
 }
 
 /// Computes a part into a folder, or what is missing of one that is there.
 ///
 /// # Errors
 /// If the folder or the file cannot be written, if another program is computing this part, if the file is no
-/// part, or one of another study; those of the cells.
+/// part, or another one; those of the cells.
 pub fn write_part(
     folder: &Path,
     study: &dyn Study,
@@ -46,51 +50,109 @@ pub fn write_part(
     let path = folder.join(head.file());
     let failed = |e| Error::io("write", &path, e);
     if std::fs::symlink_metadata(&path).is_ok_and(|meta| !meta.is_file()) {
-        return Err(no_part(&path.display().to_string(), "is a link, a folder or a device"));
+        return Err(no_part(&path, "is a link, a folder or a device"));
+    }
+    // A part that is whole may lie where nothing can be written.
+    let there = Present::of(&path, head)?;
+    let mut part = WrittenPart { path: path.clone(), kept: 0, cut: 0, unanswered: 0 };
+    if there == Present::Whole && study.keeps() {
+        return Ok(WrittenPart { kept: head.cells(), ..part });
     }
     let opened = OpenOptions::new().read(true).write(true).create(true).truncate(false).open(&path);
-    let mut file = opened.map_err(failed)?;
+    let file = opened.map_err(failed)?;
     // Some network drives have no locks.
     if matches!(file.try_lock(), Err(TryLockError::WouldBlock)) {
         let found = "another vibro is computing this part";
         return Err(Error::input(Place::file(&path), found, "one program a part").hint("wait for it to end"));
     }
-    let first_line = head_line(head)?;
-    let mut known = Vec::new();
-    (&file).take(first_line.len() as u64).read_to_end(&mut known).map_err(failed)?;
-    let (mut cells, mut kept) = (CellWriter::new(&file, Sha256::new()), 0);
-    if known.len() < first_line.len() && first_line.starts_with(&known) {
-        // New, or killed within its first line.
-        restart(&file, 0).map_err(failed)?;
-        cells.put(&first_line).map_err(failed)?;
-    } else {
-        file.rewind().map_err(failed)?;
-        let mut there = PartReader::new(&path.display().to_string(), BufReader::new(&file))?;
-        if let Some(difference) = there.head.difference(head) {
-            let found = format!("a part of another study: {difference}");
-            return Err(Error::input(Place::file(&path), found, "a part of this study")
-                .hint(format!("another folder for this study than {}", shown(folder))));
+    let mut cells = CellWriter::new(&path, &file, Sha256::new());
+    // Another program may have written before the file was locked.
+    match Present::of(&path, head)? {
+        Present::Cells { kept, end, hash } if study.keeps() => {
+            part.kept = kept;
+            part.cut = file.metadata().map_err(failed)?.len() - end;
+            cut(&file, end).map_err(failed)?;
+            cells.hash = *hash;
         }
-        let mut bytes = Vec::new();
-        while there.next(&mut bytes)? {
-            kept += 1;
+        _ => {
+            cut(&file, 0).map_err(failed)?;
+            cells.put(&head_line(head)?)?;
         }
-        if there.whole {
-            return Ok(WrittenPart { path, kept });
-        }
-        let (end, hash) = (there.end, there.hash);
-        restart(&file, end).map_err(failed)?;
-        cells = CellWriter::new(&file, hash);
     }
-    let missing = head.shard.cells(head.all).skip(kept as usize);
-    cells.compute(study, missing, progress).and_then(|()| cells.end().map_err(failed))?;
-    Ok(WrittenPart { path, kept })
+    let missing = head.shard.cells(head.all).skip(part.kept as usize);
+    part.unanswered = cells.compute(study, missing, head.cells() - part.kept, progress)?;
+    cells.end()?;
+    Ok(part)
 }
 
 /// Cuts off what follows `end`, and goes there.
-fn restart(mut file: &File, end: u64) -> io::Result<()> {
+fn cut(mut file: &File, end: u64) -> io::Result<()> {
     file.set_len(end)?;
     file.seek(SeekFrom::Start(end)).map(drop)
+}
+
+/// What is there of a part.
+#[derive(Debug, Clone)]
+enum Present {
+    /// No file, an empty one, zeros that a power failure left, or the beginning of the head.
+    Nothing,
+    /// A number of cells up to a position in bytes, with the SHA-256 of all before it.
+    Cells { kept: u64, end: u64, hash: Box<Sha256> },
+    /// All cells.
+    Whole,
+}
+
+impl PartialEq for Present {
+    fn eq(&self, other: &Present) -> bool {
+        std::mem::discriminant(self) == std::mem::discriminant(other)
+    }
+}
+
+impl Present {
+    /// Reads what is there of the part with this head.
+    ///
+    /// # Errors
+    /// If it is no part, or another one, or cannot be read.
+    fn of(path: &Path, head: &PartHead) -> Result<Present> {
+        let file = match File::open(path) {
+            Err(e) if e.kind() == io::ErrorKind::NotFound => return Ok(Present::Nothing),
+            opened => opened.map_err(|e| Error::io("open", path, e))?,
+        };
+        let failed = |e| Error::io("read", path, e);
+        let first_line = head_line(head)?;
+        let mut known = Vec::new();
+        (&file).take(first_line.len() as u64).read_to_end(&mut known).map_err(failed)?;
+        let begun = known.len() < first_line.len() && first_line.starts_with(&known);
+        if begun || known.iter().all(|byte| *byte == 0) && is_zero(&file).map_err(failed)? {
+            return Ok(Present::Nothing);
+        }
+        (&file).rewind().map_err(failed)?;
+        let mut there = PartReader::new(path, BufReader::new(&file))?;
+        if let Some(difference) = there.head.difference(head) {
+            let found = format!("another part or study: {difference}");
+            let folder = path.parent().unwrap_or(path);
+            return Err(Error::input(Place::file(path), found, "this part of this study")
+                .hint(format!("another folder than {}", shown(folder))));
+        }
+        let mut bytes = Vec::new();
+        while there.next(&mut bytes)? {}
+        Ok(match there.whole {
+            true => Present::Whole,
+            false => Present::Cells { kept: there.read, end: there.end, hash: Box::new(there.hash) },
+        })
+    }
+}
+
+/// Whether the rest of a file has only zeros.
+fn is_zero(mut file: &File) -> io::Result<bool> {
+    let mut part = vec![0; 1 << 16];
+    loop {
+        match file.read(&mut part)? {
+            0 => return Ok(true),
+            n if part[..n].iter().any(|byte| *byte != 0) => return Ok(false),
+            _ => {}
+        }
+    }
 }
 
 /// Computes a part in memory: the bytes of its file.
@@ -99,11 +161,10 @@ fn restart(mut file: &File, end: u64) -> io::Result<()> {
 /// Those of the cells.
 pub fn part_in_memory(study: &dyn Study, head: &PartHead, progress: &dyn Progress) -> Result<Vec<u8>> {
     let mut bytes = Vec::new();
-    let mut cells = CellWriter::new(&mut bytes, Sha256::new());
-    let failed = |e| Error::io("write", "memory", e);
-    cells.put(&head_line(head)?).map_err(failed)?;
-    cells.compute(study, head.shard.cells(head.all), progress)?;
-    cells.end().map_err(failed)?;
+    let mut cells = CellWriter::new(Path::new("memory"), &mut bytes, Sha256::new());
+    cells.put(&head_line(head)?)?;
+    cells.compute(study, head.shard.cells(head.all), head.cells(), progress)?;
+    cells.end()?;
     Ok(bytes)
 }
 
@@ -114,58 +175,61 @@ fn head_line(head: &PartHead) -> Result<Vec<u8>> {
 }
 
 /// Error of a file that is no part.
-fn no_part(name: &str, what: &str) -> Error {
-    Error::input(Place::file(Path::new(name)), what.to_owned(), "a part that vibro wrote with --shard")
+pub(super) fn no_part(path: &Path, what: &str) -> Error {
+    Error::input(Place::file(path), what.to_owned(), "a part that vibro wrote with --shard")
         .hint("another folder for parts, or move this file away")
 }
 
 /// Writes the cells of a part.
-struct CellWriter<W> {
+struct CellWriter<'a, W> {
+    path: &'a Path,
     out: W,
     hash: Sha256,
     /// Bytes not written yet.
     waiting: Vec<u8>,
 }
 
-impl<W: Write> CellWriter<W> {
-    fn new(out: W, hash: Sha256) -> CellWriter<W> {
-        CellWriter { out, hash, waiting: Vec::new() }
+impl<'a, W: Write> CellWriter<'a, W> {
+    fn new(path: &'a Path, out: W, hash: Sha256) -> CellWriter<'a, W> {
+        CellWriter { path, out, hash, waiting: Vec::new() }
     }
 
+    /// Computes and writes the cells with these numbers, `all` of them; returns how many have no answer.
     fn compute(
         &mut self,
         study: &dyn Study,
         numbers: impl Iterator<Item = u64>,
+        all: u64,
         progress: &dyn Progress,
-    ) -> Result<()> {
-        let all: Vec<u64> = numbers.collect();
-        let mut computed = Computed::new(study, all.iter().copied(), progress);
-        for number in &all {
-            let Some(bytes) = computed.next() else { break };
-            let bytes = bytes.inspect_err(|_| drop(self.flush()))?;
+    ) -> Result<u64> {
+        let mut computed = Computed::new(study, numbers, all, progress);
+        let mut unanswered = 0;
+        while let Some((number, bytes)) = computed.next() {
+            let bytes = bytes.or_else(|error| self.flush().and(Err(error)))?;
+            unanswered += u64::from(!study.answers(&bytes));
             self.waiting.extend((bytes.len() as u32).to_le_bytes());
             self.waiting.extend(&bytes);
-            self.waiting.extend(checked(*number, &bytes).to_le_bytes());
+            self.waiting.extend(checked(number, &bytes).to_le_bytes());
             if computed.at_end_of_batch() {
-                self.flush().map_err(|e| Error::io("write", "a part", e))?;
+                self.flush()?;
             }
         }
-        Ok(())
+        Ok(unanswered)
     }
 
-    fn put(&mut self, bytes: &[u8]) -> io::Result<()> {
+    fn put(&mut self, bytes: &[u8]) -> Result<()> {
         self.waiting.extend(bytes);
         self.flush()
     }
 
-    fn flush(&mut self) -> io::Result<()> {
+    fn flush(&mut self) -> Result<()> {
         self.hash.update(&self.waiting);
-        self.out.write_all(&self.waiting)?;
+        let written = self.out.write_all(&self.waiting).and_then(|()| self.out.flush());
         self.waiting.clear();
-        self.out.flush()
+        written.map_err(|e| Error::io("write", self.path, e))
     }
 
-    fn end(&mut self) -> io::Result<()> {
+    fn end(&mut self) -> Result<()> {
         let hash = self.hash.clone().finalize();
         self.put(&[&END.to_le_bytes()[..], &hash[..]].concat())
     }
@@ -181,7 +245,7 @@ fn checked(number: u64, bytes: &[u8]) -> u32 {
 
 /// Reads the cells of a part from its start.
 pub(super) struct PartReader<R> {
-    name: String,
+    path: PathBuf,
     from: R,
     pub head: PartHead,
     /// Number of cells read.
@@ -199,23 +263,27 @@ impl<R: BufRead> PartReader<R> {
     ///
     /// # Errors
     /// If it is not that of a part, or cannot be read.
-    pub fn new(name: &str, mut from: R) -> Result<PartReader<R>> {
+    pub fn new(path: &Path, mut from: R) -> Result<PartReader<R>> {
         let mut line = Vec::new();
         let read = from.by_ref().take(LONGEST_HEAD).read_until(b'\n', &mut line);
-        read.map_err(|e| Error::io("read", name, e))?;
+        read.map_err(|e| Error::io("read", path, e))?;
         let head: PartHead =
-            serde_json::from_slice(&line).map_err(|_| no_part(name, "does not begin as a part does"))?;
+            serde_json::from_slice(&line).map_err(|_| no_part(path, "does not begin as a part does"))?;
         let numbers = Box::new(head.shard.cells(head.all));
         let (end, hash) = (line.len() as u64, Sha256::new_with_prefix(&line));
-        Ok(PartReader { name: name.to_owned(), from, head, read: 0, end, whole: false, hash, numbers })
+        Ok(PartReader { path: path.to_owned(), from, head, read: 0, end, whole: false, hash, numbers })
     }
 
     /// Reads the next cell into `bytes`; false if there is none, or none that is whole.
     ///
     /// # Errors
-    /// If the part cannot be read.
+    /// If the part cannot be read, or something follows its end.
     pub fn next(&mut self, bytes: &mut Vec<u8>) -> Result<bool> {
-        self.next_of(bytes).map_err(|e| Error::io("read", &self.name, e))
+        let found = self.next_of(bytes).map_err(|e| Error::io("read", &self.path, e))?;
+        if self.whole && filled(&mut self.from, &mut [0]).map_err(|e| Error::io("read", &self.path, e))? {
+            return Err(no_part(&self.path, "was changed: something follows its end"));
+        }
+        Ok(found)
     }
 
     fn next_of(&mut self, bytes: &mut Vec<u8>) -> io::Result<bool> {

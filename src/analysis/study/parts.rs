@@ -1,9 +1,9 @@
 //! All parts of a study, and their cells in the order of their numbers.
 
 use super::head::PartHead;
-use super::part::PartReader;
+use super::part::{END, PartReader, no_part};
 use super::{Progress, Shard};
-use crate::error::{Error, Result};
+use crate::error::{Error, Place, Result};
 use crate::record::shown;
 use std::collections::{BTreeMap, VecDeque};
 use std::fs::File;
@@ -16,18 +16,18 @@ use std::sync::Arc;
 pub struct Parts {
     /// Head of the first part that was read.
     pub head: PartHead,
-    /// Its name.
-    first: String,
+    /// Its file.
+    first: PathBuf,
     /// Parts that are whole, by their numbers.
     whole: BTreeMap<u64, Part>,
-    /// Names of parts that lack cells, by their numbers, with the numbers of cells that they have.
-    begun: BTreeMap<u64, (String, u64)>,
+    /// Parts that lack cells, by their numbers, with the numbers of cells that they have.
+    begun: BTreeMap<u64, (PathBuf, u64)>,
 }
 
 /// A part, and where its next cells are read.
 #[derive(Debug)]
 struct Part {
-    name: String,
+    path: PathBuf,
     content: Content,
     /// Position in bytes after the head.
     cells_from: u64,
@@ -35,7 +35,7 @@ struct Part {
 
 #[derive(Debug, Clone)]
 enum Content {
-    File(PathBuf),
+    File,
     Memory(Arc<[u8]>),
 }
 
@@ -44,9 +44,9 @@ trait Bytes: Read + Seek {}
 impl<T: Read + Seek> Bytes for T {}
 
 impl Content {
-    fn open(&self, name: &str) -> Result<Box<dyn Bytes>> {
+    fn open(&self, path: &Path) -> std::io::Result<Box<dyn Bytes>> {
         Ok(match self {
-            Content::File(path) => Box::new(File::open(path).map_err(|e| Error::io("open", name, e))?),
+            Content::File => Box::new(File::open(path)?),
             Content::Memory(bytes) => Box::new(Cursor::new(bytes.clone())),
         })
     }
@@ -59,14 +59,26 @@ impl Parts {
     /// If there are none; if a file is no part, or a part of another study or another version; if a part is
     /// there twice; if a file cannot be read.
     pub fn of_folders(folders: &[PathBuf], progress: &dyn Progress) -> Result<Parts> {
-        let mut found = Vec::new();
+        let (mut found, mut seen) = (Vec::new(), Vec::new());
         for folder in folders {
-            let entries = std::fs::read_dir(folder).map_err(|e| Error::io("list", folder, e))?;
-            let paths = entries.filter_map(|entry| Some(entry.ok()?.path()));
-            let is_part = |path: &PathBuf| path.to_string_lossy().ends_with(PartHead::ENDING);
-            let mut paths: Vec<PathBuf> = paths.filter(is_part).collect();
+            let failed = |e| Error::io("list", folder, e);
+            let real = folder.canonicalize().map_err(failed)?;
+            if seen.contains(&real) {
+                continue;
+            }
+            seen.push(real);
+            let mut paths = Vec::new();
+            for entry in std::fs::read_dir(folder).map_err(failed)? {
+                let path = entry.map_err(failed)?.path();
+                if path.to_string_lossy().ends_with(PartHead::ENDING) {
+                    if !path.is_file() {
+                        return Err(no_part(&path, "is no file"));
+                    }
+                    paths.push(path);
+                }
+            }
             paths.sort();
-            found.extend(paths.into_iter().map(|path| (shown(&path), Content::File(path))));
+            found.extend(paths.into_iter().map(|path| (path, Content::File)));
         }
         Parts::of(found, progress)?.ok_or_else(|| {
             let all = folders.iter().map(shown).collect::<Vec<_>>().join(", ");
@@ -80,42 +92,46 @@ impl Parts {
     /// # Errors
     /// As [`Parts::of_folders`].
     pub fn of_bytes(parts: Vec<Vec<u8>>) -> Result<Parts> {
-        let named = |(i, bytes): (usize, Vec<u8>)| (format!("part {}", i + 1), Content::Memory(bytes.into()));
+        let named = |(i, bytes): (usize, Vec<u8>)| {
+            (PathBuf::from(format!("part {}", i + 1)), Content::Memory(bytes.into()))
+        };
         let parts = Parts::of(parts.into_iter().enumerate().map(named).collect(), &())?;
         parts.ok_or_else(|| Error::usage("no parts", "one at least"))
     }
 
-    fn of(found: Vec<(String, Content)>, progress: &dyn Progress) -> Result<Option<Parts>> {
+    fn of(found: Vec<(PathBuf, Content)>, progress: &dyn Progress) -> Result<Option<Parts>> {
         let mut parts: Option<Parts> = None;
         let mut bytes = Vec::new();
         progress.start("parts", found.len());
-        for (name, content) in found {
-            let mut reader = PartReader::new(&name, BufReader::new(content.open(&name)?))?;
+        for (path, content) in found {
+            let opened = content.open(&path).map_err(|e| Error::io("open", &path, e))?;
+            let mut reader = PartReader::new(&path, BufReader::new(opened))?;
             let cells_from = reader.end;
             while reader.next(&mut bytes)? {}
             let (shard, head) = (reader.head.shard, &reader.head);
             let parts = parts.get_or_insert_with(|| Parts {
                 head: head.clone(),
-                first: name.clone(),
+                first: path.clone(),
                 whole: BTreeMap::new(),
                 begun: BTreeMap::new(),
             });
-            if let Some(difference) = head.difference(&parts.head) {
-                let what = format!("a part of another study than {}: {difference}", parts.first);
-                return Err(foreign(&name, &what));
-            }
+            let first = shown(&parts.first);
+            let study_of = PartHead { shard: parts.head.shard, ..head.clone() };
             if shard.of != parts.head.shard.of {
-                let (n, m, first) = (shard.of, parts.head.shard.of, &parts.first);
-                return Err(foreign(&name, &format!("one of {n} parts, and {first} is one of {m}")));
+                let (n, m) = (shard.of, parts.head.shard.of);
+                return Err(foreign(&path, format!("one of {n} parts, and {first} is one of {m}")));
             }
-            let earlier = parts.whole.get(&shard.number).map(|part| &part.name);
+            if let Some(difference) = study_of.difference(&parts.head) {
+                return Err(foreign(&path, format!("of another study than {first}: {difference}")));
+            }
+            let earlier = parts.whole.get(&shard.number).map(|part| &part.path);
             if let Some(earlier) = earlier.or(parts.begun.get(&shard.number).map(|begun| &begun.0)) {
-                return Err(foreign(&name, &format!("part {shard}, which {earlier} is, too")));
+                return Err(foreign(&path, format!("part {shard}, as {} is", shown(earlier))));
             }
             if reader.whole {
-                parts.whole.insert(shard.number, Part { name, content, cells_from });
+                parts.whole.insert(shard.number, Part { path, content, cells_from });
             } else {
-                parts.begun.insert(shard.number, (name, reader.read));
+                parts.begun.insert(shard.number, (path, reader.read));
             }
             progress.step();
         }
@@ -144,18 +160,20 @@ impl Parts {
     pub fn cells(&self) -> Result<impl Iterator<Item = Result<Vec<u8>>> + '_> {
         let missing = self.missing();
         let Shard { of, .. } = self.head.shard;
-        if !missing.is_empty() {
+        if let Some(first) = missing.first() {
             let all = self.head.all;
-            let begun = self.begun.iter().map(|(number, (name, n))| {
+            let begun = self.begun.iter().map(|(number, (path, n))| {
                 let shard = Shard { number: *number, of };
-                format!("; {name} has {n} of {} cells", shard.count(all))
+                format!("; {} has {n} of {} cells", shown(path), shard.count(all))
             });
             let (n, which) = (missing.len(), Parts::listed(&missing));
             let are = if n == 1 { "is" } else { "are" };
             let found = format!("{n} of {of} parts {are} missing: {which}{}", begun.collect::<String>());
-            return Err(Error::usage(found, "all parts").hint(format!("sbatch --array={which}")));
+            let hint = format!("the command of the other parts with --shard {first}/{of}");
+            return Err(Error::usage(found, "all parts").hint(hint));
         }
-        let mut streams: Vec<Stream<'_>> = self.whole.values().map(Stream::of).collect();
+        let ahead = (AHEAD / of as usize).max(1 << 12);
+        let mut streams: Vec<Stream<'_>> = self.whole.values().map(|part| Stream::of(part, ahead)).collect();
         Ok((0..self.head.all).map(move |cell| {
             let number = Shard::number_of(cell, of);
             streams[(number - 1) as usize].next()
@@ -164,51 +182,54 @@ impl Parts {
 }
 
 /// Error of a part that cannot be merged with the others.
-fn foreign(name: &str, what: &str) -> Error {
-    Error::input(crate::error::Place::file(Path::new(name)), format!("this is {what}"), "parts of one study")
-        .hint("move that file to another folder")
+fn foreign(path: &Path, what: String) -> Error {
+    Error::input(Place::file(path), format!("this is {what}"), "parts of one study, each once")
+        .hint("move the one that does not belong to them to another folder")
 }
 
-/// Cells that are read from a part at once. With a thousand parts, cells of 40 bytes take 20 MB.
-const AHEAD: usize = 500;
+/// Bytes of cells that are read ahead of all parts together.
+const AHEAD: usize = 1 << 26;
 
 /// The cells of a part, one after another. The file is open only while cells are read, so that any number of
 /// parts can be merged.
 struct Stream<'a> {
     part: &'a Part,
     at: u64,
+    /// Bytes that are read at once, at least one cell.
+    ahead: usize,
     ready: VecDeque<Vec<u8>>,
 }
 
 impl Stream<'_> {
-    fn of(part: &Part) -> Stream<'_> {
-        Stream { part, at: part.cells_from, ready: VecDeque::new() }
+    fn of(part: &Part, ahead: usize) -> Stream<'_> {
+        Stream { part, at: part.cells_from, ahead, ready: VecDeque::new() }
     }
 
     fn next(&mut self) -> Result<Vec<u8>> {
-        let name = &self.part.name;
+        let path = &self.part.path;
         if self.ready.is_empty() {
-            self.read().map_err(|e| Error::io("read", name, e))?;
+            self.read().map_err(|e| Error::io("read", path, e))?;
         }
-        self.ready.pop_front().ok_or_else(|| foreign(name, "changed since it was checked"))
+        self.ready.pop_front().ok_or_else(|| no_part(path, "changed since it was checked"))
     }
 
     /// Reads cells, which were checked before.
     fn read(&mut self) -> std::io::Result<()> {
-        let mut file =
-            BufReader::new(self.part.content.open(&self.part.name).map_err(std::io::Error::other)?);
+        let mut file = BufReader::new(self.part.content.open(&self.part.path)?);
         file.seek(SeekFrom::Start(self.at))?;
-        let mut length = [0; 4];
-        while self.ready.len() < AHEAD {
+        let (mut length, mut read) = ([0; 4], 0);
+        while read < self.ahead {
             file.read_exact(&mut length)?;
             let n = u32::from_le_bytes(length);
-            if n == u32::MAX {
+            if n == END {
                 break;
             }
             let mut cell = vec![0; n as usize + 4];
             file.read_exact(&mut cell)?;
             cell.truncate(n as usize);
             self.at += u64::from(n) + 8;
+            // An empty cell takes memory, too.
+            read += n as usize + 40;
             self.ready.push_back(cell);
         }
         Ok(())

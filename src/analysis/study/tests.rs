@@ -154,7 +154,7 @@ fn missing_parts_are_listed_as_a_job_array_takes_them() {
     let error = study.merged(folder.path()).unwrap_err();
     assert!(said(&error).contains("9 of 12 parts are missing: 3-8,10-12; "), "{error}");
     assert!(said(&error).contains("part_05_of_12.cells has 15 of 17 cells"), "{error}");
-    assert!(said(&error).contains("sbatch --array=3-8,10-12"), "{error}");
+    assert!(said(&error).contains("with --shard 3/12"), "{error}");
     assert_eq!(Parts::listed(&[1, 3, 4]), "1,3,4");
 }
 
@@ -168,13 +168,13 @@ fn parts_of_another_study_are_refused_by_name() {
     let other = PartHead::of(json!({ "of": "squares", "rig": { "gap": 2e-3 } }), 20, head.shard).unwrap();
     let error = write_part(folder.path(), &study, &other, &()).unwrap_err();
     assert!(
-        said(&error).contains("part_1_of_2.cells: a part of another study: rig.gap is 0.001 and not 0.002")
+        said(&error).contains("part_1_of_2.cells: another part or study: rig.gap is 0.001 and not 0.002")
     );
 
     let twice = at("part_3_of_2.cells");
     fs::copy(at("part_1_of_2.cells"), &twice).unwrap();
     let error = study.merged(folder.path()).unwrap_err();
-    assert!(said(&error).contains("part_3_of_2.cells: this is part 1/2, which "), "{error}");
+    assert!(said(&error).contains("part_3_of_2.cells: this is part 1/2, as "), "{error}");
 
     fs::write(&twice, part_in_memory(&study, &other, &()).unwrap()).unwrap();
     let error = study.merged(folder.path()).unwrap_err();
@@ -189,6 +189,67 @@ fn parts_of_another_study_are_refused_by_name() {
     fs::write(&twice, part_in_memory(&study, &old, &()).unwrap()).unwrap();
     let error = study.merged(folder.path()).unwrap_err();
     assert!(said(&error).contains("vibro is 0.0.9 and not 0."), "{error}");
+}
+
+/// What a part states of itself must be what its name and its study say: a copy under another name would
+/// never become whole.
+#[test]
+fn a_part_under_the_name_of_another_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    let study = Squares::of(20);
+    study.parts(folder.path(), [2], 2);
+    fs::copy(at("part_2_of_2.cells"), at("part_1_of_2.cells")).unwrap();
+    let first = study.head(Shard { number: 1, of: 2 });
+    let error = write_part(folder.path(), &study, &first, &()).unwrap_err();
+    assert!(said(&error).contains("the part is 2/2 and not 1/2"), "{error}");
+    let fewer = PartHead { all: 10, ..first.clone() };
+    fs::write(at("part_1_of_2.cells"), part_in_memory(&study, &fewer, &()).unwrap()).unwrap();
+    let error = write_part(folder.path(), &study, &first, &()).unwrap_err();
+    assert!(said(&error).contains("the number of cells is 10 and not 20"), "{error}");
+    let other = PartHead { arithmetic: "0".repeat(8), ..first.clone() };
+    fs::write(at("part_1_of_2.cells"), part_in_memory(&study, &other, &()).unwrap()).unwrap();
+    let error = study.merged(folder.path()).unwrap_err();
+    assert!(said(&error).contains("another processor"), "{error}");
+}
+
+#[test]
+fn what_a_person_adds_to_a_part_is_not_cut_off_in_silence() {
+    let folder = tempfile::tempdir().unwrap();
+    let study = Squares::of(20);
+    study.parts(folder.path(), [1], 1);
+    let path = folder.path().join("part_1_of_1.cells");
+    let whole = fs::read(&path).unwrap();
+    fs::write(&path, [&whole[..], b"notes"].concat()).unwrap();
+    let error = write_part(folder.path(), &study, &study.head(Shard::WHOLE), &()).unwrap_err();
+    assert!(said(&error).contains("something follows its end"), "{error}");
+    assert!(study.merged(folder.path()).is_err());
+    assert!(fs::read(&path).unwrap().ends_with(b"notes"));
+    // Zeros are what a power failure leaves.
+    fs::write(&path, vec![0; whole.len()]).unwrap();
+    let part = write_part(folder.path(), &study, &study.head(Shard::WHOLE), &()).unwrap();
+    assert_eq!((part.kept, fs::read(&path).unwrap()), (0, whole.clone()));
+    // What is cut off is told.
+    fs::write(&path, &whole[..whole.len() - 50]).unwrap();
+    assert!(write_part(folder.path(), &study, &study.head(Shard::WHOLE), &()).unwrap().cut > 0);
+}
+
+#[cfg(unix)]
+#[test]
+fn a_whole_part_needs_no_right_to_write() {
+    use std::os::unix::fs::PermissionsExt;
+    let folder = tempfile::tempdir().unwrap();
+    let study = Squares::of(20);
+    study.parts(folder.path(), [1], 1);
+    let path = folder.path().join("part_1_of_1.cells");
+    fs::set_permissions(&path, fs::Permissions::from_mode(0o444)).unwrap();
+    let part = write_part(folder.path(), &study, &study.head(Shard::WHOLE), &()).unwrap();
+    assert_eq!(part.kept, 20);
+    // The same folder by two names holds each part once.
+    let twice = [folder.path().to_owned(), folder.path().join(".")];
+    assert!(Parts::of_folders(&twice, &()).unwrap().missing().is_empty());
+    fs::create_dir(folder.path().join("x.cells")).unwrap();
+    assert!(said(&Parts::of_folders(&twice, &()).unwrap_err()).contains("x.cells: is no file"));
 }
 
 #[test]

@@ -3,6 +3,7 @@
 use super::modelled::{answered, overlaid, predicting, stated_rig};
 use super::responses;
 use crate::analysis::answer::{Answer, unwritten};
+use crate::analysis::drawn::{Drawn, MOST_DRAWS, coverage_interval, drawn_findings};
 use crate::analysis::open_in;
 use crate::analysis::study::{Cells, Study};
 use crate::campaign::Campaign;
@@ -11,7 +12,8 @@ use crate::error::{Error, Result};
 use crate::measure::response::Response;
 use crate::model::{Excitation, Rig, Sine, Uncertainty};
 use crate::read::{Folder, hexadecimal};
-use crate::record::{Finding, quantile};
+use crate::record::shown;
+use crate::report::Cell;
 use crate::report::layout::table;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest as _, Sha256};
@@ -23,18 +25,25 @@ use std::sync::OnceLock;
 /// Source: JCGM 101:2008, chapter 7.
 #[derive(Debug, Serialize, Deserialize)]
 pub struct PairDraws {
-    campaign: PathBuf,
-    allow_outside: bool,
     draws: u64,
-    /// SHA-256 of the campaign's file and of the measured responses.
+    /// SHA-256 of the campaign's file, of the measured amplitudes and of the predicted ones.
     measured: String,
+    /// Where the campaign lies: it changes no number.
+    place: CampaignPlace,
     #[serde(skip)]
     loaded: OnceLock<Box<Loaded>>,
 }
 
+/// Where a campaign lies.
+#[derive(Debug, Serialize, Deserialize)]
+struct CampaignPlace {
+    path: PathBuf,
+    allow_outside: bool,
+}
+
 /// A campaign with its responses, and the overlay of its rig.
 #[derive(Debug)]
-struct Loaded {
+pub struct Loaded {
     campaign: Campaign,
     rig: Rig,
     uncertainty: Uncertainty,
@@ -44,8 +53,8 @@ struct Loaded {
 
 /// Fewest draws: of 100 draws the outermost 2.5 % at each end are two or three.
 const FEWEST: u64 = 100;
-/// Most draws.
-const MOST: u64 = 1_000_000;
+/// Most draws times points: their amplitudes take 0.8 GB.
+const MOST: u64 = 100_000_000;
 
 impl PairDraws {
     /// A number of draws for a campaign.
@@ -53,36 +62,41 @@ impl PairDraws {
     /// # Errors
     /// If the number is too small or too large, the campaign has no rig or no uncertainty, or its data allow
     /// no overlay.
-    pub fn of(within: &Folder, campaign: PathBuf, allow_outside: bool, draws: u64) -> Result<PairDraws> {
-        if !(FEWEST..=MOST).contains(&draws) {
-            return Err(Error::usage(format!("{draws} draws"), format!("{FEWEST} to {MOST}")));
+    pub fn of(campaign: Campaign, allow_outside: bool, draws: u64) -> Result<PairDraws> {
+        let path = campaign.path();
+        let path = path.canonicalize().unwrap_or_else(|_| path.to_owned());
+        let loaded = Loaded::of(campaign)?;
+        let points = loaded.overlay.pairs.len() as u64;
+        let most = MOST / points.max(1);
+        if !(FEWEST..=most).contains(&draws) {
+            let expected = format!("{FEWEST} to {most} draws of {points} points");
+            return Err(Error::usage(format!("{draws} draws"), expected));
         }
-        let loaded = Loaded::of(within, &campaign)?;
         loaded.predicted(0)?;
-        let measured = loaded.digest()?;
-        Ok(PairDraws { campaign, allow_outside, draws, measured, loaded: OnceLock::from(Box::new(loaded)) })
+        let (measured, place) = (loaded.digest()?, CampaignPlace { path, allow_outside });
+        Ok(PairDraws { draws, measured, place, loaded: OnceLock::from(Box::new(loaded)) })
     }
 
-    /// The campaign, read again where the study comes from a part.
-    fn loaded(&self) -> Result<&Loaded> {
+    /// Reads the campaign of a study that comes from a part.
+    ///
+    /// # Errors
+    /// If it cannot be read, or it or its recordings changed.
+    pub fn load(&self, within: &Folder) -> Result<&Loaded> {
         if let Some(loaded) = self.loaded.get() {
             return Ok(loaded);
         }
-        let loaded = Loaded::of(&Folder::default().allow_outside(self.allow_outside), &self.campaign)?;
+        let CampaignPlace { path, allow_outside } = &self.place;
+        let loaded = Loaded::of(open_in(&within.clone().allow_outside(*allow_outside), path)?)?;
         if loaded.digest()? != self.measured {
-            let found = format!(
-                "{} or its recordings changed since the parts were computed",
-                self.campaign.display()
-            );
-            return Err(Error::usage(found, "those of the parts"));
+            let found = format!("{} or its recordings changed since the parts were computed", shown(path));
+            return Err(Error::usage(found, "those of the parts").hint("all parts anew, in another folder"));
         }
         Ok(self.loaded.get_or_init(|| Box::new(loaded)))
     }
 }
 
 impl Loaded {
-    fn of(within: &Folder, path: &std::path::Path) -> Result<Loaded> {
-        let campaign = open_in(within, path)?;
+    fn of(campaign: Campaign) -> Result<Loaded> {
         let rig = stated_rig(&campaign)?;
         let stated = campaign.uncertainty.filter(|stated| stated.all().next().is_some());
         let uncertainty = stated.ok_or_else(|| {
@@ -127,12 +141,12 @@ impl Study for PairDraws {
     }
 
     fn cell(&self, number: u64) -> Result<Vec<u8>> {
-        let amplitudes = self.loaded()?.predicted(number)?;
+        let amplitudes = self.load(&Folder::default())?.predicted(number)?;
         Ok(amplitudes.iter().flat_map(|amplitude| amplitude.to_le_bytes()).collect())
     }
 
     fn answer(&self, cells: &mut Cells<'_>) -> Result<Answer> {
-        let Loaded { campaign, rig, uncertainty, responses, overlay } = self.loaded()?;
+        let Loaded { campaign, rig, uncertainty, responses, overlay } = self.load(&Folder::default())?;
         let mut of_pair: Vec<Vec<f64>> = vec![Vec::new(); overlay.pairs.len()];
         for cell in cells {
             let cell = cell?;
@@ -144,7 +158,8 @@ impl Study for PairDraws {
                 values.push(f64::from_le_bytes(*number));
             }
         }
-        let drawn = uncertainty.all().map(|(parameter, _)| parameter.name()).collect();
+        let force = campaign.excitation.and_then(|e| e.force).unwrap_or(1.0);
+        let drawn = Drawn::all(uncertainty, rig, &Sine { force, frequency: 1.0 }.into());
         let points = overlay.pairs.iter().zip(&of_pair).map(|(pair, values)| PairBand::of(pair, values));
         let bands = PairBands { points: points.collect(), draws: self.draws, drawn };
         answered(campaign, rig, (responses, overlay), Some(&bands))
@@ -170,8 +185,7 @@ pub struct PairBand {
 
 impl PairBand {
     fn of(pair: &Pair, amplitudes: &[f64]) -> PairBand {
-        // Ends of the coverage interval of 95 %, and the median (JCGM 101:2008, 7.7.2).
-        let predicted = [0.025, 0.5, 0.975].map(|q| quantile(amplitudes, q));
+        let predicted = coverage_interval(amplitudes);
         let (measured, wide) = (pair.measured.value, 2.0 * pair.measured.std.unwrap_or(0.0));
         let known = measured.is_finite() && predicted[0].is_finite() && pair.upper_limit.is_none();
         PairBand {
@@ -192,7 +206,7 @@ pub struct PairBands {
     points: Vec<PairBand>,
     draws: u64,
     /// Names of the drawn parameters.
-    drawn: Vec<&'static str>,
+    drawn: Vec<Drawn>,
 }
 
 impl PairBands {
@@ -209,18 +223,18 @@ impl PairBands {
     pub(super) fn add_to(&self, answer: &mut Answer) -> Result<()> {
         answer.result.insert("draws".to_owned(), self.draws.into());
         answer.result.insert("bands".to_owned(), serde_json::to_value(&self.points).map_err(unwritten)?);
-        let drawn = Finding::note("parameters-drawn").count("n", self.draws as usize);
-        answer.add("", [drawn.name("parameters", self.drawn.join(", "))]);
+        let whole = self.points.iter().all(|point| point.share >= MOST_DRAWS);
+        answer.add("", drawn_findings(self.draws, &self.drawn, whole));
         let sweeps = self.points.chunk_by(|a, b| a.sweep == b.sweep);
         let within =
             |points: &&[PairBand], wanted| points.iter().filter(|p| p.within == Some(wanted)).count();
         answer.tables.push(table(
-            "Measured points in the band of 95 % of the draws",
+            "Measured points: does the band of 95 % of the draws reach measured ± 2 uncertainties?",
             sweeps,
             &[
                 ("sweep", "", &|points| points[0].sweep.as_str().into()),
-                ("inside", "", &|points| within(points, true).into()),
-                ("outside", "", &|points| within(points, false).into()),
+                ("yes", "", &|points| within(points, true).into()),
+                ("no", "", &|points| within(points, false).into()),
             ],
         ));
         answer.csv(
@@ -237,6 +251,7 @@ impl PairBands {
                     ("predicted, 2.5 %", "m", &|p| p.predicted[0].into()),
                     ("predicted, median", "m", &|p| p.predicted[1].into()),
                     ("predicted, 97.5 %", "m", &|p| p.predicted[2].into()),
+                    ("reaches the measured", "", &|p| p.within.map_or(Cell::Missing, Into::into)),
                 ],
             ),
         );

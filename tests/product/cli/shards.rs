@@ -53,7 +53,7 @@ fn parts_give_the_bytes_of_one_run() {
             assert_eq!(said["shard"], format!("{number}/{of}"));
             assert_eq!(said["fingerprint"].as_str().map(str::len), Some(64));
         }
-        assert_eq!(vibro(at, "merge parts --missing"), "");
+        assert!(error(at, "merge parts --missing").contains("no part of"));
         assert_eq!(vibro(at, "merge parts --out merged --json"), whole);
         assert_eq!(files(&at.join("merged")), files(&at.join("whole")));
     }
@@ -111,7 +111,7 @@ fn bands_of_a_linear_rig_are_those_of_its_closed_form() {
     let said = error(at, "merge parts");
     assert!(said.contains("changed since the parts were computed"), "{said}");
     let said = error(at, &format!("{words} --shard 1/2 --out parts"));
-    assert!(said.contains("a part of another study: measured is "), "{said}");
+    assert!(said.contains("another part or study: measured is "), "{said}");
 }
 
 #[test]
@@ -129,15 +129,52 @@ fn several_campaigns_run_into_folders_of_their_own() {
     let answered: Vec<&Value> = ran["campaigns"].as_array().unwrap().iter().map(|c| &c["answered"]).collect();
     assert_eq!(answered, [true, true, false]);
     assert!(ran["campaigns"][2]["error"].as_str().unwrap().contains("no recording"));
-    for number in [1, 2] {
-        vibro(at, &format!("run a b/campaign.toml empty --shard {number}/2 --out parts"));
-    }
-    vibro(at, "merge parts --out parts");
+    let codes = |words: &str| command(at, words).output().unwrap().status.code().unwrap();
+    let shard = |number: u32| format!("run a b/campaign.toml empty --shard {number}/2 --out parts");
+    assert_eq!(codes(&shard(1)) + codes(&shard(2)), 1, "the part with the empty folder says so");
+    assert_eq!(codes("merge parts --out parts"), 1);
     let list = |of: &str| fs::read(at.join(of).join("campaigns.csv")).unwrap();
     assert_eq!(list("parts"), list("whole"));
     assert_eq!(files(&at.join("parts/b")), files(&at.join("whole/b")));
-    let said = error(at, "run a b");
-    assert!(said.contains("several campaigns without a folder") && said.contains("--out results"), "{said}");
+    // A part looks at what lies there now: a campaign that failed is tried again.
+    campaign(&at.join("empty"));
+    let again: Vec<i32> = [1, 2].map(|number| codes(&shard(number).replace("parts", "new"))).to_vec();
+    assert_eq!((again, codes("merge new --out new")), (vec![0, 0], 0));
+    for (words, found) in [
+        ("run a b", "campaigns without a folder for their results"),
+        ("run a a/campaign.toml --out x", "a/campaign.toml stands twice"),
+        ("run a b --out .", "is the folder of a campaign"),
+    ] {
+        let said = error(at, words);
+        assert!(said.contains(found) && !said.contains("panicked"), "{said}");
+    }
+}
+
+/// Studies open recordings through the folder that knows what is read: --replace does not reach them.
+#[test]
+fn results_of_draws_do_not_replace_recordings() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    campaign(at);
+    // A recording under the name of a result.
+    let list = fs::read_to_string(at.join("LIST.TXT")).unwrap().replace("VUP0003.DAT", "pairs.csv");
+    fs::write(at.join("LIST.TXT"), list).unwrap();
+    fs::rename(at.join("VUP0003.DAT"), at.join("pairs.csv")).unwrap();
+    let recording = fs::read(at.join("pairs.csv")).unwrap();
+    let words = "compare campaign.toml --monte-carlo 100";
+    vibro(at, &format!("{words} --shard 1/1 --out parts"));
+    for words in [format!("{words} --out . --replace"), "merge parts --out . --replace".to_owned()] {
+        let said = error(at, &words);
+        assert!(said.contains("pairs.csv is the same file as one that this command reads"), "{said}");
+        assert_eq!(fs::read(at.join("pairs.csv")).unwrap(), recording);
+    }
+    // Where the campaign lies does not belong to the study.
+    fs::create_dir(at.join("elsewhere")).unwrap();
+    let said = vibro(
+        &at.join("elsewhere"),
+        "compare ../campaign.toml --monte-carlo 100 --shard 1/1 --out ../parts --json",
+    );
+    assert!(said.contains("\"kept\": 100"), "{said}");
 }
 
 #[test]
@@ -174,9 +211,9 @@ fn what_cannot_be_merged_is_named() {
     vibro(at, &format!("{MAP} --shard 2/3 --out parts"));
     assert_eq!(vibro(at, "merge parts --missing"), "--array=1,3\n");
     let said = error(at, "merge parts");
-    assert!(said.contains("2 of 3 parts are missing: 1,3") && said.contains("sbatch --array=1,3"), "{said}");
+    assert!(said.contains("2 of 3 parts are missing: 1,3") && said.contains("with --shard 1/3"), "{said}");
     let said = error(at, &format!("{MAP} --cycles 100 --shard 2/3 --out parts"));
-    assert!(said.contains("a part of another study: plan.cycles is 200 and not 100"), "{said}");
+    assert!(said.contains("another part or study: plan.cycles is 200 and not 100"), "{said}");
     for (words, found) in [
         ("--shard 1/3", "a part without a folder"),
         ("--shard 4/3 --out parts", "the part \"4/3\""),

@@ -3,7 +3,7 @@
 use super::Dimension;
 
 /// Quantities that this toolkit knows by name, with their units.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
 pub enum Quantity {
     /// m
     Displacement,

@@ -1,8 +1,8 @@
 //! Bands of a response: where 95 % of the drawn rigs lie.
 
 use crate::analysis::answer::{Answer, unwritten};
+use crate::analysis::drawn::{Drawn, MOST_DRAWS, coverage_interval, drawn_findings};
 use crate::error::Result;
-use crate::record::{Finding, quantile};
 use crate::report::layout::table;
 use serde::Serialize;
 
@@ -36,11 +36,8 @@ pub struct Bands {
     pub points: Vec<BandPoint>,
     draws: u64,
     /// Names of the drawn parameters.
-    drawn: Vec<&'static str>,
+    drawn: Vec<Drawn>,
 }
-
-/// Ends of the coverage interval of 95 %, and the median (JCGM 101:2008, 7.7.2, probabilistically symmetric).
-const QUANTILES: [f64; 3] = [0.025, 0.5, 0.975];
 
 impl Bands {
     /// Bands of the amplitudes of all draws: for each frequency those of x₁ and x₂ with impacts and of x₁
@@ -49,13 +46,12 @@ impl Bands {
         frequency: Vec<f64>,
         amplitudes: Vec<[Vec<f64>; 3]>,
         draws: u64,
-        drawn: Vec<&'static str>,
+        drawn: Vec<Drawn>,
     ) -> Bands {
-        let quantiles = |amplitudes: &[f64]| QUANTILES.map(|q| quantile(amplitudes, q));
         let band = |x1: &[f64], x2: Option<&[f64]>| Band {
             share: x1.iter().filter(|amplitude| amplitude.is_finite()).count() as f64 / draws as f64,
-            x1: quantiles(x1),
-            x2: x2.map(quantiles),
+            x1: coverage_interval(x1),
+            x2: x2.map(coverage_interval),
         };
         let points = frequency.into_iter().zip(amplitudes).map(|(frequency, [x1, x2, free])| BandPoint {
             frequency,
@@ -70,8 +66,8 @@ impl Bands {
         let bands = serde_json::to_value(&self.points).map_err(unwritten)?;
         answer.result.insert("draws".to_owned(), self.draws.into());
         answer.result.insert("bands".to_owned(), bands);
-        let drawn = Finding::note("parameters-drawn").count("n", self.draws as usize);
-        answer.add("", [drawn.name("parameters", self.drawn.join(", "))]);
+        let whole = self.points.iter().all(|p| p.impacting.share == 0.0 || p.impacting.share >= MOST_DRAWS);
+        answer.add("", drawn_findings(self.draws, &self.drawn, whole));
         let table = table(
             "Bands",
             &self.points,

@@ -2,6 +2,7 @@
 
 use super::{Bands, Curve};
 use crate::analysis::answer::Answer;
+use crate::analysis::drawn::Drawn;
 use crate::analysis::study::{Cells, Study};
 use crate::error::{Error, Result};
 use crate::model::response::{MOST_POINTS, axis};
@@ -81,7 +82,7 @@ impl Study for Draws {
     }
 
     fn answer(&self, cells: &mut Cells<'_>) -> Result<Answer> {
-        let Curve { from, to, points, uncertainty, .. } = &self.curve;
+        let Curve { rig, excitation, from, to, points, uncertainty, .. } = &self.curve;
         let frequency = (0..*points).map(axis(*from, *to, *points, MOST_POINTS)?).collect();
         let mut of_frequency: Vec<[Vec<f64>; 3]> = vec![Default::default(); *points];
         for cell in cells {
@@ -96,7 +97,7 @@ impl Study for Draws {
                 }
             }
         }
-        let drawn = uncertainty.unwrap_or_default().all().map(|(parameter, _)| parameter.name()).collect();
+        let drawn = Drawn::all(&uncertainty.unwrap_or_default(), rig, excitation);
         self.curve.answer(Some(&Bands::of(frequency, of_frequency, self.draws, drawn)))
     }
 }
