@@ -15,7 +15,7 @@ mod ringing;
 pub use contact::KelvinVoigt;
 pub use instants::two_times;
 pub use low_pass::LowPass;
-pub use result::{ContactModel, PulseCurve, PulseFit, PulsePicture, PulseResult};
+pub use result::{ContactModel, PulseCurve, PulseFit, PulsePicture, PulseResult, Unfitted};
 
 use super::Estimate;
 use super::residuals::NO_SUPPORT;
@@ -147,7 +147,8 @@ pub fn pulse(trace: &Trace, options: &PulseOptions) -> Result<PulseResult> {
         let near = Finding::caution("pulse-near-corner").number("duration", duration);
         say(duration * filter.corner < 2.0, near.number("corner", filter.corner));
     }
-    let fits = rivals(&samples, main);
+    let (fits, unfitted) = rivals(&samples, main);
+    result.unfitted = unfitted;
     let best = fits.iter().min_by(|a, b| a.aicc().total_cmp(&b.aicc()));
     let unexplained = best.is_some_and(|best| samples.unexplained(best));
     result.fits = fits.iter().map(|f| scale.report(f, options.mass, known && !unexplained)).collect();
@@ -227,17 +228,23 @@ fn check(trace: &Trace, options: &PulseOptions) -> Result<()> {
 }
 
 /// Fits all models to the samples, spring and damper first. The power law is skipped where spring and damper
-/// leaves white residuals and is clearly ahead of the other models.
-fn rivals(samples: &Samples<'_>, main: FittedPulse) -> Vec<FittedPulse> {
-    let mut fits = vec![main];
+/// leaves white residuals and is clearly ahead of the other models. The second value has the models without
+/// a fit.
+fn rivals(samples: &Samples<'_>, main: FittedPulse) -> (Vec<FittedPulse>, Vec<Unfitted>) {
+    let (mut fits, mut unfitted) = (vec![main], Vec::new());
     for rival in ContactModel::RIVALS {
         let behind = fits[1..].iter().all(|fit| fit.aicc() - fits[0].aicc() > NO_SUPPORT);
         if rival == ContactModel::PowerLaw && behind && !fits[0].whiteness.rejected() {
+            let reason = "not needed, spring and damper is clearly ahead".to_owned();
+            unfitted.push(Unfitted { model: rival, reason });
             continue;
         }
-        fits.extend(samples.fit(rival));
+        match samples.fit(rival) {
+            Ok(fit) => fits.push(fit),
+            Err(error) => unfitted.push(Unfitted { model: rival, reason: error.to_string() }),
+        }
     }
-    fits
+    (fits, unfitted)
 }
 
 fn gained(result: &PulseResult) -> Doubt {

@@ -162,7 +162,7 @@ impl Samples<'_> {
         self.between_samples(&mut fits);
         let mut fits = fits.into_iter().map(|((outside, _), fit)| self.judged(fit, outside));
         let Some(mut best) = fits.next() else {
-            return Err(Error::refused(format!("the fit of the model {} does not converge", model.name())));
+            return Err(Error::refused("the fit does not converge"));
         };
         if model == ContactModel::PowerLaw {
             for fit in fits {

@@ -72,6 +72,8 @@ pub struct PulseResult {
     pub duration: Estimate,
     /// The models fitted to the whole pulse; the first is the one of spring and damper.
     pub fits: Vec<PulseFit>,
+    /// The models without a fit.
+    pub unfitted: Vec<Unfitted>,
     /// Assumptions, and doubts that the record leaves.
     pub findings: Vec<Finding>,
     /// Curves for a figure.
@@ -200,6 +202,15 @@ pub struct PulseFit {
     pub parameters: BTreeMap<&'static str, Estimate>,
 }
 
+/// A model without a fit.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Unfitted {
+    /// The model.
+    pub model: ContactModel,
+    /// Why it has no fit.
+    pub reason: String,
+}
+
 /// A pulse and its fits, to be drawn.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PulsePicture {
@@ -273,6 +284,7 @@ pub(super) fn contact_estimates(
         initial_velocity: None,
         duration: estimate("s", &|c| c.duration())?,
         fits: Vec::new(),
+        unfitted: Vec::new(),
         findings: Vec::new(),
         picture: None,
     })

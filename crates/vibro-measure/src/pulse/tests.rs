@@ -61,6 +61,10 @@ fn all_that_follows_from_a_pulse() {
     // The yielding spring finds no minimum, and free exponents are skipped, since spring and damper leaves
     // white residuals.
     assert_eq!(models, ["kelvin-voigt", "hertz", "hunt-crossley"]);
+    let unfitted: Vec<(&str, &str)> =
+        result.unfitted.iter().map(|u| (u.model.name(), u.reason.as_str())).collect();
+    let skipped = "not needed, spring and damper is clearly ahead";
+    assert_eq!(unfitted, [("yielding", "the fit does not converge"), ("power-law", skipped)]);
     assert!(result.fits[1..].iter().all(|f| f.aicc > result.fits[0].aicc + 10.0), "{:?}", result.fits);
 }
 
