@@ -113,11 +113,11 @@ impl Rebound {
             let exponent = z.max(f64::MIN_POSITIVE).ln();
             (n * exponent).exp() + alpha * (s * exponent).exp() * v
         };
-        let (mut z, mut v) = (0.0_f64, 1.0_f64);
-        let mut deceleration = vec![force(0.0, 1.0)];
+        let (mut z, mut v, mut before) = (0.0_f64, 1.0_f64, force(0.0, 1.0));
+        let mut deceleration = vec![before];
         let h = STEP;
         for _ in 0..LONGEST {
-            let a1 = -force(z, v);
+            let a1 = -before;
             let v2 = v + h / 2.0 * a1;
             let a2 = -force(z + h / 2.0 * v, v2);
             let v3 = v + h / 2.0 * a2;
@@ -125,7 +125,7 @@ impl Rebound {
             let v4 = v + h * a3;
             let a4 = -force(z + h * v3, v4);
             let next = z + h / 6.0 * (v + 2.0 * v2 + 2.0 * v3 + v4);
-            let (before, faster) = (force(z, v), v + h / 6.0 * (a1 + 2.0 * a2 + 2.0 * a3 + a4));
+            let faster = v + h / 6.0 * (a1 + 2.0 * a2 + 2.0 * a3 + a4);
             let after = force(next, faster);
             // The contact ends where the bodies part, or where the force would begin to pull.
             if next <= 0.0 || after <= 0.0 && faster < 0.0 {
@@ -135,7 +135,7 @@ impl Rebound {
                 deceleration.push(0.0);
                 return Some(Rebound { deceleration, duration, restitution: 0.5 * before * part - v });
             }
-            (z, v) = (next, faster);
+            (z, v, before) = (next, faster, after);
             deceleration.push(after);
         }
         None

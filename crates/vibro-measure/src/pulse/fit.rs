@@ -1,11 +1,12 @@
 //! Models of a contact fitted to the samples of a pulse.
 
 use super::ringing::Ringing;
-use super::{ContactModel, KelvinVoigt, LowPass};
+use super::{ContactModel, KelvinVoigt, LowPass, Rebound};
 use crate::converter::{concealed, hidden, rounding};
 use crate::mean::{average, scatter};
 use crate::residuals::{Whiteness, aicc, student};
 use nalgebra::{DMatrix, DVector};
+use std::cell::RefCell;
 use vibro_math::{Fit, least_squares};
 use vibro_record::{Error, Result, sort_by_number};
 
@@ -23,6 +24,8 @@ pub(super) struct Samples<'a> {
     pub quantum: f64,
     /// Ringing after the pulse, which may occur within it, too.
     pub rings: Option<Ringing>,
+    /// The contact integrated last, with its model and shape: most steps of a fit keep it.
+    pub last: RefCell<Option<(ContactModel, Vec<f64>, Rebound)>>,
 }
 
 /// The best fit of a model. Its parameters are onset, baseline, velocity of approach, and those of the
@@ -91,8 +94,13 @@ impl Samples<'_> {
         times: &[f64],
         first: Option<usize>,
     ) -> Option<Vec<f64>> {
+        Some(scaled(&self.shape(model, p, times, first)?, p))
+    }
+
+    /// The model without baseline and at unit velocity.
+    fn shape(&self, model: ContactModel, p: &[f64], times: &[f64], first: Option<usize>) -> Option<Vec<f64>> {
         let since = times.iter().map(|t| t - p[0]);
-        let shape: Vec<f64> = match model {
+        Some(match model {
             ContactModel::KelvinVoigt => {
                 let contact = KelvinVoigt::new(p[3], p[4])?;
                 let end = contact.duration();
@@ -106,11 +114,14 @@ impl Samples<'_> {
                 }
             }
             _ if p[3] > 0.0 => {
-                model.rebound(&p[4..])?.decelerations(p[3], self.filter, &since.collect::<Vec<_>>())
+                let mut last = self.last.borrow_mut();
+                if !last.as_ref().is_some_and(|(of, shape, _)| *of == model && *shape == p[4..]) {
+                    *last = Some((model, p[4..].to_vec(), model.rebound(&p[4..])?));
+                }
+                last.as_ref()?.2.decelerations(p[3], self.filter, &since.collect::<Vec<_>>())
             }
             _ => return None,
-        };
-        Some(shape.into_iter().map(|s| p[1] + p[2] * s).collect())
+        })
     }
 
     /// The best fit of a model, from a coarse search over onset and shape. The prior of each free exponent
@@ -305,13 +316,18 @@ impl Samples<'_> {
     ) -> Option<FittedPulse> {
         let scale: Vec<f64> = start.iter().map(|p| p.abs().max(0.1)).collect();
         let (n, likely) = (self.times.len(), if model == ContactModel::PowerLaw { &LIKELY[..] } else { &[] });
-        let residuals = |p: &[f64], out: &mut [f64]| match self.model(model, p, &self.times, first) {
-            Some(values) => {
-                out.iter_mut().zip(&self.values).zip(values).for_each(|((r, v), m)| *r = v - m);
-                let exponents = likely.iter().zip(p.iter().skip(5));
-                out[n..].iter_mut().zip(exponents).for_each(|(r, (l, p))| *r = noise * (p - l.0) / l.1);
+        // Baseline and velocity only scale a shape: that of the last other parameters is kept for them.
+        let last: RefCell<(Vec<f64>, Option<Vec<f64>>)> = RefCell::default();
+        let residuals = |p: &[f64], out: &mut [f64]| {
+            let mut last = last.borrow_mut();
+            let of = [&p[..1], &p[3..]].concat();
+            if last.0 != of {
+                *last = (of, self.shape(model, p, &self.times, first));
             }
-            None => out.fill(f64::NAN),
+            let Some(shape) = &last.1 else { return out.fill(f64::NAN) };
+            out.iter_mut().zip(&self.values).zip(scaled(shape, p)).for_each(|((r, v), m)| *r = v - m);
+            let exponents = likely.iter().zip(p.iter().skip(5));
+            out[n..].iter_mut().zip(exponents).for_each(|(r, (l, p))| *r = noise * (p - l.0) / l.1);
         };
         let mut fit = least_squares(residuals, n + likely.len(), start, &scale).ok()?;
         fit.residuals.truncate(n);
@@ -411,6 +427,11 @@ impl Samples<'_> {
         let sum: f64 = x.iter().zip(y).map(|(x, y)| (y - p[1] - slope * x).powi(2)).sum();
         sum.is_finite().then_some((sum, p))
     }
+}
+
+/// A shape with the baseline and velocity of these parameters.
+fn scaled(shape: &[f64], p: &[f64]) -> Vec<f64> {
+    shape.iter().map(|s| p[1] + p[2] * s).collect()
 }
 
 impl FittedPulse {

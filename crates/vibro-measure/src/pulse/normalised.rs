@@ -8,6 +8,7 @@ use crate::Estimate;
 use crate::converter::{rounding, step};
 use crate::mean::average;
 use crate::swings;
+use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::ops::Range;
 use vibro_record::code;
@@ -82,7 +83,7 @@ impl<'a> Normalised<'a> {
         let values = places.iter().map(|i| self.trace.values[*i] / self.height).collect();
         let (step, filter) = (self.step / self.length, self.filter.as_ref());
         let quantum = self.found.quantum / self.height;
-        Samples { step, filter, places, times, values, quantum, rings: None }
+        Samples { step, filter, places, times, values, quantum, rings: None, last: RefCell::default() }
     }
 
     /// The samples to be fitted: the pulse with a baseline on both sides, or only before it where the record
