@@ -2,11 +2,13 @@
 //!
 //! The model of spring and damper (Kelvin–Voigt) gives the answer unless the record prefers another. Fitted
 //! beside it are those of Hertz, of Hunt and Crossley, of a power law with free exponents, and of a yielding
-//! spring. The instrument's low-pass is applied to the models in closed form.
+//! spring. Where spring and damper does not lead, restitution, duration and velocity are means over the
+//! likely models. The instrument's low-pass is applied to the models in closed form.
 
 mod contact;
 mod fit;
 mod instants;
+mod losses;
 mod low_pass;
 mod normalised;
 mod result;
@@ -147,14 +149,23 @@ pub fn pulse(trace: &Trace, options: &PulseOptions) -> Result<PulseResult> {
         let near = Finding::caution("pulse-near-corner").number("duration", duration);
         say(duration * filter.corner < 2.0, near.number("corner", filter.corner));
     }
-    let (fits, unfitted) = rivals(&samples, main);
+    let (mut fits, unfitted) = rivals(&samples, main);
     result.unfitted = unfitted;
     let best = fits.iter().min_by(|a, b| a.aicc().total_cmp(&b.aicc()));
     let unexplained = best.is_some_and(|best| samples.unexplained(best));
+    let inflation = best.map_or(1.0, |best| best.whiteness.inflation.max(1.0));
+    let lower = best.map_or(0.0, |best| fits[0].aicc() - best.aicc());
+    // A power law needs its losses only where spring and damper does not lead.
+    let law = fits.iter_mut().find(|fit| fit.model == ContactModel::PowerLaw);
+    if let Some(law) = law.filter(|_| lower > NO_SUPPORT * inflation.powi(2))
+        && let Some(averaged) = samples.over_losses(law)
+    {
+        *law = averaged;
+    }
     result.fits = fits.iter().map(|f| scale.report(f, options.mass, known && !unexplained)).collect();
     let also = fits.iter().flat_map(|f| &f.also);
     let also: Vec<_> = also.map(|f| scale.report(f, options.mass, known && !unexplained)).collect();
-    let led = result.led_by_best(&also, best.map_or(1.0, |best| best.whiteness.inflation.max(1.0)));
+    let led = result.led_by_best(&also, inflation);
     if led.is_none() || result.restitution.value.is_nan() {
         found.extend(impossible.into_iter().flatten().map(|doubt| doubt.of(&mut result)));
     }
