@@ -12,7 +12,7 @@ use crate::error::{Error, Result};
 use crate::measure::pulse::{Instrument, PulseOptions, PulseResult, pulse, two_times};
 use crate::record::doubt_with_record;
 use crate::report::files::Names;
-use crate::report::layout::{headed, pair, table, titled};
+use crate::report::layout::{capital, headed, pair, table, titled};
 use crate::report::{Cell, Table};
 use serde::Deserialize;
 use std::collections::BTreeMap;
@@ -167,9 +167,12 @@ fn models(title: &str, result: &PulseResult) -> Table {
         let own = parameters.keys().map(|name| fit.parameters.get(name).map_or(Cell::Missing, Cell::from));
         table.push(known.into_iter().chain(own));
     }
-    table.note(
-        "The lowest AICc fits best. p below 0.01: the residual is not noise, so the model does not describe the pulse.",
-    )
+    let unfitted =
+        result.unfitted.iter().map(|u| format!(" {}: {}.", capital(figures::called(u.model)), u.reason));
+    table.note(format!(
+        "The lowest AICc fits best. p below 0.01: the residual is not noise, so the model does not describe the pulse.{}",
+        unfitted.collect::<String>()
+    ))
 }
 
 impl Analysis for Keys {

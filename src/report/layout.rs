@@ -1,6 +1,6 @@
 //! Parts of tables and figures that several analyses use.
 
-use super::{Cell, Figure, Ink, Marker, Panel, Plot, Series, Stroke, Table};
+use super::{AxisSpec, Cell, Figure, Ink, Marker, Panel, Plot, Series, Stroke, Table};
 
 /// A column: name, unit, and the cell for an item.
 pub type Shown<'a, T> = (&'a str, &'a str, &'a dyn Fn(&T) -> Cell);
@@ -64,6 +64,16 @@ pub fn lettered(mut figure: Figure) -> Figure {
         }
     }
     figure
+}
+
+/// Axis of the values of a record: its quantity and unit. A sound file has neither: its values are parts of
+/// full scale.
+pub fn value_axis(quantity: &str, unit: &str) -> AxisSpec {
+    match (quantity, unit) {
+        ("other", "FS") => AxisSpec::new("Signal, part of full scale", ""),
+        ("other", _) => AxisSpec::new("Signal", unit),
+        _ => AxisSpec::new(capital(quantity), unit),
+    }
 }
 
 /// A text with a capital first letter.

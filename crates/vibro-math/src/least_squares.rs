@@ -85,8 +85,7 @@ pub fn least_squares(
     start: &[f64],
     scale: &[f64],
 ) -> Result<Fit> {
-    let Minimum { parameters, residuals, jacobian, converged } = minimise(residuals, n, start, scale, None)?;
-    Ok(Fit { cofactor: cofactor(jacobian.clone())?, parameters, residuals, jacobian, converged })
+    minimise(residuals, n, start, scale, None)?.fit()
 }
 
 /// Parameters that minimise a sum of squared residuals, without their uncertainty.
@@ -100,6 +99,17 @@ pub struct Minimum {
     pub jacobian: DMatrix<f64>,
     /// Whether a minimum was reached; else the parameters are the best ones found.
     pub converged: bool,
+}
+
+impl Minimum {
+    /// The minimum with the cofactor of its parameters.
+    ///
+    /// # Errors
+    /// If the residuals do not depend on some combination of the parameters.
+    pub fn fit(self) -> Result<Fit> {
+        let Minimum { parameters, residuals, jacobian, converged } = self;
+        Ok(Fit { cofactor: cofactor(jacobian.clone())?, parameters, residuals, jacobian, converged })
+    }
 }
 
 /// As [`least_squares`], for callers that examine the Jacobian themselves: a combination of parameters on

@@ -2,11 +2,13 @@
 //!
 //! The model of spring and damper (Kelvin–Voigt) gives the answer unless the record prefers another. Fitted
 //! beside it are those of Hertz, of Hunt and Crossley, of a power law with free exponents, and of a yielding
-//! spring. The instrument's low-pass is applied to the models in closed form.
+//! spring. Where spring and damper does not lead, restitution, duration and velocity are means over the
+//! likely models. The instrument's low-pass is applied to the models in closed form.
 
 mod contact;
 mod fit;
 mod instants;
+mod losses;
 mod low_pass;
 mod normalised;
 mod result;
@@ -15,7 +17,7 @@ mod ringing;
 pub use contact::KelvinVoigt;
 pub use instants::two_times;
 pub use low_pass::LowPass;
-pub use result::{ContactModel, PulseCurve, PulseFit, PulsePicture, PulseResult};
+pub use result::{ContactModel, PulseCurve, PulseFit, PulsePicture, PulseResult, Unfitted};
 
 use super::Estimate;
 use super::residuals::NO_SUPPORT;
@@ -147,13 +149,23 @@ pub fn pulse(trace: &Trace, options: &PulseOptions) -> Result<PulseResult> {
         let near = Finding::caution("pulse-near-corner").number("duration", duration);
         say(duration * filter.corner < 2.0, near.number("corner", filter.corner));
     }
-    let fits = rivals(&samples, main);
+    let (mut fits, unfitted) = rivals(&samples, main);
+    result.unfitted = unfitted;
     let best = fits.iter().min_by(|a, b| a.aicc().total_cmp(&b.aicc()));
     let unexplained = best.is_some_and(|best| samples.unexplained(best));
+    let inflation = best.map_or(1.0, |best| best.whiteness.inflation.max(1.0));
+    let lower = best.map_or(0.0, |best| fits[0].aicc() - best.aicc());
+    // A power law needs its losses only where spring and damper does not lead.
+    let law = fits.iter_mut().find(|fit| fit.model == ContactModel::PowerLaw);
+    if let Some(law) = law.filter(|_| lower > NO_SUPPORT * inflation.powi(2))
+        && let Some(averaged) = samples.over_losses(law)
+    {
+        *law = averaged;
+    }
     result.fits = fits.iter().map(|f| scale.report(f, options.mass, known && !unexplained)).collect();
     let also = fits.iter().flat_map(|f| &f.also);
     let also: Vec<_> = also.map(|f| scale.report(f, options.mass, known && !unexplained)).collect();
-    let led = result.led_by_best(&also, best.map_or(1.0, |best| best.whiteness.inflation.max(1.0)));
+    let led = result.led_by_best(&also, inflation);
     if led.is_none() || result.restitution.value.is_nan() {
         found.extend(impossible.into_iter().flatten().map(|doubt| doubt.of(&mut result)));
     }
@@ -227,17 +239,23 @@ fn check(trace: &Trace, options: &PulseOptions) -> Result<()> {
 }
 
 /// Fits all models to the samples, spring and damper first. The power law is skipped where spring and damper
-/// leaves white residuals and is clearly ahead of the other models.
-fn rivals(samples: &Samples<'_>, main: FittedPulse) -> Vec<FittedPulse> {
-    let mut fits = vec![main];
+/// leaves white residuals and is clearly ahead of the other models. The second value has the models without
+/// a fit.
+fn rivals(samples: &Samples<'_>, main: FittedPulse) -> (Vec<FittedPulse>, Vec<Unfitted>) {
+    let (mut fits, mut unfitted) = (vec![main], Vec::new());
     for rival in ContactModel::RIVALS {
         let behind = fits[1..].iter().all(|fit| fit.aicc() - fits[0].aicc() > NO_SUPPORT);
         if rival == ContactModel::PowerLaw && behind && !fits[0].whiteness.rejected() {
+            let reason = "not needed, spring and damper is clearly ahead".to_owned();
+            unfitted.push(Unfitted { model: rival, reason });
             continue;
         }
-        fits.extend(samples.fit(rival));
+        match samples.fit(rival) {
+            Ok(fit) => fits.push(fit),
+            Err(error) => unfitted.push(Unfitted { model: rival, reason: error.to_string() }),
+        }
     }
-    fits
+    (fits, unfitted)
 }
 
 fn gained(result: &PulseResult) -> Doubt {

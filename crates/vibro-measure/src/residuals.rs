@@ -143,8 +143,8 @@ pub fn widened(free: usize) -> f64 {
 
 /// Corrected Akaike criterion (`AICc`) of a fit to `n` values, with the variance of the noise as one
 /// parameter more than `parameters` (Hurvich & Tsai 1989); NaN where there are too few values.
-pub fn aicc(sum_of_squares: f64, n: usize, parameters: usize) -> f64 {
-    let (n, k) = (n as f64, parameters as f64 + 1.0);
+pub fn aicc(sum_of_squares: f64, n: usize, parameters: f64) -> f64 {
+    let (n, k) = (n as f64, parameters + 1.0);
     if n - k - 1.0 <= 0.0 {
         return f64::NAN;
     }

@@ -2,7 +2,7 @@
 
 use crate::measure::decay::DecayResult;
 use crate::record::Meta;
-use crate::report::layout::{capital, lettered};
+use crate::report::layout::{lettered, value_axis};
 use crate::report::{AxisSpec, Figure, Ink, Legend, Marker, Plot, Series, Stroke};
 use std::fmt::Write as _;
 
@@ -21,7 +21,7 @@ pub fn decay(title: &str, meta: &Meta, found: &DecayResult) -> Figure {
     let offset = left.iter().sum::<f64>() / left.len().max(1) as f64;
     let left: Vec<f64> = left.into_iter().map(|v| v - offset).collect();
     let modes: Vec<f64> = modes.iter().map(|v| v + offset).collect();
-    let above = Plot::new(x(), AxisSpec::new(capital(meta.quantity.name()), unit))
+    let above = Plot::new(x(), value_axis(meta.quantity.name(), unit))
         .with(Series::line("record", &times[..shown], &record[..shown]).ink(Ink::Grey).stroke(Stroke::Solid))
         .with(
             Series::line("modes", &times[..shown], &modes[..shown]).ink(Ink::Nth(0)).stroke(Stroke::Dashed),

@@ -1,7 +1,7 @@
 //! Contact pulses: samples, fitted models and residuals.
 
 use crate::measure::pulse::{ContactModel, PulseResult};
-use crate::report::layout::{capital, lettered};
+use crate::report::layout::{lettered, value_axis};
 use crate::report::{AxisSpec, Figure, Ink, Marker, Plot, Series, Stroke};
 use crate::units::notation::significant;
 
@@ -33,7 +33,7 @@ pub fn pulse(title: &str, result: &PulseResult) -> Option<Figure> {
     // Many samples are drawn as a line; the model over it is dashed, so that the line stays visible.
     let dense = picture.samples.iter().filter(|s| s.2).count() > DENSE;
     let rejected = if result.xi.value.is_finite() { "" } else { " (rejected)" };
-    let mut above = Plot::new(x(), AxisSpec::new(capital(quantity), unit));
+    let mut above = Plot::new(x(), value_axis(quantity, unit));
     for (fitted, name, marker) in [(true, "samples", Marker::OpenCircle), (false, "left out", Marker::Cross)]
     {
         let (t, v): (Vec<f64>, Vec<f64>) =

@@ -129,7 +129,7 @@ fn rung(
         values: problem.unknowns.iter().map(|u| setting.get(u.parameter)).collect(),
         held_out: several.then_some(mean),
         held_out_std: several.then(|| (variance / n).sqrt()),
-        aicc: Some(aicc(sum, off.len(), problem.unknowns.len())).filter(|a| a.is_finite()),
+        aicc: Some(aicc(sum, off.len(), problem.unknowns.len() as f64)).filter(|a| a.is_finite()),
         whiteness: whiteness.p_value,
         chosen: false,
         blocks,

@@ -501,7 +501,7 @@ impl Scaled<'_> {
             unexplained: (sum / n as f64).sqrt(),
             modes,
             std,
-            aicc: aicc(fit.sum_of_squares(), fit.residuals.len(), free.len())
+            aicc: aicc(fit.sum_of_squares(), fit.residuals.len(), free.len() as f64)
                 + weight.spread(fit.residuals.len()),
             fitted: (0..n).map(|i| self.at(p, i) * self.height).collect(),
             whiteness,

@@ -1,11 +1,12 @@
 //! Models of a contact fitted to the samples of a pulse.
 
 use super::ringing::Ringing;
-use super::{ContactModel, KelvinVoigt, LowPass};
+use super::{ContactModel, KelvinVoigt, LowPass, Rebound};
 use crate::converter::{concealed, hidden, rounding};
 use crate::mean::{average, scatter};
 use crate::residuals::{Whiteness, aicc, student};
 use nalgebra::{DMatrix, DVector};
+use std::cell::RefCell;
 use vibro_math::{Fit, least_squares};
 use vibro_record::{Error, Result, sort_by_number};
 
@@ -23,11 +24,14 @@ pub(super) struct Samples<'a> {
     pub quantum: f64,
     /// Ringing after the pulse, which may occur within it, too.
     pub rings: Option<Ringing>,
+    /// The contact integrated last, with its model and shape: most steps of a fit keep it.
+    pub last: RefCell<Option<(ContactModel, Vec<f64>, Rebound)>>,
 }
 
 /// The best fit of a model. Its parameters are onset, baseline, velocity of approach, and those of the
 /// shape: ξ and f (Kelvin–Voigt); duration (Hertz); duration and α (Hunt–Crossley) or restitution
 /// (yielding); duration, α and both exponents (power law).
+#[derive(Clone)]
 pub(super) struct FittedPulse {
     pub model: ContactModel,
     pub fit: Fit,
@@ -37,9 +41,11 @@ pub(super) struct FittedPulse {
     /// elsewhere, or the onset lies outside the two samples between which the contact begins.
     pub widening: Option<f64>,
     /// Index of the first sample inside the contact, where the model begins with a jump.
-    first: Option<usize>,
+    pub first: Option<usize>,
     /// Fits at further minima of the sum of squares over the exponent of the loss.
     pub also: Vec<FittedPulse>,
+    /// Of a power law: its fits with given losses, each with the logarithm of its weight.
+    pub losses: Vec<(f64, FittedPulse)>,
 }
 
 /// Fits whose exponents of the loss differ by less than this belong to one minimum.
@@ -71,11 +77,6 @@ const FAST: f64 = 0.1;
 /// Half-width of the interval around the onset, over the pulse's length, in which a wrong low-pass shows.
 const AROUND: f64 = 0.1;
 
-/// Prior mean and standard deviation of the exponents of spring and loss: from flat to pointed bodies for
-/// the spring (Johnson 1985, 5.3), from losses that hardly depend on the indentation to losses that grow
-/// with its square. Without losses only the prior determines the second.
-const LIKELY: [(f64, f64); 2] = [(1.5, 0.5), (1.0, 0.75)];
-
 impl Samples<'_> {
     /// Delay of the low-pass, in lengths of the pulse.
     fn delay(&self) -> f64 {
@@ -91,8 +92,13 @@ impl Samples<'_> {
         times: &[f64],
         first: Option<usize>,
     ) -> Option<Vec<f64>> {
+        Some(scaled(&self.shape(model, p, times, first)?, p))
+    }
+
+    /// The model without baseline and at unit velocity.
+    fn shape(&self, model: ContactModel, p: &[f64], times: &[f64], first: Option<usize>) -> Option<Vec<f64>> {
         let since = times.iter().map(|t| t - p[0]);
-        let shape: Vec<f64> = match model {
+        Some(match model {
             ContactModel::KelvinVoigt => {
                 let contact = KelvinVoigt::new(p[3], p[4])?;
                 let end = contact.duration();
@@ -106,11 +112,14 @@ impl Samples<'_> {
                 }
             }
             _ if p[3] > 0.0 => {
-                model.rebound(&p[4..])?.decelerations(p[3], self.filter, &since.collect::<Vec<_>>())
+                let mut last = self.last.borrow_mut();
+                if !last.as_ref().is_some_and(|(of, shape, _)| *of == model && *shape == p[4..]) {
+                    *last = Some((model, p[4..].to_vec(), model.rebound(&p[4..])?));
+                }
+                last.as_ref()?.2.decelerations(p[3], self.filter, &since.collect::<Vec<_>>())
             }
             _ => return None,
-        };
-        Some(shape.into_iter().map(|s| p[1] + p[2] * s).collect())
+        })
     }
 
     /// The best fit of a model, from a coarse search over onset and shape. The prior of each free exponent
@@ -162,7 +171,7 @@ impl Samples<'_> {
         self.between_samples(&mut fits);
         let mut fits = fits.into_iter().map(|((outside, _), fit)| self.judged(fit, outside));
         let Some(mut best) = fits.next() else {
-            return Err(Error::refused(format!("the fit of the model {} does not converge", model.name())));
+            return Err(Error::refused("the fit does not converge"));
         };
         if model == ContactModel::PowerLaw {
             for fit in fits {
@@ -223,15 +232,20 @@ impl Samples<'_> {
 
     /// Tests the residuals of a fit for whiteness, and sets the factor of its uncertainties, unless its
     /// onset is `outside` of where it may be or does not match the record.
-    fn judged(&self, mut fitted: FittedPulse, outside: bool) -> FittedPulse {
+    pub(super) fn judged(&self, mut fitted: FittedPulse, outside: bool) -> FittedPulse {
         fitted.whiteness = Whiteness::of(&[&fitted.fit.residuals]);
         if !(outside || fitted.whiteness.rejected() && self.more_left_at_onset(&fitted.fit)) {
             // At least nine samples leave four degrees of freedom.
             let student = student(fitted.fit.degrees_of_freedom()).unwrap_or(f64::NAN);
             let inside = (fitted.end() - fitted.fit.parameters[0]) / self.step;
             let rings = self.rings.map_or(1.0, |rings| rings.widening(inside, fitted.fit.variance()));
+            let widening = Some(fitted.whiteness.inflation * student * rings.sqrt());
+            for (_, given) in &mut fitted.losses {
+                self.round(&mut given.fit);
+                given.widening = widening;
+            }
             self.round(&mut fitted.fit);
-            fitted.widening = Some(fitted.whiteness.inflation * student * rings.sqrt());
+            fitted.widening = widening;
         }
         fitted
     }
@@ -240,21 +254,33 @@ impl Samples<'_> {
     /// converter. Such a flat baseline does not show the rounding noise within the pulse, and has itself a
     /// rounding error that all samples share.
     fn round(&self, fit: &mut Fit) {
-        let (noise, hidden) = self.noise();
-        let variance = fit.variance();
+        let (hidden, variance) = (self.noise().1, fit.variance());
         if hidden == 0.0 || variance <= 0.0 {
             return;
         }
         // Parameters change by C_ib/C_bb for a change of the baseline b.
         let slopes = fit.cofactor.column(1) / fit.cofactor[(1, 1)];
         let baseline = &slopes * slopes.transpose() * (hidden * hidden / variance);
-        fit.cofactor *= (noise * noise / variance).max(1.0);
+        fit.cofactor *= self.rounded(fit);
         fit.cofactor += baseline;
+    }
+
+    /// Variance of the noise within the contact over that of the residuals. It is 1 unless rounding conceals
+    /// the noise of the baseline.
+    fn rounded(&self, fit: &Fit) -> f64 {
+        let ((noise, hidden), variance) = (self.noise(), fit.variance());
+        if hidden == 0.0 || variance <= 0.0 { 1.0 } else { (noise * noise / variance).max(1.0) }
+    }
+
+    /// Factor by which differences of sums of squares, over the variance of the residuals, exceed those for
+    /// white noise: for correlated residuals, and for rounding that a flat baseline does not show.
+    pub fn dispersion(&self, fit: &Fit) -> f64 {
+        Whiteness::of(&[&fit.residuals]).inflation.powi(2) * self.rounded(fit)
     }
 
     /// Standard deviation of the noise well before the pulse, over the pulse's height, at least [`DIGITS`];
     /// and the error that rounding adds to the mean baseline.
-    fn noise(&self) -> (f64, f64) {
+    pub(super) fn noise(&self) -> (f64, f64) {
         let begins = -0.5 - self.delay();
         let before = &self.values[..self.times.partition_point(|t| *t < begins)];
         let scatter = if before.len() < 8 { 0.0 } else { scatter(before) };
@@ -304,16 +330,9 @@ impl Samples<'_> {
         first: Option<usize>,
     ) -> Option<FittedPulse> {
         let scale: Vec<f64> = start.iter().map(|p| p.abs().max(0.1)).collect();
-        let (n, likely) = (self.times.len(), if model == ContactModel::PowerLaw { &LIKELY[..] } else { &[] });
-        let residuals = |p: &[f64], out: &mut [f64]| match self.model(model, p, &self.times, first) {
-            Some(values) => {
-                out.iter_mut().zip(&self.values).zip(values).for_each(|((r, v), m)| *r = v - m);
-                let exponents = likely.iter().zip(p.iter().skip(5));
-                out[n..].iter_mut().zip(exponents).for_each(|(r, (l, p))| *r = noise * (p - l.0) / l.1);
-            }
-            None => out.fill(f64::NAN),
-        };
-        let mut fit = least_squares(residuals, n + likely.len(), start, &scale).ok()?;
+        let n = self.times.len();
+        let rows = n + model.unlikely(start, noise).len();
+        let mut fit = least_squares(self.residuals(model, noise, first), rows, start, &scale).ok()?;
         fit.residuals.truncate(n);
         let whiteness = Whiteness { p_value: None, inflation: 1.0 };
         fit.converged.then_some(FittedPulse {
@@ -323,7 +342,31 @@ impl Samples<'_> {
             widening: None,
             first,
             also: Vec::new(),
+            losses: Vec::new(),
         })
+    }
+
+    /// Residuals of the samples from a model, and behind them the distances of its exponents from their
+    /// prior means.
+    pub(super) fn residuals(
+        &self,
+        model: ContactModel,
+        noise: f64,
+        first: Option<usize>,
+    ) -> impl Fn(&[f64], &mut [f64]) {
+        let n = self.times.len();
+        // Baseline and velocity only scale a shape: that of the last other parameters is kept for them.
+        let last: RefCell<(Vec<f64>, Option<Vec<f64>>)> = RefCell::default();
+        move |p, out| {
+            let mut last = last.borrow_mut();
+            let of = [&p[..1], &p[3..]].concat();
+            if last.0 != of {
+                *last = (of, self.shape(model, p, &self.times, first));
+            }
+            let Some(shape) = &last.1 else { return out.fill(f64::NAN) };
+            out.iter_mut().zip(&self.values).zip(scaled(shape, p)).for_each(|((r, v), m)| *r = v - m);
+            out[n..].iter_mut().zip(model.unlikely(p, noise)).for_each(|(r, unlikely)| *r = unlikely);
+        }
     }
 
     /// A better guess of a contact of spring and damper, from a finer grid around a first one, on all
@@ -413,6 +456,11 @@ impl Samples<'_> {
     }
 }
 
+/// A shape with the baseline and velocity of these parameters.
+fn scaled(shape: &[f64], p: &[f64]) -> Vec<f64> {
+    shape.iter().map(|s| p[1] + p[2] * s).collect()
+}
+
 impl FittedPulse {
     fn loss_exponent(&self) -> f64 {
         self.fit.parameters.get(6).copied().unwrap_or(f64::NAN)
@@ -429,7 +477,7 @@ impl FittedPulse {
 
     /// Corrected Akaike criterion (`AICc`).
     pub fn aicc(&self) -> f64 {
-        aicc(self.fit.sum_of_squares(), self.fit.residuals.len(), self.fit.parameters.len())
+        aicc(self.fit.sum_of_squares(), self.fit.residuals.len(), self.determined())
     }
 
     /// Time at which the contact ends, in lengths of the pulse.

@@ -83,7 +83,7 @@ impl LowPass {
             } else {
                 (driven - (p * inside).exp()) / (s - p)
             };
-            r * sum * (p * after).exp()
+            if after > 0.0 { r * sum * (p * after).exp() } else { r * sum }
         };
         let sum: Complex64 = self.parts.iter().map(one).sum();
         sum * c

@@ -6,8 +6,9 @@ use super::ringing::Ringing;
 use super::{ContactModel, KelvinVoigt, LowPass};
 use crate::Estimate;
 use crate::converter::{rounding, step};
-use crate::mean::average;
+use crate::mean::{average, mixture};
 use crate::swings;
+use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::ops::Range;
 use vibro_record::code;
@@ -82,7 +83,7 @@ impl<'a> Normalised<'a> {
         let values = places.iter().map(|i| self.trace.values[*i] / self.height).collect();
         let (step, filter) = (self.step / self.length, self.filter.as_ref());
         let quantum = self.found.quantum / self.height;
-        Samples { step, filter, places, times, values, quantum, rings: None }
+        Samples { step, filter, places, times, values, quantum, rings: None, last: RefCell::default() }
     }
 
     /// The samples to be fitted: the pulse with a baseline on both sides, or only before it where the record
@@ -156,7 +157,36 @@ impl<'a> Normalised<'a> {
 
     /// A fit in SI units; without uncertainties unless the instrument is `known`.
     pub fn report(&self, fitted: &FittedPulse, mass: Option<f64>, known: bool) -> PulseFit {
-        let FittedPulse { model, fit, whiteness, widening, .. } = fitted;
+        let n = fitted.fit.residuals.len();
+        let of = |fit: &FittedPulse| self.parameters(fit, mass, known);
+        let mut parameters = of(fitted);
+        let losses: Vec<_> = fitted.losses.iter().map(|(weight, fit)| (weight, of(fit))).collect();
+        for (name, estimate) in parameters.iter_mut().filter(|_| !losses.is_empty()) {
+            let with = |(weight, all): &(&f64, BTreeMap<_, Estimate>)| {
+                let given: &Estimate = all.get(name)?;
+                Some((**weight, given.value, given.std.unwrap_or(f64::NAN).powi(2)))
+            };
+            let (mean, variance) = mixture(&losses.iter().filter_map(with).collect::<Vec<_>>());
+            *estimate = Estimate::new(mean, Some(variance.sqrt()), estimate.unit, n, estimate.method.clone());
+        }
+        PulseFit {
+            model: fitted.model,
+            residual: self.height * (fitted.fit.sum_of_squares() / n as f64).sqrt(),
+            aicc: fitted.aicc(),
+            whiteness: fitted.whiteness.p_value,
+            n,
+            parameters,
+        }
+    }
+
+    /// The parameters of a fit, in SI units.
+    fn parameters(
+        &self,
+        fitted: &FittedPulse,
+        mass: Option<f64>,
+        known: bool,
+    ) -> BTreeMap<&'static str, Estimate> {
+        let FittedPulse { model, fit, widening, .. } = fitted;
         let n = fit.residuals.len();
         let widened = widening.filter(|_| known).unwrap_or(f64::NAN);
         let estimate = |value: f64, std: f64, unit| {
@@ -205,14 +235,7 @@ impl<'a> Normalised<'a> {
         } else if *model != ContactModel::Yielding {
             follow("restitution", 1.0, "1", &|p| model.rebound(&p[1..]).map(|c| c.restitution));
         }
-        PulseFit {
-            model: *model,
-            residual: self.height * (fit.sum_of_squares() / n as f64).sqrt(),
-            aicc: fitted.aicc(),
-            whiteness: whiteness.p_value,
-            n,
-            parameters,
-        }
+        parameters
     }
 
     /// The samples, curves and residuals for a figure.

@@ -49,7 +49,19 @@ impl ContactModel {
             _ => None,
         }
     }
+
+    /// Distances of the exponents of a power law from their prior means, where one standard deviation of the
+    /// prior counts as one of the `noise`. Empty for the other models, whose exponents are fixed.
+    pub(super) fn unlikely(self, parameters: &[f64], noise: f64) -> Vec<f64> {
+        let exponents = if self == ContactModel::PowerLaw { &parameters[5..] } else { &[] };
+        exponents.iter().zip(LIKELY).map(|(p, (mean, std))| noise * (p - mean) / std).collect()
+    }
 }
+
+/// Prior mean and standard deviation of the exponents of spring and loss: from flat to pointed bodies for
+/// the spring (Johnson 1985, 5.3), from losses that hardly depend on the indentation to losses that grow
+/// with its square. Without losses only the prior determines the second.
+pub(super) const LIKELY: [(f64, f64); 2] = [(1.5, 0.5), (1.0, 0.75)];
 
 /// Damping ratio and frequency of a contact, the quantities derived from them, and the fitted models.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -60,7 +72,8 @@ pub struct PulseResult {
     /// Its undamped natural frequency in Hz.
     pub frequency: Estimate,
     /// Coefficient of restitution: velocity after over velocity before, with separation at zero force. Like
-    /// the velocity of approach and the duration, it comes from the preferred model where that gives it.
+    /// the velocity of approach and the duration, it is a mean over the likely models where the record
+    /// prefers another than spring and damper.
     pub restitution: Estimate,
     /// Stiffness in N/m; `None` without a mass.
     pub stiffness: Option<Estimate>,
@@ -72,6 +85,8 @@ pub struct PulseResult {
     pub duration: Estimate,
     /// The models fitted to the whole pulse; the first is the one of spring and damper.
     pub fits: Vec<PulseFit>,
+    /// The models without a fit.
+    pub unfitted: Vec<Unfitted>,
     /// Assumptions, and doubts that the record leaves.
     pub findings: Vec<Finding>,
     /// Curves for a figure.
@@ -136,21 +151,25 @@ impl PulseResult {
         self
     }
 
-    /// Takes restitution, duration and velocity of approach from the model that the record prefers, and adds
-    /// the spread between the supported models to their uncertainties. Where that model is not spring and
-    /// damper, a finding says so, and the values of spring and damper lose their uncertainties. `inflation`
-    /// enlarges uncertainties for correlated residuals of the best model: its square divides differences of
-    /// the criterion (Burnham & Anderson 2002, 2.5). `also` are further minima of the models.
+    /// Adds the spread between the supported models to the uncertainties of restitution, duration and
+    /// velocity of approach. Where the record prefers another model than spring and damper, they are means
+    /// over these models, a finding says so, and the values of spring and damper lose their uncertainties.
+    /// `inflation` enlarges uncertainties for correlated residuals of the best model: its square divides
+    /// differences of the criterion (Burnham & Anderson 2002, 2.5). `also` are further minima of the models.
     pub(super) fn led_by_best(&mut self, also: &[PulseFit], inflation: f64) -> Option<Finding> {
         let best = self.fits.iter().min_by(|a, b| a.aicc.total_cmp(&b.aicc))?;
         let behind = |fit: &PulseFit| (fit.aicc - best.aicc) / (inflation * inflation);
         let ahead = behind(&self.fits[0]);
         let (other, lower) = (ahead > NO_SUPPORT, self.fits[0].aicc - best.aicc);
         let lead = if other { best } else { &self.fits[0] };
-        // Model averaging (Burnham & Anderson 2002, eq. 4.9) of squares, about the value of the leading
-        // model. A model whose onset does not match the record has no values (NaN) and is left out.
-        let supported: Vec<&PulseFit> =
-            self.fits.iter().chain(also).filter(|fit| (-0.5 * behind(fit)).exp() > NEGLIGIBLE).collect();
+        // Model averaging (Burnham & Anderson 2002, eq. 4.9) of squares, about the value of spring and damper
+        // where that leads, else about the mean. A model whose onset does not match the record has no values
+        // (NaN) and is left out. So is, of a mean, the contact of Hertz, which is that of Hunt and Crossley
+        // without losses: no pulse shows that there are none.
+        let likely = |fit: &&PulseFit| {
+            (-0.5 * behind(fit)).exp() > NEGLIGIBLE && !(other && fit.model == ContactModel::Hertz)
+        };
+        let supported: Vec<&PulseFit> = self.fits.iter().chain(also).filter(likely).collect();
         let stated = |name: &str, own: Option<&Estimate>| {
             let led = lead.parameters.get(name)?;
             let of = |fit: &&PulseFit| {
@@ -158,10 +177,13 @@ impl PulseResult {
                 Some((-0.5 * behind(fit), fitted.value, fitted.std.unwrap_or(f64::NAN).powi(2)))
             };
             let (mean, variance) = mixture(&supported.iter().filter_map(of).collect::<Vec<_>>());
-            let std = variance.sqrt().hypot(mean - led.value).max(led.std.unwrap_or(f64::NAN));
+            let value = if other && !led.value.is_nan() { mean } else { led.value };
+            let std = variance.sqrt().hypot(mean - value).max(led.std.unwrap_or(f64::NAN));
             let own = own.filter(|_| !other).map(|own| own.method.clone());
-            let method = own.unwrap_or_else(|| format!("{}, {}", led.method, lead.model.name()));
-            Some(Estimate::new(led.value, Some(std), led.unit, led.n, method))
+            let averaged =
+                || format!("{}, mean over the likely models, best {}", led.method, lead.model.name());
+            let method = own.unwrap_or_else(averaged);
+            Some(Estimate::new(value, Some(std), led.unit, led.n, method))
         };
         let restitution = stated("restitution", Some(&self.restitution));
         let duration = stated("duration", Some(&self.duration));
@@ -198,6 +220,15 @@ pub struct PulseFit {
     pub n: usize,
     /// Parameters by name.
     pub parameters: BTreeMap<&'static str, Estimate>,
+}
+
+/// A model without a fit.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Unfitted {
+    /// The model.
+    pub model: ContactModel,
+    /// Why it has no fit.
+    pub reason: String,
 }
 
 /// A pulse and its fits, to be drawn.
@@ -273,6 +304,7 @@ pub(super) fn contact_estimates(
         initial_velocity: None,
         duration: estimate("s", &|c| c.duration())?,
         fits: Vec::new(),
+        unfitted: Vec::new(),
         findings: Vec::new(),
         picture: None,
     })

@@ -61,6 +61,10 @@ fn all_that_follows_from_a_pulse() {
     // The yielding spring finds no minimum, and free exponents are skipped, since spring and damper leaves
     // white residuals.
     assert_eq!(models, ["kelvin-voigt", "hertz", "hunt-crossley"]);
+    let unfitted: Vec<(&str, &str)> =
+        result.unfitted.iter().map(|u| (u.model.name(), u.reason.as_str())).collect();
+    let skipped = "not needed, spring and damper is clearly ahead";
+    assert_eq!(unfitted, [("yielding", "the fit does not converge"), ("power-law", skipped)]);
     assert!(result.fits[1..].iter().all(|f| f.aicc > result.fits[0].aicc + 10.0), "{:?}", result.fits);
 }
 
@@ -247,7 +251,10 @@ fn the_contact_of_hunt_and_crossley_is_preferred_where_it_is_one() {
     assert!((alpha.value - 0.3).abs() < 5.0 * alpha.std.unwrap(), "{alpha:?}");
     // That model leads, and values that only spring and damper gives have no uncertainty.
     let restitution = &result.restitution;
-    assert_eq!(restitution.value, result.fits[2].parameters["restitution"].value);
+    // It is a mean, and other exponents are likely, too.
+    let own = &result.fits[2].parameters["restitution"];
+    let std = restitution.std.unwrap();
+    assert!((restitution.value - own.value).abs() < std && std > own.std.unwrap(), "{restitution:?} {own:?}");
     assert!(
         (restitution.value - contact.restitution).abs() < 5.0 * restitution.std.unwrap(),
         "{restitution:?}"
@@ -271,6 +278,30 @@ fn contacts_of_a_yielding_spring_and_of_other_exponents_keep_their_restitution()
             .map(|f| f.code.as_ref())
             .collect();
         assert_eq!(doubts, ["pulse-other-model"]);
+    }
+}
+
+/// A loss of the exponent n − 1 only moves the pulse, to first order. So the loss is hardly determined, which
+/// the uncertainty must show; and no other loss may be taken for certain.
+#[test]
+fn a_loss_that_only_moves_the_pulse_is_covered() {
+    let mut noise = Noise::new(17);
+    for loss in [0.1, 0.3] {
+        let contact = Rebound::power_law(loss, 1.5, 0.5).unwrap();
+        let times: Vec<f64> = (0..240).map(|i| f64::from(i) * DT - 80.4e-6).collect();
+        let shape = contact.decelerations(60e-6, None, &times);
+        let peak = shape.iter().copied().fold(0.0, f64::max);
+        let values = shape.iter().map(|v| v + 0.01 * peak * noise.normal()).collect();
+        let options = PulseOptions { instrument: Instrument::Flat, mass: None };
+        let result = pulse(&trace(values, "m/s²"), &options).unwrap();
+        assert!(says(&result, "pulse-other-model"), "{:?}", result.findings);
+        let velocity = result.initial_velocity.as_ref().unwrap();
+        let truths = [(&result.restitution, contact.restitution), (&result.duration, 60e-6), (velocity, 1.0)];
+        for (estimate, truth) in truths {
+            let std = estimate.std.unwrap();
+            assert!((estimate.value - truth).abs() < 4.0 * std, "{loss} {truth} {estimate:?}");
+        }
+        assert!(result.restitution.std.unwrap() > 0.01, "{:?}", result.restitution);
     }
 }
 

@@ -1,0 +1,236 @@
+//! A power law of contact with each of the losses that the samples allow.
+
+use super::ContactModel;
+use super::fit::{FittedPulse, Samples};
+use super::result::LIKELY;
+use crate::mean::mixture;
+use crate::residuals::Whiteness;
+use vibro_math::{Minimum, minimise};
+use vibro_record::sort_by_number;
+
+/// Index of the loss α among the parameters.
+const LOSS: usize = 4;
+
+/// Index of the exponent of the spring.
+const EXPONENT: usize = 5;
+
+/// Index of the exponent of the loss.
+const LOSS_EXPONENT: usize = 6;
+
+/// A likelihood below e⁻⁸ of the largest ends a series of losses.
+const NEGLIGIBLE: f64 = 8.0;
+
+/// As [`NEGLIGIBLE`], of the first loss of a series, which is a guess.
+const FAR: f64 = 5.0 * NEGLIGIBLE;
+
+/// Most fits of a series to either side of its first loss.
+const MOST: usize = 32;
+
+/// Least and most change of the logarithm of the likelihood between neighbouring losses: outside of it the
+/// next step is doubled, the last one halved.
+const CHANGE: [f64; 2] = [0.4, 1.6];
+
+/// Largest loss of a series: less than a fifth of the speed is left.
+const LARGEST: f64 = 3.0;
+
+/// Part of the sum of squares, and of the parameters, by which the last step of a fit of a series changes
+/// them.
+const GAIN: f64 = 1e-4;
+
+/// Least first guess of the exponent of the loss: far below it no residual depends on its logarithm.
+const LEAST_EXPONENT: f64 = 0.02;
+
+/// A small loss, and exponents on either side of n − 1: first guesses beside the free fits.
+const GUESSES: [(f64, f64); 2] = [(0.05, 0.4), (0.05, 1.5)];
+
+/// Series whose exponents of the loss differ by less than this at one loss are one.
+const APART: f64 = 0.1;
+
+/// Exponent of the loss below which the force rises to more than a quarter of its scale within a hundredth of
+/// the contact.
+const STEEP: f64 = 0.3;
+
+impl Samples<'_> {
+    /// A power law `fitted` with free parameters, with the likeliest loss instead, and with the fits of all
+    /// likely losses. `None` where the samples prefer a loss below 0, as those of a ringing sensor may.
+    ///
+    /// To first order a loss with the exponent s = n − 1 only moves the pulse to an earlier time, since
+    /// zⁿ⁻¹z′ is proportional to the rate of zⁿ. So loss and exponent determine each other along a curve, and
+    /// linear propagation fails. With a given loss the other parameters are nearly normal. They are fitted
+    /// for series of losses α ≥ 0, each of the weight exp(−Q/2σ²) √|C| |dR/dα| Δα with the sum of squares Q
+    /// and the cofactor C, for a uniform prior of the restitution R (nested Laplace approximation, Rue,
+    /// Martino & Chopin, J. R. Statist. Soc. B 71 (2009) 319).
+    pub(super) fn over_losses(&self, fitted: &FittedPulse) -> Option<FittedPulse> {
+        let noise = self.noise().0;
+        let free = std::iter::once(fitted).chain(&fitted.also).map(|fit| fit.fit.parameters.clone());
+        let guesses = GUESSES.iter().map(|(loss, exponent)| {
+            let mut guess = fitted.fit.parameters.clone();
+            (guess[LOSS], guess[LOSS_EXPONENT]) = (*loss, *exponent);
+            guess
+        });
+        let starts = free.filter(|p| p[LOSS] > 0.0).chain(guesses);
+        let mut firsts: Vec<_> = starts.filter_map(|p| self.with_loss(&p, p[LOSS], noise)).collect();
+        sort_by_number(&mut firsts, |fit| fit.cost(noise));
+        let best = firsts.first()?;
+        let (least, unit) = (best.cost(noise), 2.0 * best.fit.variance() * self.dispersion(&best.fit));
+        let step = fitted.fit.std(LOSS).clamp(1e-4, 0.1);
+        let mut all: Vec<Vec<FittedPulse>> = Vec::new();
+        for first in firsts {
+            let known = all.iter().any(|series| {
+                let off =
+                    |fit: &FittedPulse, i: usize| (fit.fit.parameters[i] - first.fit.parameters[i]).abs();
+                let near = series.iter().min_by(|a, b| off(a, LOSS).total_cmp(&off(b, LOSS)));
+                near.is_some_and(|near| off(near, LOSS_EXPONENT) < APART)
+            });
+            if !known && first.cost(noise) - least < FAR * unit {
+                all.push(self.series(&first, (least, unit), step, noise));
+            }
+        }
+        let weighted = |series: Vec<FittedPulse>| {
+            let losses: Vec<f64> = series.iter().map(|fit| fit.fit.parameters[LOSS]).collect();
+            let width = |i: usize| losses[(i + 1).min(losses.len() - 1)] - losses[i.saturating_sub(1)];
+            let weight = |(i, fit): (usize, FittedPulse)| {
+                let cofactor = fit.fit.cofactor.clone().remove_row(LOSS).remove_column(LOSS);
+                let prior = (0.5 * width(i) * slope(&fit.fit.parameters)).abs().max(f64::MIN_POSITIVE);
+                (-fit.cost(noise) / unit + 0.5 * cofactor.determinant().ln() + prior.ln(), fit)
+            };
+            series.into_iter().enumerate().map(weight).collect::<Vec<_>>()
+        };
+        let losses: Vec<(f64, FittedPulse)> = all.into_iter().flat_map(weighted).collect();
+        let best = losses.iter().min_by(|(_, a), (_, b)| a.cost(noise).total_cmp(&b.cost(noise)))?;
+        let best = best.1.clone();
+        let known = best.cost(noise) - fitted.cost(noise) <= NEGLIGIBLE * unit;
+        let best = self.judged(FittedPulse { losses, ..best }, false);
+        (known && best.widening.is_some()).then_some(best)
+    }
+
+    /// The fits of a series of rising losses around that of the `first`. A change of the sum of squares by
+    /// `unit` divides the likelihood by e; `least` is the smallest one known.
+    fn series(
+        &self,
+        first: &FittedPulse,
+        (mut least, unit): (f64, f64),
+        step: f64,
+        noise: f64,
+    ) -> Vec<FittedPulse> {
+        let mut side = |direction: f64| {
+            let (mut by, mut side) = (step, vec![first.clone()]);
+            for _ in 0..MOST {
+                let from = &side[side.len() - 1];
+                let loss = (from.fit.parameters[LOSS] + direction * by).max(0.0);
+                let next = self.with_loss(&continued(&side, loss), loss, noise);
+                let next = next.or_else(|| self.with_loss(&from.fit.parameters, loss, noise));
+                let (before, after) = (from.cost(noise), next.as_ref().map(|next| next.cost(noise)));
+                let change = after.map_or(f64::INFINITY, |after| (after - before).abs() / unit);
+                // Between two minima over the onset or the exponent, no step is small enough. Steps may be
+                // longer where the likelihood is small.
+                if change > CHANGE[1] + (before - least) / unit && by > step / 16.0 {
+                    by /= 2.0;
+                    continue;
+                }
+                let (Some(next), Some(after)) = (next, after) else { break };
+                if change < CHANGE[0] {
+                    by *= 2.0;
+                }
+                least = least.min(after);
+                side.push(next);
+                let unlikely = after > before && after - least > NEGLIGIBLE * unit;
+                if loss == 0.0 || loss > LARGEST || unlikely {
+                    break;
+                }
+            }
+            side
+        };
+        let (above, below) = (side(1.0), side(-1.0));
+        below.into_iter().skip(1).rev().chain(above).collect()
+    }
+
+    /// The fit of the other parameters with a given loss.
+    fn with_loss(&self, from: &[f64], loss: f64, noise: f64) -> Option<FittedPulse> {
+        let fitted = |start: &[f64]| self.given_loss(start, loss, noise);
+        let mut best = fitted(from)?;
+        // The force of a small exponent of the loss rises between two samples. Each interval between samples
+        // then has a minimum of its own.
+        for side in [-1.0, 1.0] {
+            while self.filter.is_none() && best.fit.parameters[LOSS_EXPONENT] < STEEP {
+                let mut start = best.fit.parameters.clone();
+                start[0] += side * self.step;
+                let next = fitted(&start).filter(|next| next.cost(noise) < best.cost(noise));
+                let Some(next) = next else { break };
+                best = next;
+            }
+        }
+        Some(best)
+    }
+
+    /// The fit of the other parameters from these.
+    fn given_loss(&self, start: &[f64], loss: f64, noise: f64) -> Option<FittedPulse> {
+        let model = ContactModel::PowerLaw;
+        // The exponent of the loss has no values below 0: its logarithm is fitted.
+        let whole = |of: &[f64]| [&of[..LOSS], &[loss, of[LOSS], of[LOSS + 1].exp()]].concat();
+        let mut begin = [&start[..LOSS], &start[EXPONENT..]].concat();
+        begin[LOSS + 1] = begin[LOSS + 1].max(LEAST_EXPONENT).ln();
+        let scale: Vec<f64> = begin.iter().map(|p| p.abs().max(0.1)).collect();
+        let (n, residuals) = (self.times.len(), self.residuals(model, noise, None));
+        let residuals = |of: &[f64], out: &mut [f64]| residuals(&whole(of), out);
+        let fit = minimise(residuals, n + LIKELY.len(), &begin, &scale, Some(GAIN));
+        let mut fit = fit.and_then(Minimum::fit).ok()?;
+        fit.residuals.truncate(n);
+        fit.parameters = whole(&fit.parameters);
+        let exponent = fit.parameters[LOSS_EXPONENT];
+        fit.cofactor.row_mut(LOSS + 1).scale_mut(exponent);
+        fit.cofactor.column_mut(LOSS + 1).scale_mut(exponent);
+        fit.cofactor = fit.cofactor.insert_row(LOSS, 0.0).insert_column(LOSS, 0.0);
+        let whiteness = Whiteness { p_value: None, inflation: 1.0 };
+        let (also, losses) = (Vec::new(), Vec::new());
+        let converged = fit.converged;
+        converged.then_some(FittedPulse { model, fit, whiteness, widening: None, first: None, also, losses })
+    }
+}
+
+impl FittedPulse {
+    /// Effective number of parameters: an exponent counts by the part of its prior variance that the samples
+    /// remove (Spiegelhalter et al., J. R. Statist. Soc. B 64 (2002) 583).
+    pub(super) fn determined(&self) -> f64 {
+        let known = |(i, (_, std)): (usize, &(f64, f64))| {
+            let of = |(weight, fit): &(f64, FittedPulse)| {
+                (*weight, fit.fit.parameters[EXPONENT + i], fit.fit.covariance(EXPONENT + i, EXPONENT + i))
+            };
+            let (_, variance) = mixture(&self.losses.iter().map(of).collect::<Vec<_>>());
+            (variance / (std * std)).min(1.0)
+        };
+        let unknown = if self.losses.is_empty() { 0.0 } else { LIKELY.iter().enumerate().map(known).sum() };
+        self.fit.parameters.len() as f64 - unknown
+    }
+
+    /// Sum of squares of the residuals, and of the distances of exponents from their prior means, where one
+    /// standard deviation of the prior counts as one of the `noise`.
+    fn cost(&self, noise: f64) -> f64 {
+        let unlikely = self.model.unlikely(&self.fit.parameters, noise);
+        self.fit.sum_of_squares() + unlikely.iter().map(|u| u * u).sum::<f64>()
+    }
+}
+
+/// Parameters at a `loss`, on a straight line through the last two of a series.
+fn continued(series: &[FittedPulse], loss: f64) -> Vec<f64> {
+    let of = |fit: &FittedPulse| fit.fit.parameters.clone();
+    match series {
+        [.., before, last] => {
+            let (before, last) = (of(before), of(last));
+            let part = (loss - last[LOSS]) / (last[LOSS] - before[LOSS]);
+            last.iter().zip(&before).map(|(last, before)| last + part * (last - before)).collect()
+        }
+        _ => series.last().map_or_else(Vec::new, of),
+    }
+}
+
+/// dR/dα at given exponents.
+fn slope(parameters: &[f64]) -> f64 {
+    // The integration is good to 1e-5 of R.
+    let step = 1e-3;
+    let restitution = |loss: f64| {
+        let shape = [loss, parameters[EXPONENT], parameters[LOSS_EXPONENT]];
+        ContactModel::PowerLaw.rebound(&shape).map_or(f64::NAN, |contact| contact.restitution)
+    };
+    (restitution(parameters[LOSS] + step) - restitution(parameters[LOSS])) / step
+}
