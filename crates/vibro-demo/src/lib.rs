@@ -40,25 +40,25 @@ pub const DEMOS: [Demo; 4] = [
     Demo {
         name: "two_mass_rig",
         about: "stepped sweeps of two masses striking each other, against the model (240 spectra)",
-        campaign: include_str!("../../../examples/two_mass_rig/campaign.toml"),
+        campaign: include_str!("campaigns/two_mass_rig.toml"),
         recordings: two_mass_rig::recordings,
     },
     Demo {
         name: "bench",
         about: "a mass on a spring, shaken and let go, and a contact pulse",
-        campaign: include_str!("../../../examples/bench/campaign.toml"),
+        campaign: include_str!("campaigns/bench.toml"),
         recordings: bench::recordings,
     },
     Demo {
         name: "drop_test",
         about: "a ball that drops and bounces, and a contact circuit",
-        campaign: include_str!("../../../examples/drop_test/campaign.toml"),
+        campaign: include_str!("campaigns/drop_test.toml"),
         recordings: drop_test::recordings,
     },
     Demo {
         name: "hammer_drill",
         about: "a hammer drill under a laser vibrometer (25 MB)",
-        campaign: include_str!("../../../examples/hammer_drill/campaign.toml"),
+        campaign: include_str!("campaigns/hammer_drill.toml"),
         recordings: hammer_drill::recordings,
     },
 ];

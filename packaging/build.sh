@@ -1,0 +1,24 @@
+#!/usr/bin/env bash
+# Builds what a release has from one machine into a folder, and tries the programs that run here: build.sh FOLDER
+# PROGRAMS are the targets of `vibro`, WHEELS those of the Python package, `sdist` among them for its sources. The first of each should run here.
+set -euo pipefail
+mkdir -p "$1"
+to=$(cd "$1" && pwd)
+cd "$(dirname "$0")/.."
+python=$(command -v python3 || command -v python)
+
+# The C library of the toolchain for each, and its Rust.
+for target in $PROGRAMS $WHEELS; do
+  [ "$target" = sdist ] || rustup --quiet target add "$target"
+done
+
+# The program that prints the manual page for those that do not run here.
+speaker=()
+for target in $PROGRAMS; do
+  "$python" packaging/archive.py "$target" "$to" ${speaker[@]+"${speaker[@]}"}
+  speaker=("target/${PROGRAMS%% *}/release/vibro")
+done
+for target in $WHEELS; do
+  "$python" packaging/wheel.py "$target" "$to"
+done
+"$python" packaging/smoke.py "$to"
