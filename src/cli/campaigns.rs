@@ -22,7 +22,7 @@ use std::path::{Path, PathBuf};
 /// run keeps the answers whose inputs are the same.
 #[derive(Debug, Serialize, Deserialize)]
 pub struct Campaigns {
-    campaigns: Vec<NamedCampaign>,
+    named: Vec<NamedCampaign>,
     /// Where they lie: it changes no number.
     place: CampaignPlaces,
     /// Folder of the folders for results.
@@ -109,7 +109,7 @@ impl Campaigns {
             NamedCampaign { name, sha256 }
         });
         let place = CampaignPlaces { paths: paths.to_vec(), allow_outside };
-        Ok(Campaigns { campaigns: named.collect(), place, out: out.to_owned(), again })
+        Ok(Campaigns { named: named.collect(), place, out: out.to_owned(), again })
     }
 
     /// Runs all of them, or a part, and prints what came of it. Gives the exit code: 1 if one has no answer.
@@ -164,7 +164,7 @@ impl Study for Campaigns {
     }
 
     fn cells(&self) -> u64 {
-        self.campaigns.len() as u64
+        self.named.len() as u64
     }
 
     /// A campaign takes all cores.
@@ -182,7 +182,7 @@ impl Study for Campaigns {
 
     fn cell(&self, number: u64) -> Result<Vec<u8>> {
         let CampaignPlaces { paths, allow_outside } = &self.place;
-        let (path, name) = (&paths[number as usize], &self.campaigns[number as usize].name);
+        let (path, name) = (&paths[number as usize], &self.named[number as usize].name);
         let run = Run::into_folder(path.clone(), self.out.join(name), *allow_outside, self.again);
         let ran = Ran {
             campaign: path.clone(),

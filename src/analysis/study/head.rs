@@ -101,8 +101,12 @@ fn arithmetic() -> String {
     let mut hash = Sha256::new();
     for i in 1..500 {
         let x = f64::from(i) / 501.0;
-        functions.iter().for_each(|function| hash.update(function(x).to_le_bytes()));
-        functions[..6].iter().for_each(|function| hash.update(function(37.0 * x).to_le_bytes()));
+        for function in functions {
+            hash.update(function(x).to_le_bytes());
+        }
+        for function in &functions[..6] {
+            hash.update(function(37.0 * x).to_le_bytes());
+        }
     }
     hexadecimal(&hash.finalize().into())[..8].to_owned()
 }

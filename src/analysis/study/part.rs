@@ -136,10 +136,10 @@ impl Present {
         }
         let mut bytes = Vec::new();
         while there.next(&mut bytes)? {}
-        Ok(match there.whole {
-            true => Present::Whole,
-            false => Present::Cells { kept: there.read, end: there.end, hash: Box::new(there.hash) },
-        })
+        if there.whole {
+            return Ok(Present::Whole);
+        }
+        Ok(Present::Cells { kept: there.read, end: there.end, hash: Box::new(there.hash) })
     }
 }
 

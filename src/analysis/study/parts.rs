@@ -119,14 +119,14 @@ impl Parts {
             let study_of = PartHead { shard: parts.head.shard, ..head.clone() };
             if shard.of != parts.head.shard.of {
                 let (n, m) = (shard.of, parts.head.shard.of);
-                return Err(foreign(&path, format!("one of {n} parts, and {first} is one of {m}")));
+                return Err(foreign(&path, &format!("one of {n} parts, and {first} is one of {m}")));
             }
             if let Some(difference) = study_of.difference(&parts.head) {
-                return Err(foreign(&path, format!("of another study than {first}: {difference}")));
+                return Err(foreign(&path, &format!("of another study than {first}: {difference}")));
             }
             let earlier = parts.whole.get(&shard.number).map(|part| &part.path);
             if let Some(earlier) = earlier.or(parts.begun.get(&shard.number).map(|begun| &begun.0)) {
-                return Err(foreign(&path, format!("part {shard}, as {} is", shown(earlier))));
+                return Err(foreign(&path, &format!("part {shard}, as {} is", shown(earlier))));
             }
             if reader.whole {
                 parts.whole.insert(shard.number, Part { path, content, cells_from });
@@ -182,7 +182,7 @@ impl Parts {
 }
 
 /// Error of a part that cannot be merged with the others.
-fn foreign(path: &Path, what: String) -> Error {
+fn foreign(path: &Path, what: &str) -> Error {
     Error::input(Place::file(path), format!("this is {what}"), "parts of one study, each once")
         .hint("move the one that does not belong to them to another folder")
 }
