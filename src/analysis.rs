@@ -39,7 +39,7 @@ pub(crate) mod headline;
 mod page;
 
 pub use answer::Answer;
-pub(crate) use answer::unwritten;
+pub(crate) use answer::{LEFT_OUT, unwritten};
 pub use evidence::Evidence;
 pub use kept::AnswerCache;
 pub use kinds::{errors, files, open, open_in, parse};

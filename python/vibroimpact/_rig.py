@@ -17,20 +17,22 @@ class Rig(RigQuestions):
 
     ``Rig(m1=2.0, gap=0.5e-3)`` states masses ``m1``, ``m2`` in kg, springs ``k1``, ``k2`` in N/m, dampers ``c1``,
     ``c2`` in N s/m, ``gap`` in m and ``restitution``; tables such as ``contact={"stiffness": 1e6}`` are
-    dictionaries. Keys that are left out are those of the thesis' rig. ``Rig.from_file`` reads a TOML file.
+    dictionaries. ``Rig("tool.toml", gap=0.5e-3)`` takes the keys of a TOML file, with some replaced. Keys that are
+    left out are those of the thesis' rig: m1 0.125, m2 0.094, k1 135, k2 128, c1 0.1, c2 0.1, gap 1e-3, restitution
+    0.7.
     """
 
-    def __init__(self, **keys: float | str | Mapping[str, float | str]) -> None:
+    def __init__(
+        self, file: str | PathLike[str] | None = None, /, **keys: float | str | Mapping[str, float | str]
+    ) -> None:
         self.keys = keys
         """The keys that were stated."""
-        self._file: str | None = None
+        self._file: str | None = None if file is None else fspath(file)
 
     @classmethod
     def from_file(cls, path: str | PathLike[str], **keys: float | str | Mapping[str, float | str]) -> Rig:
-        """The rig of a TOML file, with some keys replaced."""
-        rig = cls(**keys)
-        rig._file = fspath(path)
-        return rig
+        """The rig of a TOML file, with some keys replaced: ``Rig(path, …)``."""
+        return cls(path, **keys)
 
     def _ask(self, command: Sequence[str], options: Mapping[str, Any]) -> Answer:
         return ask(command, [self._file] if self._file else [], {"set": self._stated(), **options})

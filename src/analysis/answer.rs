@@ -114,6 +114,9 @@ pub(crate) fn unwritten(error: serde_json::Error) -> Error {
     Error::refused(format!("the result cannot be written as JSON: {error}"))
 }
 
+/// Code of the finding that a record gave no answer.
+pub const LEFT_OUT: &str = "left-out";
+
 /// Finding that a record gave no answer, under this code, with the reason and the hint of the error.
 pub fn left_out(code: &'static str, error: &Error) -> Finding {
     let found = Finding::caution(code).name("why", error.why().trim_end_matches('.'));

@@ -1,6 +1,6 @@
 //! The run of a campaign: measures the records and collects their answers.
 
-use super::answer::{Answer, left_out, unwritten};
+use super::answer::{Answer, LEFT_OUT, left_out, unwritten};
 use super::headline::of_record;
 use super::kept::{AnswerCache, digest};
 use super::kind::{Analysis, AnalysisKind, name_of};
@@ -59,7 +59,7 @@ impl<'a> Job<'a> {
 
     /// Adds a finding that a record is left out, and keeps the first error that is no refusal.
     fn leave_out(&mut self, record: &str, error: Error) {
-        self.found.add(record, [left_out("left-out", &error)]);
+        self.found.add(record, [left_out(LEFT_OUT, &error)]);
         if error.refusal().is_none() {
             self.failed.get_or_insert(error);
         }
@@ -207,7 +207,7 @@ impl<'a> Job<'a> {
             }
             let found = self.kept.or_make(inputs, &files, || {
                 match self.measured(entry, &name, &path, |source| measure(entry, source)) {
-                    Err(error) if error.refusal().is_some() => Ok(Err(left_out("left-out", &error))),
+                    Err(error) if error.refusal().is_some() => Ok(Err(left_out(LEFT_OUT, &error))),
                     found => found.map(Ok),
                 }
             });

@@ -1,7 +1,7 @@
 //! The kinds of analysis, one for each section of a campaign file, and what applies each of them to all of
 //! its tables. A table is one `[[section]]` entry.
 
-use super::answer::left_out;
+use super::answer::{LEFT_OUT, left_out};
 use super::entries::{check, entries};
 use super::job::Job;
 #[cfg(feature = "cli")]
@@ -186,7 +186,7 @@ fn records_of<A: Analysis>(campaign: &Campaign) -> Result<Vec<NamedFile>> {
 /// Runs the analysis of all tables of a kind; tables with a fault give findings.
 fn run_all<A: Analysis>(job: &mut Job<'_>) -> Result<()> {
     for fault in job.campaign.faults().iter().filter(|fault| fault.section == A::SECTION) {
-        job.found.add(&fault.name, [left_out("left-out", &fault.error)]);
+        job.found.add(&fault.name, [left_out(LEFT_OUT, &fault.error)]);
     }
     let entries = entries::<A>(job.campaign)?;
     if A::TOGETHER && !entries.is_empty() {

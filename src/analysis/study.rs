@@ -40,9 +40,9 @@ pub trait Study: Sync {
         true
     }
 
-    /// Whether a cell has an answer. Default: yes.
-    fn answers(&self, _cell: &[u8]) -> bool {
-        true
+    /// What a cell without an answer says; `None` for a cell that has one, as all have by default.
+    fn complaint(&self, _cell: &[u8]) -> Option<String> {
+        None
     }
 
     /// Computes a cell: what [`Study::answer`] needs of it.

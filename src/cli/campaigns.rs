@@ -5,24 +5,25 @@ use super::print::{self, folder_of};
 use super::study::Shared;
 use crate::analysis::Answer;
 use crate::analysis::study::{Cells, Computed, Study};
-use crate::analysis::unwritten;
+use crate::analysis::{LEFT_OUT, unwritten};
 use crate::error::{Error, Result};
 use crate::proposal::Proposal;
-use crate::read::{Folder, hexadecimal};
-use crate::record::shown;
+use crate::read::Folder;
+use crate::record::{Severity, shown};
 use crate::report::Cell;
 use crate::report::files::{self, Names};
 use crate::report::layout::table;
+use crate::report::words::{Voice, sentences};
 use serde::{Deserialize, Serialize};
 use serde_json::json;
-use sha2::{Digest as _, Sha256};
 use std::path::{Path, PathBuf};
 
 /// Campaigns to run, each a cell. What lies in their folders may change, so a part begins anew each time; a
 /// run keeps the answers whose inputs are the same.
 #[derive(Debug, Serialize, Deserialize)]
 pub struct Campaigns {
-    named: Vec<NamedCampaign>,
+    /// Names of their folders for results.
+    names: Vec<String>,
     /// Where they lie: it changes no number.
     place: CampaignPlaces,
     /// Folder of the folders for results.
@@ -30,14 +31,6 @@ pub struct Campaigns {
     out: PathBuf,
     #[serde(skip)]
     again: bool,
-}
-
-/// A campaign by the name of its folder for results.
-#[derive(Debug, Serialize, Deserialize)]
-struct NamedCampaign {
-    name: String,
-    /// Of its file; `None` for a folder without one.
-    sha256: Option<String>,
 }
 
 /// Where campaigns lie.
@@ -55,7 +48,12 @@ struct Ran {
     /// Whether any of its records has an answer.
     answered: bool,
     files: usize,
-    findings: usize,
+    /// Numbers of findings by severity.
+    doubts: usize,
+    cautions: usize,
+    notes: usize,
+    /// Records that were left out, each with the reason.
+    left_out: Vec<String>,
     /// Why nothing was written.
     error: Option<String>,
 }
@@ -104,12 +102,8 @@ impl Campaigns {
                 return Err(Error::usage(found, "another folder for results").hint("--out results"));
             }
         }
-        let named = files.iter().zip(names).map(|(file, name)| {
-            let sha256 = std::fs::read(file).ok().map(|text| hexadecimal(&Sha256::digest(text).into()));
-            NamedCampaign { name, sha256 }
-        });
         let place = CampaignPlaces { paths: paths.to_vec(), allow_outside };
-        Ok(Campaigns { named: named.collect(), place, out: out.to_owned(), again })
+        Ok(Campaigns { names, place, out: out.to_owned(), again })
     }
 
     /// Runs all of them, or a part, and prints what came of it. Gives the exit code: 1 if one has no answer.
@@ -150,7 +144,9 @@ fn answer(rows: &[Ran]) -> Result<Answer> {
             ("folder", "", &|ran| ran.folder.as_str().into()),
             ("answered", "", &|ran| ran.answered.into()),
             ("files", "", &|ran| ran.files.into()),
-            ("findings", "", &|ran| ran.findings.into()),
+            ("doubts", "", &|ran| ran.doubts.into()),
+            ("cautions", "", &|ran| ran.cautions.into()),
+            ("left out", "", &|ran| ran.left_out.len().into()),
             ("error", "", &|ran| ran.error.as_deref().map_or(Cell::Missing, Into::into)),
         ],
     );
@@ -164,7 +160,7 @@ impl Study for Campaigns {
     }
 
     fn cells(&self) -> u64 {
-        self.named.len() as u64
+        self.names.len() as u64
     }
 
     /// A campaign takes all cores.
@@ -176,27 +172,42 @@ impl Study for Campaigns {
         false
     }
 
-    fn answers(&self, cell: &[u8]) -> bool {
-        read(cell).is_ok_and(|ran| ran.answered)
+    fn complaint(&self, cell: &[u8]) -> Option<String> {
+        let ran = read(cell).ok().filter(|ran| !ran.answered)?;
+        let why = ran.error.unwrap_or_else(|| "no record has an answer".to_owned());
+        Some(format!("{}: {why}", shown(ran.campaign)))
     }
 
     fn cell(&self, number: u64) -> Result<Vec<u8>> {
         let CampaignPlaces { paths, allow_outside } = &self.place;
-        let (path, name) = (&paths[number as usize], &self.named[number as usize].name);
+        let (path, name) = (&paths[number as usize], &self.names[number as usize]);
         let run = Run::into_folder(path.clone(), self.out.join(name), *allow_outside, self.again);
         let ran = Ran {
             campaign: path.clone(),
             folder: name.clone(),
             answered: false,
             files: 0,
-            findings: 0,
+            doubts: 0,
+            cautions: 0,
+            notes: 0,
+            left_out: Vec::new(),
             error: None,
         };
         let ran = match run.results(&()) {
             Ok(results) => {
                 let outcome = results.outcome;
-                let (files, findings) = (outcome.files.len(), outcome.answer.findings.len());
-                Ran { answered: outcome.answered, files, findings, ..ran }
+                let findings = &outcome.answer.findings;
+                let count = |severity| findings.iter().filter(|found| found.1.severity() == severity).count();
+                let left_out = findings.iter().filter(|found| found.1.code == LEFT_OUT).cloned();
+                Ran {
+                    answered: outcome.answered,
+                    files: outcome.files.len(),
+                    doubts: count(Severity::Doubt),
+                    cautions: count(Severity::Caution),
+                    notes: count(Severity::Note),
+                    left_out: sentences(&left_out.collect::<Vec<_>>(), Voice::Campaign, false),
+                    ..ran
+                }
             }
             Err(error) => Ran { error: Some(error.reason()), ..ran },
         };

@@ -93,7 +93,7 @@ impl Shared {
         let work = |bar: &indicatif::ProgressBar| write_part(folder, self.study(), &head, bar);
         let part = print::busy(json, self.study().what(), work)?;
         let (cells, file) = (head.cells(), head.file());
-        let WrittenPart { path, kept, cut, unanswered } = part;
+        let WrittenPart { path, kept, cut, complaints } = part;
         if json {
             let PartHead { shard, fingerprint, .. } = head;
             stdout::object(json!({
@@ -102,7 +102,7 @@ impl Shared {
                 "cells": cells,
                 "kept": kept,
                 "cut": cut,
-                "unanswered": unanswered,
+                "unanswered": complaints,
                 "fingerprint": fingerprint,
                 "files": [file],
             }))?;
@@ -111,14 +111,16 @@ impl Shared {
                 complain::line(&format!("{kept} of {cells} cells were there"));
             }
             if cut > 0 {
-                complain::line(&format!("{cut} bytes behind them were no whole cells and are replaced"));
+                complain::line(&format!(
+                    "{cut} bytes behind them were damaged or half a cell: computed anew"
+                ));
             }
-            if unanswered > 0 {
-                complain::line(&format!("{unanswered} of {cells} cells have no answer"));
+            for said in &complaints {
+                complain::line(said);
             }
             stdout::text(&format!("{cells} of {} cells in {}\n", head.all, shown(&path)))?;
         }
-        Ok(u8::from(unanswered > 0))
+        Ok(u8::from(!complaints.is_empty()))
     }
 
     /// The answer, all cells computed here.
@@ -173,7 +175,7 @@ impl CommandArgs for Merge {
         let output = print::results(&folder, self.out.as_deref(), shared.names())?;
         let mut unanswered = false;
         let mut watched = cells.by_ref().inspect(|cell| {
-            unanswered |= cell.as_ref().is_ok_and(|cell| !study.answers(cell));
+            unanswered |= cell.as_ref().is_ok_and(|cell| study.complaint(cell).is_some());
         });
         let answer = study.answer(&mut watched)?;
         Ok(print::answer(answer, output, json)?.max(u8::from(unanswered)))

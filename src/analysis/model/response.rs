@@ -3,7 +3,7 @@
 mod bands;
 mod draws;
 
-pub use bands::{BandPoint, Bands};
+pub use bands::{Band, BandPoint, Bands};
 pub use draws::Draws;
 
 use super::{Driven, JudgedOrbit, SceneKeys, check_gap_std, figures};

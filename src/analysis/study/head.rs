@@ -125,6 +125,10 @@ fn difference(key: &str, one: &Value, two: &Value) -> Option<String> {
             })
         }
         _ if one == two => None,
+        (Value::Array(of_one), Value::Array(of_two)) if of_one.len() == of_two.len() => {
+            let mut pairs = of_one.iter().zip(of_two).enumerate();
+            pairs.find_map(|(i, (one, two))| difference(&format!("{key}[{i}]"), one, two))
+        }
         _ => {
             let [one, two] = [one, two].map(|value| {
                 let text = value.to_string();

@@ -31,8 +31,8 @@ pub struct WrittenPart {
     pub kept: u64,
     /// Number of bytes behind these cells that were cut off: half a cell, or what was damaged.
     pub cut: u64,
-    /// Number of cells computed now that have no answer.
-    pub unanswered: u64,
+    /// What cells computed now say that have no answer.
+    pub complaints: Vec<String>,
 }
 
 /// Computes a part into a folder, or what is missing of one that is there.
@@ -54,7 +54,7 @@ pub fn write_part(
     }
     // A part that is whole may lie where nothing can be written.
     let there = Present::of(&path, head)?;
-    let mut part = WrittenPart { path: path.clone(), kept: 0, cut: 0, unanswered: 0 };
+    let mut part = WrittenPart { path: path.clone(), kept: 0, cut: 0, complaints: Vec::new() };
     if there == Present::Whole && study.keeps() {
         return Ok(WrittenPart { kept: head.cells(), ..part });
     }
@@ -80,7 +80,7 @@ pub fn write_part(
         }
     }
     let missing = head.shard.cells(head.all).skip(part.kept as usize);
-    part.unanswered = cells.compute(study, missing, head.cells() - part.kept, progress)?;
+    part.complaints = cells.compute(study, missing, head.cells() - part.kept, progress)?;
     cells.end()?;
     Ok(part)
 }
@@ -194,19 +194,20 @@ impl<'a, W: Write> CellWriter<'a, W> {
         CellWriter { path, out, hash, waiting: Vec::new() }
     }
 
-    /// Computes and writes the cells with these numbers, `all` of them; returns how many have no answer.
+    /// Computes and writes the cells with these numbers, `all` of them; returns what those say that have no
+    /// answer.
     fn compute(
         &mut self,
         study: &dyn Study,
         numbers: impl Iterator<Item = u64>,
         all: u64,
         progress: &dyn Progress,
-    ) -> Result<u64> {
+    ) -> Result<Vec<String>> {
         let mut computed = Computed::new(study, numbers, all, progress);
-        let mut unanswered = 0;
+        let mut complaints = Vec::new();
         while let Some((number, bytes)) = computed.next() {
             let bytes = bytes.or_else(|error| self.flush().and(Err(error)))?;
-            unanswered += u64::from(!study.answers(&bytes));
+            complaints.extend(study.complaint(&bytes));
             self.waiting.extend((bytes.len() as u32).to_le_bytes());
             self.waiting.extend(&bytes);
             self.waiting.extend(checked(number, &bytes).to_le_bytes());
@@ -214,7 +215,7 @@ impl<'a, W: Write> CellWriter<'a, W> {
                 self.flush()?;
             }
         }
-        Ok(unanswered)
+        Ok(complaints)
     }
 
     fn put(&mut self, bytes: &[u8]) -> Result<()> {

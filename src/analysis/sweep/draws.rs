@@ -98,7 +98,7 @@ impl PairDraws {
 impl Loaded {
     fn of(campaign: Campaign) -> Result<Loaded> {
         let rig = stated_rig(&campaign)?;
-        let stated = campaign.uncertainty.filter(|stated| stated.all().next().is_some());
+        let stated = campaign.uncertainty.filter(|stated| stated.all().any(|(_, std)| std > 0.0));
         let uncertainty = stated.ok_or_else(|| {
             Error::usage("no uncertainty to draw from", "a table [uncertainty] in the campaign: gap = 1e-5")
         })?;

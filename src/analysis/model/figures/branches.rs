@@ -1,6 +1,6 @@
 //! Response curves with all branches.
 
-use super::super::response::{BandPoint, Bands};
+use super::super::response::{Band, BandPoint, Bands};
 use crate::model::{
     Branch, ChangeKind, Loss, Orbit, Parameter, PeriodicOrbit, Response, ResponsePoint, Validity,
 };
@@ -57,9 +57,12 @@ pub fn branches(title: &str, response: &Response, bands: Option<&Bands>) -> Figu
     }
     let lines = "Half the peak-to-peak displacement. Solid: motions with one impact a period that can be and are stable; dashed: unstable; \
          thin and grey: the masses would pass through each other. Dash-dotted: free motion without losses (backbone).";
-    let drawn = " Shaded: 95 % of the rigs with drawn parameters in which the motion is stable.";
+    let drawn = " Shaded: 95 % of the drawn rigs that have the motion, where at least one in twenty has it.";
     lettered(figure.caption(lines.to_owned() + if bands.is_some() { drawn } else { "" }))
 }
+
+/// Least part of the draws that have a motion whose band is drawn.
+const LEAST_SHARE: f64 = 0.05;
 
 /// The panel of a mass, its index from 0.
 fn panel(response: &Response, bands: Option<&Bands>, mass: usize) -> Plot {
@@ -77,11 +80,20 @@ fn panel(response: &Response, bands: Option<&Bands>, mass: usize) -> Plot {
     let mut plot = Plot::new(AxisSpec::frequency().limits(ends[0], ends[1]), y).title(title);
     if let Some(bands) = bands {
         let frequency: Vec<f64> = bands.points.iter().map(|p| p.frequency).collect();
-        let end = |end: usize| -> Vec<f64> {
-            let of = |p: &BandPoint| if mass == 0 { Some(p.impacting.x1) } else { p.impacting.x2 };
-            bands.points.iter().map(|p| of(p).map_or(f64::NAN, |amplitudes| 1e3 * amplitudes[end])).collect()
-        };
-        plot = plot.with(Series::band("95 % of draws", frequency, end(0), end(2)).ink(Ink::Nth(0)));
+        let of = |band: &Band| if mass == 0 { Some(band.x1) } else { band.x2 };
+        for (name, band, ink) in [
+            ("95 % of draws", (|p| &p.impacting) as fn(&BandPoint) -> &Band, Ink::Nth(0)),
+            ("without impacts", |p| &p.no_impact, Ink::Grey),
+        ] {
+            let end = |end: usize| -> Vec<f64> {
+                let shown = bands.points.iter().map(|p| Some(band(p)).filter(|b| b.share >= LEAST_SHARE));
+                shown.map(|b| b.and_then(of).map_or(f64::NAN, |amplitudes| 1e3 * amplitudes[end])).collect()
+            };
+            let (low, high) = (end(0), end(2));
+            if low.iter().any(|end| end.is_finite()) {
+                plot = plot.with(Series::band(name, frequency.clone(), low, high).ink(ink));
+            }
+        }
     }
     let mut lines: [Pieces; 3] = Default::default();
     let (mut free, mut backbone) = (Pieces::default(), Pieces::default());

@@ -11,7 +11,8 @@ use serde::Serialize;
 pub struct Band {
     /// Part of the draws that have this motion.
     pub share: f64,
-    /// Quantiles of the amplitude of x₁ in m of the draws that have it: 2.5, 50 and 97.5 %.
+    /// Half the peak-to-peak value of x₁ in m of the draws that have it: lower end, median and upper end of
+    /// the 95 % coverage interval.
     pub x1: [f64; 3],
     /// The same of x₂; without impacts it rests.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -74,16 +75,16 @@ impl Bands {
             &[
                 ("frequency", "Hz", &|p| p.frequency.into()),
                 ("impacting, part of draws", "", &|p| p.impacting.share.into()),
-                ("impacting x1, 2.5 %", "m", &|p| p.impacting.x1[0].into()),
-                ("impacting x1, median", "m", &|p| p.impacting.x1[1].into()),
-                ("impacting x1, 97.5 %", "m", &|p| p.impacting.x1[2].into()),
-                ("impacting x2, 2.5 %", "m", &|p| p.impacting.x2.map(|x| x[0]).into()),
-                ("impacting x2, median", "m", &|p| p.impacting.x2.map(|x| x[1]).into()),
-                ("impacting x2, 97.5 %", "m", &|p| p.impacting.x2.map(|x| x[2]).into()),
+                ("impacting x1 half p-p, 2.5 %", "m", &|p| p.impacting.x1[0].into()),
+                ("impacting x1 half p-p, median", "m", &|p| p.impacting.x1[1].into()),
+                ("impacting x1 half p-p, 97.5 %", "m", &|p| p.impacting.x1[2].into()),
+                ("impacting x2 half p-p, 2.5 %", "m", &|p| p.impacting.x2.map(|x| x[0]).into()),
+                ("impacting x2 half p-p, median", "m", &|p| p.impacting.x2.map(|x| x[1]).into()),
+                ("impacting x2 half p-p, 97.5 %", "m", &|p| p.impacting.x2.map(|x| x[2]).into()),
                 ("no impact, part of draws", "", &|p| p.no_impact.share.into()),
-                ("no impact x1, 2.5 %", "m", &|p| p.no_impact.x1[0].into()),
-                ("no impact x1, median", "m", &|p| p.no_impact.x1[1].into()),
-                ("no impact x1, 97.5 %", "m", &|p| p.no_impact.x1[2].into()),
+                ("no impact x1 half p-p, 2.5 %", "m", &|p| p.no_impact.x1[0].into()),
+                ("no impact x1 half p-p, median", "m", &|p| p.no_impact.x1[1].into()),
+                ("no impact x1 half p-p, 97.5 %", "m", &|p| p.no_impact.x1[2].into()),
             ],
         );
         answer.csv("bands", &table);

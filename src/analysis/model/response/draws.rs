@@ -33,7 +33,7 @@ impl Draws {
     /// # Errors
     /// If no uncertainty is stated, or the number is too small or too large.
     pub(super) fn of(curve: Curve, draws: u64) -> Result<Draws> {
-        let uncertainty = curve.uncertainty.filter(|stated| stated.all().next().is_some());
+        let uncertainty = curve.uncertainty.filter(|stated| stated.all().any(|(_, std)| std > 0.0));
         let Some(uncertainty) = uncertainty else {
             let hint = "--set uncertainty.gap=1e-5, or a table [uncertainty] in the rig's file";
             return Err(Error::usage("no uncertainty to draw from", "that of a parameter").hint(hint));
