@@ -43,10 +43,20 @@ fn saltation(rig: &Rig, before: &[f64; 4], after: &[f64; 4]) -> Matrix4<f64> {
 /// the quotient in the saltation, the four terms of each acceleration; of the Schur form, a few ε of the
 /// product. Together they are below 64 (1 + ΩT) ε times the norms of flow and saltation.
 pub(super) fn monodromy(rig: &Rig, period: f64, before: &[f64; 4], after: &[f64; 4]) -> (Matrix4<f64>, f64) {
-    let (flow, saltation) = (flow(rig, period), saltation(rig, before, after));
+    let (flow, saltation) = (scaled(rig, flow(rig, period)), scaled(rig, saltation(rig, before, after)));
     let phase = rig.oscillators().iter().map(|o| o.omega2().sqrt() * period).fold(0.0, f64::max);
     let rounding = 64.0 * f64::EPSILON * (1.0 + phase) * (flow.norm() * saltation.norm());
     (flow * saltation, rounding)
+}
+
+/// A matrix for the states Ω₁x₁, v₁, Ω₂x₂, v₂ in place of x₁, v₁, x₂, v₂: its elements are velocities over
+/// velocities, so that its norm is near its size, and rounding of small elements does not seem to hide large
+/// ones. Eigenvalues and determinants are those of the matrix itself.
+fn scaled(rig: &Rig, matrix: Matrix4<f64>) -> Matrix4<f64> {
+    let unit = |omega2: f64| if omega2.is_finite() && omega2 > 0.0 { omega2.sqrt() } else { 1.0 };
+    let [first, second] = rig.oscillators().map(|oscillator| unit(oscillator.omega2()));
+    let units = [first, 1.0, second, 1.0];
+    Matrix4::from_fn(|row, column| matrix[(row, column)] * units[row] / units[column])
 }
 
 /// Whether all multipliers lie inside the unit circle; `None` where an error of norm `rounding` in the

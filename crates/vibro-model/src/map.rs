@@ -248,6 +248,8 @@ fn periodic(rig: &Rig, excitation: &Excitation, found: &Pattern) -> Option<Cell>
             regime: Some(Regime::Periodic { impacts: orbit.impacts(), cycles: orbit.cycles }),
             spectral_radius: orbit.spectral_radius(),
         }),
+        // A simulation stays near an unstable motion for a while, and leaves it.
+        Ok(orbit) if orbit.validity.admissible && orbit.validity.stable == Some(false) => None,
         _ => cell_of_pattern(found.settled),
     }
 }

@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 
 /// Computes cells of a study in batches; gives their numbers and bytes in order.
 ///
-/// A batch grows until it takes about [`BATCH`]: what a killed program loses, and the time between two
+/// A batch grows until it takes about half a second: what a killed program loses, and the time between two
 /// reports of progress.
 pub struct Computed<'a, N> {
     study: &'a dyn Study,

@@ -165,16 +165,32 @@ impl Judged {
 }
 
 /// Monodromy of a motion along `courses`, each from an impact to the next, and a bound on its rounding.
+///
+/// An error δ of the factor Aᵢ changes the product by Aₙ…Aᵢ₊₁ δ Aᵢ₋₁…A₁. The norms of these products are
+/// taken, not the products of norms: the latter grow with every impact, and rounding then seems to hide what
+/// is certain.
 fn product(rig: &Rig, courses: &[Course]) -> (Matrix4<f64>, f64) {
-    let (mut whole, mut norms, mut relative) = (Matrix4::identity(), 1.0, 0.0);
     let mut before = courses.last().map_or([0.0; 4], |last| last.rates().0);
-    for course in courses {
+    let parts = courses.iter().map(|course| {
         let (next, after) = course.rates();
-        let (part, rounding) = floquet::monodromy(rig, course.period, &before, &after);
-        relative += rounding / part.norm();
-        norms *= part.norm();
-        whole = part * whole;
+        let part = floquet::monodromy(rig, course.period, &before, &after);
         before = next;
-    }
-    (whole, norms * relative)
+        part
+    });
+    let parts: Vec<(Matrix4<f64>, f64)> = parts.collect();
+    // Without factors on one side the norm is 1.
+    let norms = |factors: &mut dyn Iterator<Item = Matrix4<f64>>, left: bool| -> Vec<f64> {
+        let (mut whole, mut norms) = (None::<Matrix4<f64>>, Vec::new());
+        for factor in factors {
+            norms.push(whole.map_or(1.0, |whole| whole.norm()));
+            whole = Some(whole.map_or(factor, |whole| if left { factor * whole } else { whole * factor }));
+        }
+        norms
+    };
+    let earlier = norms(&mut parts.iter().map(|part| part.0), true);
+    let later = norms(&mut parts.iter().rev().map(|part| part.0), false);
+    let sides = earlier.iter().zip(later.iter().rev());
+    let rounding =
+        parts.iter().zip(sides).map(|((_, rounding), (earlier, later))| earlier * rounding * later).sum();
+    (parts.iter().fold(Matrix4::identity(), |whole, part| part.0 * whole), rounding)
 }

@@ -122,6 +122,19 @@ mod tests {
         }
     }
 
+    /// The bound on the rounding of five factors was the product of their norms, and hid a multiplier of
+    /// 1.06.
+    #[test]
+    fn an_unstable_motion_of_many_impacts_is_not_neutral() {
+        let (gap, restitution) = (0.001_248_322_147_651_006_7, 0.55);
+        let rig = Rig { m1: 0.35, m2: 0.9, k1: 12_000.0, k2: 30_000.0, c1: 4.0, c2: 12.0, gap, restitution };
+        let sine = Sine { force: 12.0, frequency: 15.678_391_959_798_995 };
+        let found = search(&rig, &sine, 5, 5).unwrap();
+        let growing = found.iter().filter(|orbit| orbit.spectral_radius().is_some_and(|r| r > 1.01));
+        let stable: Vec<Option<bool>> = growing.map(|orbit| orbit.validity.stable).collect();
+        assert!(!stable.is_empty() && stable.iter().all(|stable| *stable == Some(false)), "{stable:?}");
+    }
+
     #[test]
     fn behind_a_flip_there_are_two_impacts_in_two_cycles() {
         // Reference value: F₀ 0.9 N, R 1, ν 1.2 has the multiplier −1.326: one impact a cycle is unstable
