@@ -11,6 +11,7 @@ use crate::campaign::{Campaign, FitEntry, Reading};
 use crate::error::{Error, Result};
 use crate::proposal::Proposal;
 use crate::read::{Folder, Occupant, Owner};
+use crate::record::kind::whole;
 use crate::record::{shown, typed};
 use crate::report::Table;
 use crate::report::files::Names;
@@ -53,7 +54,7 @@ pub struct Compare {
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     fit: Vec<String>,
     /// Draw the parameters N times from [uncertainty] of the campaign: bands that hold 95 % of the draws
-    #[arg(value_name = "N", conflicts_with = "fit")]
+    #[arg(value_name = "N", conflicts_with = "fit", value_parser = whole::<u64, 100, 1_000_000>)]
     monte_carlo: Option<u64>,
     /// Compute part I of N of a Monte Carlo into --out; `vibro merge` joins them. Started again, it computes
     /// what is missing

@@ -41,7 +41,7 @@ pub struct Keys {
     /// Standard uncertainty of the gap in m: a motion nearer to grazing is not robust
     pub gap_std: Option<f64>,
     /// Draw the parameters N times from [uncertainty] in the rig's file: bands that hold 95 % of the draws
-    #[cfg_attr(feature = "cli", arg(value_name = "N"))]
+    #[cfg_attr(feature = "cli", arg(value_name = "N", value_parser = crate::record::kind::whole::<u64, 100, 1_000_000>))]
     pub monte_carlo: Option<u64>,
 }
 
