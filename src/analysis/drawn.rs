@@ -1,5 +1,7 @@
 //! What Monte Carlos have in common: the coverage interval of the draws, and what must be known of it.
 
+use super::study::Cells;
+use crate::error::{Error, Result};
 use crate::model::{Excitation, Rig, Uncertainty};
 use crate::record::{Finding, median, sort_by_number};
 
@@ -28,6 +30,46 @@ pub const MOST_DRAWS: f64 = 0.95;
 const TRUNCATED: f64 = 0.01;
 /// Draws from which on the ends of an interval of 95 % are settled (JCGM 101:2008, 7.2.2).
 const SETTLED: u64 = 10_000;
+
+/// Fewest draws: of 100 draws the outermost 2.5 % at each end are two or three.
+const FEWEST: u64 = 100;
+
+/// Checks a number of draws of `points` points, at most `most` draws times points.
+///
+/// # Errors
+/// If it is too small or too large.
+pub fn check_draws(draws: u64, most: u64, points: u64, what: &str) -> Result<()> {
+    let most = most / points.max(1);
+    if (FEWEST..=most).contains(&draws) {
+        return Ok(());
+    }
+    let expected = format!("{FEWEST} to {most} draws of {points} {what}");
+    Err(Error::usage(format!("{draws} draws"), expected))
+}
+
+/// The bytes of the numbers of a draw, as a cell.
+pub fn packed(numbers: impl IntoIterator<Item = f64>) -> Vec<u8> {
+    numbers.into_iter().flat_map(f64::to_le_bytes).collect()
+}
+
+/// The numbers of all draws, those at one place of each draw together; every draw has `n`.
+///
+/// # Errors
+/// Those of the cells; if a cell has not `n` numbers.
+pub fn by_place(cells: &mut Cells<'_>, n: usize) -> Result<Vec<Vec<f64>>> {
+    let mut places: Vec<Vec<f64>> = vec![Vec::new(); n];
+    for cell in cells {
+        let cell = cell?;
+        let (numbers, rest) = cell.as_chunks::<8>();
+        if numbers.len() != n || !rest.is_empty() {
+            return Err(Error::refused("a cell of the part is no draw of this study"));
+        }
+        for (place, number) in places.iter_mut().zip(numbers) {
+            place.push(f64::from_le_bytes(*number));
+        }
+    }
+    Ok(places)
+}
 
 /// Lower end, median and upper end of the probabilistically symmetric 95 % coverage interval of the finite
 /// values.

@@ -3,7 +3,9 @@
 use super::modelled::{answered, overlaid, predicting, stated_rig};
 use super::responses;
 use crate::analysis::answer::{Answer, unwritten};
-use crate::analysis::drawn::{Drawn, MOST_DRAWS, coverage_interval, drawn_findings};
+use crate::analysis::drawn::{
+    Drawn, MOST_DRAWS, by_place, check_draws, coverage_interval, drawn_findings, packed,
+};
 use crate::analysis::open_in;
 use crate::analysis::study::{Cells, Study};
 use crate::campaign::Campaign;
@@ -51,8 +53,6 @@ pub struct Loaded {
     overlay: Overlay,
 }
 
-/// Fewest draws: of 100 draws the outermost 2.5 % at each end are two or three.
-const FEWEST: u64 = 100;
 /// Most draws times points: their amplitudes take 0.8 GB.
 const MOST: u64 = 100_000_000;
 
@@ -67,11 +67,7 @@ impl PairDraws {
         let path = path.canonicalize().unwrap_or_else(|_| path.to_owned());
         let loaded = Loaded::of(campaign)?;
         let points = loaded.overlay.pairs.len() as u64;
-        let most = MOST / points.max(1);
-        if !(FEWEST..=most).contains(&draws) {
-            let expected = format!("{FEWEST} to {most} draws of {points} points");
-            return Err(Error::usage(format!("{draws} draws"), expected));
-        }
+        check_draws(draws, MOST, points, "points")?;
         loaded.predicted(0)?;
         let (measured, place) = (loaded.digest()?, CampaignPlace { path, allow_outside });
         Ok(PairDraws { draws, measured, place, loaded: OnceLock::from(Box::new(loaded)) })
@@ -141,23 +137,12 @@ impl Study for PairDraws {
     }
 
     fn cell(&self, number: u64) -> Result<Vec<u8>> {
-        let amplitudes = self.load(&Folder::default())?.predicted(number)?;
-        Ok(amplitudes.iter().flat_map(|amplitude| amplitude.to_le_bytes()).collect())
+        Ok(packed(self.load(&Folder::default())?.predicted(number)?))
     }
 
     fn answer(&self, cells: &mut Cells<'_>) -> Result<Answer> {
         let Loaded { campaign, rig, uncertainty, responses, overlay } = self.load(&Folder::default())?;
-        let mut of_pair: Vec<Vec<f64>> = vec![Vec::new(); overlay.pairs.len()];
-        for cell in cells {
-            let cell = cell?;
-            let (numbers, rest) = cell.as_chunks::<8>();
-            if numbers.len() != of_pair.len() || !rest.is_empty() {
-                return Err(Error::refused("a cell of the part is no prediction of this campaign"));
-            }
-            for (values, number) in of_pair.iter_mut().zip(numbers) {
-                values.push(f64::from_le_bytes(*number));
-            }
-        }
+        let of_pair = by_place(cells, overlay.pairs.len())?;
         let force = campaign.excitation.and_then(|e| e.force).unwrap_or(1.0);
         let drawn = Drawn::all(uncertainty, rig, &Sine { force, frequency: 1.0 }.into());
         let points = overlay.pairs.iter().zip(&of_pair).map(|(pair, values)| PairBand::of(pair, values));

@@ -2,7 +2,7 @@
 
 use super::{Bands, Curve};
 use crate::analysis::answer::Answer;
-use crate::analysis::drawn::Drawn;
+use crate::analysis::drawn::{Drawn, by_place, check_draws, packed};
 use crate::analysis::study::{Cells, Study};
 use crate::error::{Error, Result};
 use crate::model::response::{MOST_POINTS, axis};
@@ -18,8 +18,6 @@ pub struct Draws {
     draws: u64,
 }
 
-/// Fewest draws: of 100 draws the outermost 2.5 % at each end are two or three.
-const FEWEST: u64 = 100;
 /// Most draws times frequencies: their amplitudes take 2.4 GB.
 const MOST: u64 = 100_000_000;
 
@@ -38,11 +36,7 @@ impl Draws {
             let hint = "--set uncertainty.gap=1e-5, or a table [uncertainty] in the rig's file";
             return Err(Error::usage("no uncertainty to draw from", "that of a parameter").hint(hint));
         };
-        let most = MOST / curve.points.max(1) as u64;
-        if !(FEWEST..=most).contains(&draws) {
-            let expected = format!("{FEWEST} to {most} draws of {} frequencies", curve.points);
-            return Err(Error::usage(format!("{draws} draws"), expected));
-        }
+        check_draws(draws, MOST, curve.points as u64, "frequencies")?;
         uncertainty.drawn(&curve.rig, &curve.excitation, 0)?;
         Ok(Draws { curve, draws })
     }
@@ -77,26 +71,15 @@ impl Study for Draws {
     }
 
     fn cell(&self, number: u64) -> Result<Vec<u8>> {
-        let amplitudes = self.amplitudes(number)?;
-        Ok(amplitudes.iter().flatten().flat_map(|amplitude| amplitude.to_le_bytes()).collect())
+        Ok(packed(self.amplitudes(number)?.into_iter().flatten()))
     }
 
     fn answer(&self, cells: &mut Cells<'_>) -> Result<Answer> {
         let Curve { rig, excitation, from, to, points, uncertainty, .. } = &self.curve;
         let frequency = (0..*points).map(axis(*from, *to, *points, MOST_POINTS)?).collect();
-        let mut of_frequency: Vec<[Vec<f64>; 3]> = vec![Default::default(); *points];
-        for cell in cells {
-            let cell = cell?;
-            let (numbers, rest) = cell.as_chunks::<8>();
-            if numbers.len() != 3 * points || !rest.is_empty() {
-                return Err(Error::refused("a cell of the part is no response"));
-            }
-            for (values, numbers) in of_frequency.iter_mut().zip(numbers.chunks(3)) {
-                for (values, number) in values.iter_mut().zip(numbers) {
-                    values.push(f64::from_le_bytes(*number));
-                }
-            }
-        }
+        let mut places = by_place(cells, 3 * points)?.into_iter();
+        let of_frequency =
+            std::iter::from_fn(|| Some([places.next()?, places.next()?, places.next()?])).collect();
         let drawn = Drawn::all(&uncertainty.unwrap_or_default(), rig, excitation);
         self.curve.answer(Some(&Bands::of(frequency, of_frequency, self.draws, drawn)))
     }
