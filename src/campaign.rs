@@ -27,6 +27,7 @@
 //! ```
 //! An unknown key is an error that points at its line.
 
+mod edit;
 mod entry;
 mod key_range;
 mod locate;
@@ -34,6 +35,7 @@ mod reading;
 mod tables;
 mod value;
 
+pub use edit::WrittenTable;
 pub use tables::{Compute, Drive, FitEntry, Follows, ModelEntry};
 
 pub(crate) use entry::Entry;

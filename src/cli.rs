@@ -1,6 +1,7 @@
 //! The command `vibro`: parses and checks the command line, runs the command and prints the result. Nothing
 //! in the library uses this folder.
 
+mod app;
 mod campaign;
 mod campaigns;
 mod complain;
@@ -56,6 +57,10 @@ const GROUPS: &[(&str, &[CommandRow])] = &[
             ),
             CommandRow::of::<init::Check>("check campaign.toml", "Check a campaign without computing"),
             CommandRow::of::<demo::Open>("open measurements", "Open the report of a folder in a browser"),
+            CommandRow::of::<app::App>(
+                "app",
+                "Write the page vibro.html: the same in a browser, without a terminal",
+            ),
             CommandRow::of::<demo::Demo>("demo bench", "Write an example with its recordings, and run it"),
         ],
     ),

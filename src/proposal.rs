@@ -212,6 +212,31 @@ impl Table {
     /// The table as TOML, with what notes state of its open keys; commented out where a required key is
     /// missing.
     fn toml(&self, notes: &[Note]) -> String {
+        if !self.lacks() {
+            return self.opened(notes);
+        }
+        let text = self.rows_of_toml(notes, "");
+        let rows = text.trim_end().replace('\n', "\n#");
+        let rows = format!("#{}\n", rows.trim_end_matches('#').trim_end());
+        format!("{}# {}\n{rows}", self.above(), Campaign::FILL_IN)
+    }
+
+    /// The table as TOML, in which a key that must be stated is a comment.
+    fn opened(&self, notes: &[Note]) -> String {
+        self.above() + &self.rows_of_toml(notes, "# ")
+    }
+
+    /// Comments above the table: its description, and why it gives no answer.
+    fn above(&self) -> String {
+        let mut about = format!("# {}\n", shown(self.in_words()));
+        if let Some(refused) = &self.refused {
+            let _ = writeln!(about, "# {}", shown(refused.in_words()));
+        }
+        about
+    }
+
+    /// Its head and keys; `missing` stands before a key that must be stated.
+    fn rows_of_toml(&self, notes: &[Note], missing: &str) -> String {
         let stated = |row: &TableKey| {
             let of_key = notes.iter().filter(|note| self.asks(row, note));
             of_key.fold(String::new(), |text, note| format!("{text}; {}: {}", note.place, note.text))
@@ -219,7 +244,7 @@ impl Table {
         let mut text = format!("[[{}]]\n", self.section);
         let row = |row: &TableKey| match row.known {
             KeyStatus::Open(_) => format!("# {} =", row.key),
-            KeyStatus::Missing(_) => format!("{} =", row.key),
+            KeyStatus::Missing(_) => format!("{missing}{} =", row.key),
             _ => format!("{} = {}", row.key, row.value),
         };
         let commented = self.rows.iter().filter(|row| row.known.why().is_some());
@@ -233,16 +258,7 @@ impl Table {
                 KeyStatus::Missing(what) => writeln!(text, "{row:wide$}   # missing: {what}{}", stated(one)),
             };
         }
-        let mut about = format!("# {}\n", shown(self.in_words()));
-        if let Some(refused) = &self.refused {
-            let _ = writeln!(about, "# {}", shown(refused.in_words()));
-        }
-        if !self.lacks() {
-            return about + &text;
-        }
-        let rows = text.trim_end().replace('\n', "\n#");
-        let rows = format!("#{}\n", rows.trim_end_matches('#').trim_end());
-        format!("{about}# {}\n{rows}", Campaign::FILL_IN)
+        text
     }
 }
 
@@ -366,6 +382,22 @@ impl Proposal {
             let _ = writeln!(text, "# {}", shown(format!("{file}: {why}")));
         }
         text
+    }
+
+    /// Text of one table in [`Proposal::toml`].
+    ///
+    /// # Panics
+    /// If there are not so many tables.
+    pub fn block(&self, table: usize) -> String {
+        self.tables[table].toml(&self.notes)
+    }
+
+    /// The same table without the marks of a comment; what is missing stays a comment.
+    ///
+    /// # Panics
+    /// If there are not so many tables.
+    pub fn opened(&self, table: usize) -> String {
+        self.tables[table].opened(&self.notes)
     }
 
     /// The campaign, as if its file lay in the folder.

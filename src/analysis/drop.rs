@@ -160,6 +160,8 @@ pub struct Series {
     contact_time: Option<f64>,
     /// File and trace of each drop with a record.
     records: Vec<(String, Plot)>,
+    /// Times in s of the impacts of each of these drops.
+    times: Vec<Vec<f64>>,
     findings: Vec<About>,
     /// File and doubt of each record in which impacts may be missing.
     doubts: Vec<(String, Doubt)>,
@@ -184,6 +186,7 @@ impl Series {
             contact_time: keys.contact_time,
             trains: Vec::new(),
             records: Vec::new(),
+            times: Vec::new(),
             findings: Vec::new(),
             doubts: Vec::new(),
             refused: Vec::new(),
@@ -226,6 +229,7 @@ impl Series {
         self.doubts.extend(found.doubts.into_iter().map(|doubt| (file.clone(), doubt)));
         let plot = impacts::figures::drop(&file, &trace, &found.times);
         self.records.push((file, plot));
+        self.times.push(found.times);
         Ok(())
     }
 
@@ -269,6 +273,7 @@ impl Series {
         self.findings.extend(doubts);
         doubt_with_record(self.findings.iter().map(|(_, found)| found), &mut found);
         let mut answer = Answer::of(&found)?;
+        answer.result.insert("times".to_owned(), self.times.into());
         answer.findings = self.findings;
         if !self.records.is_empty() {
             let plots = self.records.into_iter().map(|(_, plot)| plot).collect();

@@ -33,6 +33,11 @@ pub(crate) fn sections() -> impl Iterator<Item = &'static str> {
     KINDS.iter().map(|kind| kind.section)
 }
 
+/// What the tables of a section give, in words: `Restitution` for `drop`.
+pub fn title(section: &str) -> Option<&'static str> {
+    KINDS.iter().find(|kind| kind.section == section).map(|kind| kind.title)
+}
+
 /// Ranges of the numbers of keys, of all kinds.
 #[cfg(any(feature = "cli", test))]
 pub(crate) fn key_ranges() -> impl Iterator<Item = &'static KeyRange> {

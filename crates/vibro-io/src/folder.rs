@@ -11,7 +11,7 @@ pub use staged::Staged;
 pub use walk::Walk;
 
 use crate::recording::Recording;
-use crate::source::Source;
+use crate::source::{Shared, Source};
 use sha2::{Digest as _, Sha256};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -48,7 +48,7 @@ pub struct Folder {
 }
 
 /// Files in memory by their paths.
-type Files = BTreeMap<PathBuf, Arc<[u8]>>;
+type Files = BTreeMap<PathBuf, Arc<Vec<u8>>>;
 
 #[derive(Debug, Clone, Default)]
 enum Side {
@@ -89,7 +89,7 @@ impl Folder {
         files: impl IntoIterator<Item = (N, Vec<u8>)>,
     ) -> Folder {
         let root = root.into();
-        let one = |(name, bytes): (N, Vec<u8>)| (plain(&root.join(name)), bytes.into());
+        let one = |(name, bytes): (N, Vec<u8>)| (plain(&root.join(name)), Arc::new(bytes));
         let files: Files = files.into_iter().map(one).collect();
         Folder { side: Side::Memory(Arc::new(Mutex::new(files))), ..Folder::from(root) }
     }
@@ -267,8 +267,8 @@ impl Folder {
         }
         let opened: io::Result<Box<dyn Read>> = match &self.side {
             Side::Disk => fs::File::open(path).map(|file| Box::new(file) as _),
-            Side::Memory(files) => match locked(files).get(&plain(path)) {
-                Some(bytes) => Ok(Box::new(io::Cursor::new(bytes.clone()))),
+            Side::Memory(_) => match self.held(path) {
+                Some(bytes) => Ok(Box::new(io::Cursor::new(Shared(bytes)))),
                 None => Err(io::ErrorKind::NotFound.into()),
             },
         };
@@ -317,8 +317,30 @@ impl Folder {
         self.reads(path);
         match &self.side {
             Side::Disk => Source::file(path),
-            Side::Memory(_) => Source::memory(path, self.read(path)?),
+            Side::Memory(_) => match self.held(path) {
+                Some(bytes) => Source::shared(path, bytes),
+                None => Source::memory(path, self.read(path)?),
+            },
         }
+    }
+
+    /// The bytes of a file in memory.
+    fn held(&self, path: &Path) -> Option<Arc<Vec<u8>>> {
+        let Side::Memory(files) = &self.side else { return None };
+        locked(files).get(&plain(path)).cloned()
+    }
+
+    /// Adds a file to a folder in memory, in place of one of this name.
+    ///
+    /// # Errors
+    /// If the name leads outside the folder, or the folder is on a disk.
+    pub fn hold(&self, name: &Path, bytes: Vec<u8>) -> Result<()> {
+        let path = self.path(name)?;
+        let Side::Memory(files) = &self.side else {
+            return Err(Error::usage("a folder on a disk", "a folder in memory"));
+        };
+        locked(files).insert(plain(&path), Arc::new(bytes));
+        Ok(())
     }
 
     /// Records that the run reads a file as a measurement, even if its content is known from an earlier

@@ -23,7 +23,7 @@ pub(crate) struct Source {
     path: PathBuf,
     len: u64,
     /// All bytes of a small file or a buffer, the first ones of a larger file.
-    bytes: Vec<u8>,
+    bytes: Arc<Vec<u8>>,
     /// For the text of a workbook's sheet: the sheet's first column, counted from 0.
     sheet: Option<u32>,
     /// Records that were made in memory; there are no bytes then.
@@ -69,6 +69,7 @@ impl Source {
             .and_then(|file| file.take(HEAD as u64).read_to_end(&mut bytes))
             .map_err(|e| Error::io("read", path, e))?;
         let len = if bytes.len() < HEAD { bytes.len() as u64 } else { info.len() };
+        let bytes = Arc::new(bytes);
         Source { path: path.to_owned(), len, bytes, sheet: None, recording: None }.not_empty()
     }
 
@@ -77,13 +78,20 @@ impl Source {
     /// # Errors
     /// If there are none.
     pub fn memory(name: impl Into<PathBuf>, bytes: impl Into<Vec<u8>>) -> Result<Source> {
-        let bytes = bytes.into();
+        Source::shared(name, Arc::new(bytes.into()))
+    }
+
+    /// As [`Source::memory`], of bytes that others hold too: they are not copied.
+    ///
+    /// # Errors
+    /// If there are none.
+    pub fn shared(name: impl Into<PathBuf>, bytes: Arc<Vec<u8>>) -> Result<Source> {
         Source { path: name.into(), len: bytes.len() as u64, bytes, sheet: None, recording: None }.not_empty()
     }
 
     /// Records that were made in memory.
     pub fn recording(recording: Arc<Recording>) -> Source {
-        let (path, bytes) = (recording.path.clone(), Vec::new());
+        let (path, bytes) = (recording.path.clone(), Arc::default());
         Source { path, len: 0, bytes, sheet: None, recording: Some(recording) }
     }
 
@@ -162,7 +170,12 @@ impl Source {
 
     /// All bytes, if they are in memory.
     pub fn in_memory(&self) -> Option<&[u8]> {
-        (self.bytes.len() as u64 == self.len).then_some(&self.bytes)
+        self.is_whole().then_some(&self.bytes)
+    }
+
+    /// Whether all bytes are in memory.
+    fn is_whole(&self) -> bool {
+        self.bytes.len() as u64 == self.len
     }
 
     /// All bytes.
@@ -181,9 +194,18 @@ impl Source {
     /// # Errors
     /// If the file cannot be opened.
     pub fn open(&self) -> Result<Box<dyn ReadSeek>> {
-        Ok(match self.in_memory() {
-            Some(bytes) => Box::new(Cursor::new(bytes.to_vec())),
-            None => Box::new(File::open(&self.path).map_err(|e| Error::io("open", &self.path, e))?),
-        })
+        if self.is_whole() {
+            return Ok(Box::new(Cursor::new(Shared(self.bytes.clone()))));
+        }
+        Ok(Box::new(File::open(&self.path).map_err(|e| Error::io("open", &self.path, e))?))
+    }
+}
+
+/// Bytes that several readers hold.
+pub(crate) struct Shared(pub Arc<Vec<u8>>);
+
+impl AsRef<[u8]> for Shared {
+    fn as_ref(&self) -> &[u8] {
+        &self.0
     }
 }

@@ -33,7 +33,7 @@ impl Staged {
                 file.persist(&path).map_err(|e| Error::io("write", &path, e.error))
             }
             Staged::Memory(files, path, bytes) => {
-                locked(&files).insert(path, bytes.into());
+                locked(&files).insert(path, Arc::new(bytes));
                 Ok(())
             }
         }

@@ -1,0 +1,35 @@
+"""Packs the module and the parts of the page into one file: pack.py MODULE PAGE"""
+import base64
+import gzip
+import sys
+from pathlib import Path
+
+HERE = Path(__file__).parent / "page"
+SCRIPTS = ["module.js", "files.js", "list.js", "trace.js", "campaign.js", "app.js"]
+
+
+def as_text(data: bytes) -> str:
+    """Four bytes as five characters. A comma stands for <, which would be read as markup."""
+    return base64.b85encode(data, pad=True).decode().replace("<", ",")
+
+
+def main(module: str, page: str) -> None:
+    wasm = gzip.compress(Path(module).read_bytes(), 9, mtime=0)
+    parts = {
+        "STYLE": (HERE / "app.css").read_text(),
+        "WORKER": (HERE / "worker.js").read_text(),
+        "SCRIPTS": "\n".join((HERE / name).read_text() for name in SCRIPTS),
+        "BYTES": str(len(wasm)),
+        "MODULE": as_text(wasm),
+    }
+    text = (HERE / "app.html").read_text()
+    for name, part in parts.items():
+        text = text.replace("{{" + name + "}}", part)
+    out = Path(page)
+    new = out.with_suffix(".part")
+    new.write_text(text)
+    new.replace(out)
+    print(f"{out.name}: {len(text) / 1e6:.2f} MB, of which the module is {len(parts['MODULE']) / 1e6:.2f} MB")
+
+
+main(*sys.argv[1:])

@@ -1,0 +1,231 @@
+const at = (id) => document.getElementById(id);
+
+/** Script of the report in its frame: a link to a file saves it, and the place on the page outlives a new report. */
+const IN_REPORT = `<script>
+addEventListener("click", (event) => {
+  const link = event.target.closest?.("a[href^='./']");
+  if (!link) return;
+  event.preventDefault();
+  parent.postMessage({ file: decodeURIComponent(link.getAttribute("href").slice(2)) }, "*");
+}, true);
+addEventListener("scroll", () => parent.postMessage({ scroll: scrollY }, "*"));
+addEventListener("load", () => setTimeout(() => scrollTo(0, SCROLL), 50));
+<\/script>`;
+
+/** The page: files, campaign, report. */
+class App {
+  constructor() {
+    this.program = new Program((progress) => this.progress(progress));
+    [this.files, this.name, this.example, this.text] = [[], "", null, ""];
+    [this.tables, this.problems, this.results, this.scroll] = [[], [], null, 0];
+    this.recordings = new Recordings(at("recordings"), (path) => this.pictures(path));
+    const set = (table, key, value) => this.set(table, key, value);
+    const look = (k) => this.trace.open(k, this.tables[k]).catch((error) => this.trouble(error.message));
+    this.cards = new Tables(at("tables"), { set, look, find: (line) => this.editor.find(line) });
+    this.editor = new Editor(at("campaign"), (text) => this.edit(text));
+    const ask = (what, more) => this.program.ask(what, more);
+    this.trace = new TraceView(at("trace"), { ask, set, events: (table, file) => this.events(table, file) });
+    this.drawn = new Map();
+    this.wire();
+    this.program.ready.then(() => { document.body.dataset.ready = "yes"; }, (error) => this.trouble(`This browser cannot run the program: ${error.message}`));
+  }
+
+  wire() {
+    at("choose-files").onclick = at("add").onclick = () => at("files").click();
+    at("choose-folder").onclick = () => at("folder").click();
+    for (const id of ["files", "folder"]) {
+      at(id).onchange = () => { this.take(chosen(at(id))); at(id).value = ""; };
+    }
+    for (const button of document.querySelectorAll("[data-example]")) button.onclick = () => this.look({ example: button.dataset.example });
+    at("anew").onclick = () => shelf.clear().catch(() => {}).then(() => location.reload());
+    at("to-report").onclick = () => at("report").scrollIntoView();
+    at("stop").onclick = () => this.program.end("stopped");
+    at("save-report").onclick = () => this.save("report.html", "text/html");
+    at("save-campaign").onclick = () => this.save("campaign.toml", "text/plain");
+    at("save-all").onclick = () => this.work("packing", async () => save(`${this.name || "results"}.zip`, await this.program.ask("archive"), "application/zip"));
+    at("keep").onclick = () => this.keep();
+    const over = (on) => (event) => { event.preventDefault(); document.body.classList.toggle("over", on); };
+    addEventListener("dragover", over(true));
+    addEventListener("dragleave", over(false));
+    addEventListener("drop", async (event) => {
+      over(false)(event);
+      this.take(await dropped(event.dataTransfer).catch(() => []));
+    });
+    addEventListener("message", ({ source, data }) => {
+      if (source !== at("report").contentWindow) return;
+      if (typeof data.scroll === "number") this.scroll = data.scroll;
+      if (typeof data.file === "string") this.save(data.file);
+    });
+    shelf.get().then((kept) => kept && this.offer(kept), () => {});
+  }
+
+  /** Kept files are taken up only if the person says so. */
+  offer(kept) {
+    const again = make("button", { textContent: `go on with ${kept.name}, kept in this browser` });
+    again.onclick = () => { again.remove(); this.look({ files: kept.files, name: kept.name, text: kept.text }); };
+    at("drop").append(make("p", {}, again));
+  }
+
+  keep() {
+    return this.work("keeping", async () => {
+      const files = await Promise.all(this.files.map(async ({ path, file }) => ({ path, file: new Blob([await file.arrayBuffer()]) })));
+      await shelf.put({ name: this.name, files, text: this.text });
+      at("keep").textContent = "kept";
+    });
+  }
+
+  take(files) {
+    if (!files.length) return undefined;
+    const { name, files: own } = inFolder(files);
+    const before = this.example ? [] : this.files;
+    const known = new Map([...before, ...own].map((one) => [one.path, one]));
+    return this.look({ files: Array.from(known.values()), name: before.length ? this.name : name });
+  }
+
+  /** Begins with other files: lists them, and runs the campaign for them. */
+  async look({ files = [], name = "", example = null, text = null }) {
+    [this.files, this.name, this.example, this.results] = [files, example ?? name, example, null];
+    this.drawn.clear();
+    this.trace.close();
+    at("troubles").replaceChildren();
+    const all = files.reduce((sum, { file }) => sum + file.size, 0);
+    if (all > MOST_BYTES) {
+      const largest = files.reduce((a, b) => (b.file.size > a.file.size ? b : a));
+      return this.trouble(`${Math.round(all / 1e6)} MB are more than a page holds; the largest file is ${largest.path} with ${Math.round(largest.file.size / 1e6)} MB. Drop fewer files, or use the command on this computer: vibro run ${JSON.stringify(name)}`);
+    }
+    const seen = await this.work("reading files", () => this.load());
+    if (!seen) return undefined;
+    at("bench").hidden = false;
+    at("drop").hidden = true;
+    this.recordings.show(seen);
+    if (seen.none && !seen.tables.length) this.trouble(seen.none);
+    return text === null ? this.state(seen) : this.edit(text);
+  }
+
+  /** Gives the program its files; also after it was stopped. */
+  async load() {
+    await this.program.ready;
+    if (this.example) await this.program.ask("example", { name: this.example });
+    else {
+      await this.program.begin(this.name);
+      for (const [k, { path, file }] of this.files.entries()) {
+        this.progress({ what: `reading ${path}`, done: k, all: this.files.length });
+        await this.program.add(path, file).catch((error) => this.without(error));
+        if (/\.zip$/i.test(path)) await this.program.ask("unpack", { path }).catch((error) => this.without(error));
+      }
+    }
+    return this.program.ask("look");
+  }
+
+  /** One file that cannot be used loses only itself. */
+  without(error) {
+    if (!(error instanceof Refused)) throw error;
+    this.trouble(error.message);
+  }
+
+  async state({ text, tables, problems }) {
+    Object.assign(this, { text, tables, problems });
+    this.cards.show(tables, problems);
+    this.editor.show(text, problems);
+    await this.run();
+  }
+
+  async set(table, key, value) {
+    at("troubles").replaceChildren();
+    await this.state(await this.program.ask("state", { table, key, value }));
+  }
+
+  async edit(text) {
+    at("troubles").replaceChildren();
+    await this.state(await this.program.ask("edit", { text }));
+  }
+
+  /** Runs the campaign as it is now; of several changes only the last one. */
+  async run() {
+    if (this.running) {
+      this.again = true;
+      return;
+    }
+    this.running = true;
+    do {
+      this.again = false;
+      const done = await this.work("running", () => this.program.ask("run"), true);
+      if (!done) continue;
+      this.cards.refused = done.refused;
+      await this.report();
+      this.cards.show(this.tables, this.problems);
+    } while (this.again);
+    this.running = false;
+    if (this.trace.k !== undefined) await this.trace.refresh(this.tables);
+    document.body.dataset.runs = String(1 + Number(document.body.dataset.runs ?? 0));
+  }
+
+  async report() {
+    const text = new TextDecoder(), file = async (name) => text.decode(await this.program.ask("file", { name }));
+    const html = await file("report.html");
+    this.results = JSON.parse(await file("results.json"));
+    const meta = document.querySelector("meta[http-equiv]").outerHTML;
+    at("report").srcdoc = html.replace("<head>", () => `<head>${meta}`).replace("</body>", () => `${IN_REPORT.replace("SCROLL", String(this.scroll))}</body>`);
+  }
+
+  /** Times in s of what was detected in a file of a table. */
+  events({ section, number }, file) {
+    const name = file.split("/").pop(), results = this.results ?? {};
+    if (section === "impacts") return results.impacts?.find((one) => one.file?.split("/").pop() === name)?.times ?? [];
+    if (section === "drop") {
+      for (const { files = [], times = [] } of results.drops ?? []) {
+        const k = files.findIndex((one) => one.split("/").pop() === name);
+        if (k >= 0) return times[k] ?? [];
+      }
+    }
+    if (section === "decay") {
+      const found = results.decays?.find((one) => one.file?.split("/").pop() === name);
+      return found ? [found.start, found.end].filter(Number.isFinite) : [];
+    }
+    return [];
+  }
+
+  pictures(path) {
+    if (!this.drawn.has(path)) this.drawn.set(path, this.program.ask("pictures", { path }));
+    return this.drawn.get(path);
+  }
+
+  save(name, type) {
+    return this.work("saving", async () => save(name, await this.program.ask("file", { name }), type));
+  }
+
+  progress({ what, done, all }) {
+    at("doing").textContent = what;
+    at("bar").hidden = at("stop").hidden = false;
+    if (all > 0) at("bar").value = Math.min(done / all, 1);
+    else at("bar").removeAttribute("value");
+  }
+
+  trouble(text) {
+    at("troubles").append(make("li", { textContent: text }));
+  }
+
+  /** Does something that may take long; says what fails. Stopped or out of memory, the program gets its files again. */
+  async work(what, todo, isRun = false) {
+    const late = setTimeout(() => this.progress({ what, done: 0, all: 0 }), 300);
+    try {
+      return await todo();
+    } catch (error) {
+      if (error instanceof Stopped) {
+        const why = error.message === "stopped" ? "Stopped." : `The page could not finish: ${error.message}. The command on this computer has more room: vibro run ${JSON.stringify(this.name || "FOLDER")}`;
+        const text = this.text;
+        if (isRun || what !== "reading files") {
+          await this.load().then(() => text && this.program.ask("edit", { text })).catch(() => {});
+        }
+        this.trouble(why);
+      } else if (!(isRun && error instanceof Refused && this.problems.some((one) => one.text === error.message))) this.trouble(error.message);
+      return null;
+    } finally {
+      clearTimeout(late);
+      at("doing").textContent = "";
+      at("bar").hidden = at("stop").hidden = true;
+    }
+  }
+}
+
+const app = new App();

@@ -1,0 +1,35 @@
+/** The text of the campaign, with the numbers of its lines and its errors beside them. */
+class Editor {
+  constructor(root, changed) {
+    this.fold = root;
+    [this.lines, this.text, this.problems] = ["lines", "text", "problems"].map((id) => document.getElementById(id));
+    let later;
+    this.text.addEventListener("input", () => {
+      this.number([]);
+      clearTimeout(later);
+      later = setTimeout(() => changed(this.text.value), 500);
+    });
+  }
+
+  show(text, problems) {
+    // What is being typed stays as it is.
+    if (document.activeElement !== this.text && this.text.value !== text) this.text.value = text;
+    this.number(problems.map(({ line }) => line));
+    this.problems.replaceChildren(...problems.map(({ text: words }) => make("li", { textContent: words })));
+    if (problems.some(({ line }) => line)) this.fold.open = true;
+  }
+
+  number(wrong) {
+    const n = this.text.value.split("\n").length;
+    this.text.rows = n;
+    this.lines.replaceChildren(...Array.from({ length: n }, (_, k) => make(wrong.includes(k + 1) ? "b" : "span", { textContent: `${k + 1}\n` })));
+  }
+
+  find(line) {
+    this.fold.open = true;
+    const before = this.text.value.split("\n").slice(0, line - 1).join("\n").length + (line > 1 ? 1 : 0);
+    this.text.focus({ preventScroll: true });
+    this.text.setSelectionRange(before, before + this.text.value.slice(before).indexOf("\n"));
+    this.lines.children[line - 1]?.scrollIntoView({ block: "center" });
+  }
+}

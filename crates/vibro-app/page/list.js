@@ -1,0 +1,194 @@
+/** An element with its class, text and children. */
+function make(tag, about = {}, ...children) {
+  const element = Object.assign(document.createElement(tag), about);
+  element.append(...children);
+  return element;
+}
+
+/** The colour that the style names. */
+const colour = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+
+/** A number in a few digits with its unit. */
+function quantity(value, unit) {
+  if (!Number.isFinite(value)) return "";
+  const steps = [[1e9, "G"], [1e6, "M"], [1e3, "k"], [1, ""], [1e-3, "m"], [1e-6, "µ"]];
+  const [by, letter] = steps.find(([step]) => Math.abs(value) >= step) ?? [1, ""];
+  return `${Number((value / by).toPrecision(4))} ${letter}${unit}`.trim();
+}
+
+/** Canvas ready to draw on in pixels of the style. */
+function canvasOf(canvas) {
+  const sharp = devicePixelRatio || 1, { clientWidth: width, clientHeight: height } = canvas;
+  [canvas.width, canvas.height] = [Math.round(width * sharp), Math.round(height * sharp)];
+  const pen = canvas.getContext("2d");
+  pen.setTransform(sharp, 0, 0, sharp, 0, 0);
+  pen.clearRect(0, 0, width, height);
+  return { pen, width, height };
+}
+
+/** Smallest and largest of a picture's values. */
+function range(picture) {
+  const all = [...picture.low, ...picture.high].filter((v) => v !== null);
+  return all.length ? [all.reduce((a, b) => Math.min(a, b)), all.reduce((a, b) => Math.max(a, b))] : [0, 1];
+}
+
+/** Draws a picture as a band from the smallest to the largest value of each column. */
+function drawBand(pen, picture, across, up) {
+  pen.strokeStyle = colour("--curve");
+  pen.lineWidth = 1;
+  pen.beginPath();
+  let last = null;
+  const step = (picture.to - picture.from) / picture.low.length;
+  picture.low.forEach((low, k) => {
+    if (low === null) return;
+    const x = across(picture.from + (k + 0.5) * step), high = picture.high[k];
+    if (last === null) pen.moveTo(x, up(low));
+    else pen.lineTo(x, up(Math.abs(last - low) < Math.abs(last - high) ? low : high));
+    pen.lineTo(x, up(low));
+    pen.lineTo(x, up(high));
+    last = high;
+  });
+  pen.stroke();
+}
+
+/** The small picture of a record. */
+function thumbnail(canvas, picture) {
+  const { pen, width, height } = canvasOf(canvas), [low, high] = range(picture), tall = high - low || 1;
+  drawBand(pen, picture, (x) => (x - picture.from) / (picture.to - picture.from || 1) * width, (v) => height - 2 - (v - low) / tall * (height - 4));
+}
+
+/** What a record is, in words. */
+function described(record) {
+  const what = { trace: "trace", spectrum: "spectrum", frf: "function" }[record.kind] ?? record.kind;
+  const of = record.quantity === "other" ? "" : ` of ${record.quantity}`;
+  return `${what}${of}`;
+}
+
+/** Rows of the list that are shown at first. */
+const FIRST_ROWS = 12;
+
+/** The list of files, each with its records and a small picture of each. */
+class Recordings {
+  constructor(host, pictures) {
+    [this.host, this.pictures] = [host, pictures];
+    this.watch = new IntersectionObserver((seen) => seen.filter((one) => one.isIntersecting).forEach(({ target }) => this.draw(target)));
+  }
+
+  show({ recordings, left }) {
+    this.watch.disconnect();
+    const head = make("tr", {}, ...["file", "channel", "what", "unit", "rate", "length", ""].map((name) => make("th", { textContent: name })));
+    const body = make("tbody");
+    for (const file of recordings) body.append(...this.rows(file));
+    const rows = Array.from(body.rows);
+    rows.slice(FIRST_ROWS).forEach((row) => { row.hidden = true; });
+    this.host.replaceChildren(make("div", { className: "files" }, make("table", {}, make("thead", {}, head), body)));
+    if (rows.length > FIRST_ROWS) {
+      const all = make("button", { textContent: `show all ${rows.length} rows` });
+      all.onclick = () => { rows.forEach((row) => { row.hidden = false; }); all.remove(); };
+      this.host.append(all);
+    }
+    if (left?.length) {
+      const items = left.map(([name, why]) => make("li", { textContent: `${name}: ${why}` }));
+      this.host.append(make("details", {}, make("summary", { textContent: `${left.length} not used` }), make("ul", {}, ...items)));
+    }
+  }
+
+  rows(file) {
+    const cell = (text, className = "") => make("td", { textContent: text, className });
+    if (file.problem) return [make("tr", {}, cell(file.path), make("td", { colSpan: 6, textContent: file.problem }))];
+    return file.records.map((record, k) => {
+      const canvas = make("canvas", { title: "smallest and largest values" });
+      Object.assign(canvas.dataset, { path: file.path, record: k });
+      this.watch.observe(canvas);
+      const name = make("td", { textContent: k ? "" : file.path, title: `${file.format}, ${file.bytes} bytes` });
+      const rate = record.rate ? quantity(record.rate, "Hz") : record.dx && record.x_unit ? `${quantity(record.dx, record.x_unit)} apart` : "not stated";
+      const length = record.duration ? quantity(record.duration, "s") : `${record.n} values`;
+      const unit = record.unit || (record.quantity === "other" ? "not stated" : "1");
+      return make("tr", {}, name, cell(record.name || String(k + 1)), cell(described(record)), cell(unit), cell(rate, "number"), cell(length, "number"), make("td", {}, canvas));
+    });
+  }
+
+  async draw(canvas) {
+    this.watch.unobserve(canvas);
+    const pictures = await this.pictures(canvas.dataset.path).catch(() => []);
+    const picture = pictures[canvas.dataset.record];
+    if (picture) thumbnail(canvas, picture);
+  }
+}
+
+/** A value as a person types it, in TOML. */
+function toToml(typed) {
+  const text = typed.trim(), number = text.replace(/^(-?\d+),(\d+)$/, "$1.$2");
+  if (text === "" || /^(true|false|["'[{].*|[-+]?\d[\d_]*(\.\d+)?([eE][-+]?\d+)?)$/s.test(number)) return number;
+  return JSON.stringify(text);
+}
+
+/** A value of TOML as a person reads it: text without its quotes. */
+function fromToml(value) {
+  try {
+    const plain = JSON.parse(value);
+    if (typeof plain === "string" && toToml(plain) === value) return plain;
+  } catch { /* A value that JSON does not have is shown as it is written. */ }
+  return value;
+}
+
+/** The tables of the campaign as cards with fields. */
+class Tables {
+  /** `set(table, key, value)` states a value; `look(table)` shows the trace; `find(line)` shows the text. */
+  constructor(host, { set, look, find }) {
+    Object.assign(this, { host, set, look, find });
+    this.refused = [];
+  }
+
+  show(tables, problems) {
+    const focus = document.activeElement?.dataset?.field;
+    this.host.replaceChildren(...tables.map((table, k) => this.card(table, k, tables[k + 1]?.line, problems)));
+    if (!tables.length) this.host.append(make("p", { textContent: "Nothing yet: the recordings above give no table. Write one below, in the campaign." }));
+    if (focus) this.host.querySelector(`[data-field="${CSS.escape(focus)}"]`)?.focus();
+  }
+
+  card(table, k, next, problems) {
+    const card = make("article", { className: "card" });
+    card.append(make("h3", { textContent: table.files || table.section }));
+    const kind = [table.about || `[[${table.section}]]`, table.guess ? "guessed" : ""].filter(Boolean).join(", ");
+    card.append(make("p", { className: "kind", textContent: kind }));
+    if (table.refused && !table.line) card.append(make("p", { className: "refused", textContent: table.refused }));
+    const name = fromToml(table.keys.find(({ key }) => key === "name")?.value ?? "");
+    for (const [record, why] of table.line ? this.refused : []) {
+      if (record === name || record === table.files) card.append(make("p", { className: "refused", textContent: why }));
+    }
+    const wrong = problems.filter(({ line }) => line && table.line && line >= table.line && line < (next ?? Infinity));
+    for (const { text } of wrong) card.append(make("p", { className: "refused", textContent: text }));
+    const rows = (...known) => table.keys.filter((row) => known.includes(row.known)).map((row) => this.row(row, k));
+    card.append(...rows("missing"), ...rows("guessed"), ...rows("stated"), ...rows("found"));
+    const open = rows("open");
+    if (open.length) card.append(make("details", {}, make("summary", { textContent: `${open.length} more that would help` }), ...open));
+    const does = make("div", { className: "does" });
+    if (table.keys.some(({ key, value }) => key === "file" && value)) {
+      does.append(make("button", { textContent: "see the record", onclick: () => this.look(k) }));
+    }
+    if (table.line) does.append(make("button", { textContent: "in the text", onclick: () => this.find(table.line) }));
+    card.append(does);
+    return card;
+  }
+
+  row({ key, value, known, why }, k) {
+    const name = `${k} ${key}`, id = `field-${k}-${key}`;
+    const input = make("input", { id, value: fromToml(value), autocomplete: "off", spellcheck: false });
+    input.dataset.field = name;
+    const wrong = make("span", { className: "wrong" });
+    input.onchange = async () => {
+      wrong.textContent = "";
+      try {
+        await this.set(k, key, toToml(input.value));
+      } catch (error) {
+        wrong.textContent = error.message;
+      }
+    };
+    const reason = known === "guessed" ? `guessed: ${why}` : known === "missing" ? `missing: ${why}` : why;
+    const row = make("div", { className: `row ${known}` }, make("label", { htmlFor: id, textContent: key }), input);
+    if (reason) row.append(make("span", { className: "why", textContent: reason }));
+    row.append(wrong);
+    return row;
+  }
+}

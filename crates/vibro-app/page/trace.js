@@ -1,0 +1,290 @@
+/** Keys that the mouse drags in the trace of a kind of record, with what each does. */
+const PICKS = {
+  threshold: { of: ["impacts", "drop"], about: "smallest impact counted, as a part of the median height" },
+  refractory: { of: ["impacts", "drop"], about: "dead time behind an impact, in s" },
+  span: { of: ["impacts", "drop", "decay", "pulse", "spectrum"], about: "the part that is used, from and to in s" },
+  band: { of: ["impacts", "decay"], about: "band in Hz, dragged in the spectrum" },
+};
+
+/** Threshold of the program where none is stated. */
+const THRESHOLD = 0.125;
+
+const shortest = (value) => String(Number(value.toPrecision(4)));
+const pairOf = (value) => (value ?? "").match(/[-+\d.eE]+/g)?.map(Number) ?? null;
+
+/** The raw trace of a table, with what was detected, and lines that the mouse drags. */
+class TraceView {
+  constructor(host, { ask, set, events }) {
+    Object.assign(this, { host, ask, set, events });
+    this.part = [null, null];
+  }
+
+  async open(k, table, file = 0) {
+    if (this.k !== k || this.file !== file) this.part = [null, null];
+    Object.assign(this, { k, table, file });
+    this.host.hidden = false;
+    await this.load();
+    this.host.scrollIntoView({ block: "nearest" });
+  }
+
+  close() {
+    this.host.hidden = true;
+    this.k = undefined;
+  }
+
+  /** The table as it is now; what is dragged is shown anew. */
+  async refresh(tables) {
+    if (this.k === undefined) return;
+    if (!tables[this.k]) return this.close();
+    this.table = tables[this.k];
+    await this.load().catch(() => this.close());
+  }
+
+  value(key) {
+    return this.table.keys.find((row) => row.key === key)?.value ?? "";
+  }
+
+  picks() {
+    return Object.keys(PICKS).filter((key) => PICKS[key].of.includes(this.table.section));
+  }
+
+  async load() {
+    const [from, to] = this.part, columns = Math.max(200, Math.round(this.host.clientWidth) - 60);
+    this.data = await this.ask("trace", { table: this.k, file: this.file, from, to, columns });
+    this.times = this.events(this.table, this.data.files[this.file]);
+    this.build();
+    this.draw();
+  }
+
+  build() {
+    const { data } = this, title = `${data.files[this.file]}, ${data.name || "channel 1"}: ${data.n} values`;
+    const tool = (textContent, about, onclick) => make("button", { textContent, title: about, onclick });
+    const zoom = (by) => () => this.zoom(by, 0.5);
+    const shift = (by) => () => { const wide = this.wide(); this.go(data.picture.from + by * wide, data.picture.to + by * wide); };
+    const bar = make("div", { className: "does" }, make("strong", { textContent: title }));
+    if (data.files.length > 1) {
+      const choice = make("select", { onchange: () => this.open(this.k, this.table, Number(choice.value)) });
+      choice.setAttribute("aria-label", "File");
+      data.files.forEach((name, k) => choice.append(make("option", { value: k, textContent: name, selected: k === this.file })));
+      bar.append(choice);
+    }
+    bar.append(tool("closer", "Zoom in", zoom(0.5)), tool("wider", "Zoom out", zoom(2)), tool("←", "Earlier", shift(-0.5)), tool("→", "Later", shift(0.5)), tool("all", "The whole record", () => this.go(null, null)), tool("close", "Close the record", () => this.close()));
+    this.canvas = make("canvas", { tabIndex: 0 });
+    this.canvas.setAttribute("aria-label", `Trace of ${title}; ${this.times.length} detected`);
+    this.band = make("canvas", { className: "band", hidden: !data.spectrum || !this.picks().includes("band") });
+    this.band.setAttribute("aria-label", "Spectrum of the part that is shown");
+    const fields = make("div", { className: "does" }), inputs = {};
+    for (const key of this.picks()) {
+      const input = make("input", { size: 12, value: this.value(key), placeholder: "not stated", title: PICKS[key].about });
+      input.onchange = () => this.state(key, toToml(input.value.trim() === "" ? "" : input.value));
+      inputs[key] = input;
+      fields.append(make("label", {}, `${key} `, input));
+    }
+    this.inputs = inputs;
+    this.said = make("p", { className: "soft" });
+    this.toml = make("pre");
+    const copy = tool("copy these keys", "Copy as TOML", async () => {
+      await navigator.clipboard.writeText(this.toml.textContent).catch(() => getSelection().selectAllChildren(this.toml));
+    });
+    this.host.replaceChildren(bar, this.canvas, this.band, fields, this.said, this.toml, copy);
+    this.canvas.onpointerdown = (event) => this.press(event);
+    this.canvas.onwheel = (event) => {
+      event.preventDefault();
+      this.zoom(event.deltaY < 0 ? 0.7 : 1 / 0.7, event.offsetX / this.canvas.clientWidth);
+    };
+    this.canvas.ondblclick = () => this.go(null, null);
+    this.band.onpointerdown = (event) => this.pressBand(event);
+    const help = this.times.length ? `${this.times.length} detected: the marks below. ` : "";
+    this.said.textContent = `${help}Drag a line to move it; drag beside the lines to zoom, double-click for all.`;
+  }
+
+  wide() { return this.data.picture.to - this.data.picture.from; }
+
+  zoom(by, at) {
+    const { from } = this.data.picture, wide = this.wide(), centre = from + at * wide;
+    this.go(centre - at * wide * by, centre + (1 - at) * wide * by);
+  }
+
+  go(from, to) {
+    const { first, last } = this.data;
+    this.part = from === null ? [null, null] : [Math.max(from, first), Math.min(to, last)];
+    this.load();
+  }
+
+  /** Median height of what was detected, by the picture. */
+  height() {
+    const { picture } = this.data, n = picture.low.length, wide = this.wide() || 1;
+    const heights = this.times.filter((t) => t >= picture.from && t <= picture.to).map((t) => {
+      const at = Math.floor((t - picture.from) / wide * n), around = [at - 1, at, at + 1, at + 2, at + 3];
+      return Math.max(0, ...around.map((k) => Math.max(Math.abs(picture.low[k] ?? 0), Math.abs(picture.high[k] ?? 0))));
+    });
+    heights.sort((a, b) => a - b);
+    return heights.length ? heights[Math.floor(heights.length / 2)] : Math.max(...range(picture).map(Math.abs));
+  }
+
+  /** Time of the largest value that is shown. */
+  largest() {
+    const { picture } = this.data, size = (k) => Math.max(Math.abs(picture.low[k] ?? 0), Math.abs(picture.high[k] ?? 0));
+    const k = picture.low.reduce((best, _, k) => (size(k) > size(best) ? k : best), 0);
+    return picture.from + k / picture.low.length * this.wide();
+  }
+
+  draw() {
+    const { pen, width, height } = canvasOf(this.canvas), { picture, unit } = this.data;
+    let [low, high] = range(picture);
+    const room = 0.06 * (high - low || 1), foot = 20;
+    [low, high] = [low - room, high + room];
+    this.across = (t) => (t - picture.from) / (this.wide() || 1) * width;
+    this.up = (v) => (height - foot) * (1 - (v - low) / (high - low));
+    this.at = (x) => picture.from + x / width * this.wide();
+    this.level = (y) => low + (1 - y / (height - foot)) * (high - low);
+    drawBand(pen, picture, this.across, this.up);
+    pen.fillStyle = colour("--soft");
+    pen.font = "11px sans-serif";
+    for (let k = 0; k <= 5; k++) {
+      const t = picture.from + k / 5 * this.wide();
+      pen.textAlign = k === 0 ? "left" : k === 5 ? "right" : "center";
+      pen.fillText(quantity(t, "s") || "0 s", this.across(t), height - 4);
+    }
+    pen.textAlign = "left";
+    pen.fillText(quantity(high - room, unit), 4, 12);
+    pen.fillText(quantity(low + room, unit), 4, height - foot - 4);
+    pen.strokeStyle = pen.fillStyle = colour("--edge");
+    for (const t of this.times) {
+      const x = this.across(t);
+      pen.beginPath();
+      pen.moveTo(x, height - foot);
+      pen.lineTo(x - 4, height - foot + 7);
+      pen.lineTo(x + 4, height - foot + 7);
+      pen.fill();
+    }
+    this.handles = this.lines();
+    for (const line of this.handles) this.drawHandle(pen, line, width, height - foot);
+    if (!this.band.hidden) this.drawSpectrum();
+    const stated = this.picks().filter((key) => this.value(key));
+    this.toml.textContent = stated.map((key) => `${key} = ${this.value(key)}`).join("\n") || "# nothing is stated: all is found from the record";
+  }
+
+  drawHandle(pen, { place, level, name }, width, height) {
+    pen.setLineDash([6, 4]);
+    pen.lineWidth = 1.5;
+    pen.beginPath();
+    if (level !== undefined) {
+      pen.moveTo(0, this.up(level));
+      pen.lineTo(width, this.up(level));
+    } else {
+      pen.moveTo(this.across(place), 0);
+      pen.lineTo(this.across(place), height);
+    }
+    pen.stroke();
+    pen.setLineDash([]);
+    pen.textAlign = "right";
+    if (level !== undefined) pen.fillText(name, width - 4, this.up(level) - 4);
+    // Names of lines that stand near each other have heights of their own.
+    else {
+      const x = this.across(place), left = x < width / 2;
+      pen.textAlign = left ? "left" : "right";
+      pen.fillText(name, left ? x + 4 : x - 4, name === "from" || name === "to" ? 26 : 40);
+    }
+    pen.textAlign = "left";
+  }
+
+  /** The lines that are dragged, each with the value that it sets. */
+  lines() {
+    const all = [], { picture, first, last } = this.data, can = this.picks();
+    if (can.includes("threshold")) {
+      const height = this.height(), part = Number(this.value("threshold")) || THRESHOLD;
+      all.push({ name: "threshold", level: part * height, key: "threshold", to: (x, y) => shortest(Math.max(Math.abs(this.level(y)) / height, 1e-3)) });
+    }
+    if (can.includes("refractory")) {
+      const begins = this.times.find((t) => t >= picture.from) ?? this.times[0] ?? this.largest(), dead = Number(this.value("refractory")) || 0;
+      all.push({ name: "dead time", place: begins + (dead || 0.02 * this.wide()), key: "refractory", to: (x) => shortest(Math.max(this.at(x) - begins, 1e-6)) });
+    }
+    if (can.includes("span")) {
+      const [from, to] = pairOf(this.value("span")) ?? [first, last];
+      const both = (a, b) => `[${shortest(a)}, ${shortest(b)}]`;
+      all.push({ name: "from", place: from, key: "span", to: (x) => both(Math.min(this.at(x), to), to) });
+      all.push({ name: "to", place: to, key: "span", to: (x) => both(from, Math.max(this.at(x), from)) });
+    }
+    return all;
+  }
+
+  press(event) {
+    const near = ({ place, level }) => level !== undefined ? Math.abs(this.up(level) - event.offsetY) : Math.abs(this.across(place) - event.offsetX);
+    const line = this.handles.filter((one) => near(one) < 8).sort((a, b) => near(a) - near(b))[0];
+    const begun = event.offsetX, ends = (x) => Math.min(Math.max(x, 0), this.canvas.clientWidth);
+    let moved = begun, value = "";
+    this.canvas.setPointerCapture(event.pointerId);
+    this.canvas.onpointermove = ({ offsetX, offsetY }) => {
+      moved = ends(offsetX);
+      this.draw();
+      const { pen, height } = { pen: this.canvas.getContext("2d"), height: this.canvas.clientHeight };
+      if (line) {
+        value = line.to(moved, offsetY);
+        this.drawHandle(pen, line.level !== undefined ? { name: value, level: this.level(offsetY) } : { name: value, place: this.at(moved) }, this.canvas.clientWidth, height - 20);
+        if (this.inputs[line.key]) this.inputs[line.key].value = value;
+      } else {
+        pen.globalAlpha = 0.2;
+        pen.fillStyle = colour("--link");
+        pen.fillRect(Math.min(begun, moved), 0, Math.abs(moved - begun), height);
+        pen.globalAlpha = 1;
+      }
+    };
+    this.canvas.onpointerup = () => {
+      this.canvas.onpointermove = this.canvas.onpointerup = null;
+      if (line && value) this.state(line.key, value);
+      else if (!line && Math.abs(moved - begun) > 5) this.go(this.at(Math.min(begun, moved)), this.at(Math.max(begun, moved)));
+      else this.draw();
+    };
+  }
+
+  drawSpectrum() {
+    const { pen, width, height } = canvasOf(this.band), { spectrum } = this.data, [low, high] = range(spectrum);
+    const across = (f) => (f - spectrum.from) / (spectrum.to - spectrum.from || 1) * width;
+    this.hertz = (x) => spectrum.from + x / width * (spectrum.to - spectrum.from);
+    const shown = Math.max(low, high - 6);
+    drawBand(pen, spectrum, across, (v) => (height - 16) * (1 - (Math.max(v, shown) - shown) / (high - shown || 1)));
+    pen.fillStyle = colour("--soft");
+    pen.font = "11px sans-serif";
+    for (let k = 0; k <= 4; k++) {
+      const f = spectrum.from + k / 4 * (spectrum.to - spectrum.from);
+      pen.textAlign = k === 0 ? "left" : k === 4 ? "right" : "center";
+      pen.fillText(quantity(f, "Hz") || "0 Hz", across(f), height - 3);
+    }
+    const band = pairOf(this.value("band"));
+    if (!band) return;
+    pen.fillStyle = colour("--edge");
+    pen.globalAlpha = 0.2;
+    pen.fillRect(across(band[0]), 0, across(band[1]) - across(band[0]), height - 16);
+    pen.globalAlpha = 1;
+  }
+
+  pressBand(event) {
+    const begun = event.offsetX;
+    let moved = begun;
+    this.band.setPointerCapture(event.pointerId);
+    this.band.onpointermove = ({ offsetX }) => {
+      moved = Math.min(Math.max(offsetX, 0), this.band.clientWidth);
+      this.drawSpectrum();
+      const pen = this.band.getContext("2d");
+      pen.globalAlpha = 0.25;
+      pen.fillStyle = colour("--edge");
+      pen.fillRect(Math.min(begun, moved), 0, Math.abs(moved - begun), this.band.clientHeight - 16);
+      pen.globalAlpha = 1;
+    };
+    this.band.onpointerup = () => {
+      this.band.onpointermove = this.band.onpointerup = null;
+      if (Math.abs(moved - begun) < 4) return;
+      const [low, high] = [begun, moved].sort((a, b) => a - b).map((x) => shortest(this.hertz(x)));
+      this.state("band", `[${low}, ${high}]`);
+    };
+  }
+
+  async state(key, value) {
+    try {
+      await this.set(this.k, key, value);
+    } catch (error) {
+      this.said.textContent = error.message;
+    }
+  }
+}

@@ -1,0 +1,73 @@
+//! What the page asks, and what it gets.
+
+use serde::Deserialize;
+use serde_json::Value;
+
+/// What the page asks of a [`Workbench`](crate::Workbench).
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(tag = "do", rename_all = "snake_case")]
+pub enum Request {
+    /// The recordings of an example, with its campaign, in place of all files.
+    Example {
+        /// Its name, such as `bench`.
+        name: String,
+    },
+    /// The files of a zip archive that was added, in its place.
+    Unpack {
+        /// Its name.
+        path: String,
+    },
+    /// What the files are, and the campaign for them.
+    Look,
+    /// The text of the campaign, as a person changed it.
+    Edit {
+        /// The text.
+        text: String,
+    },
+    /// The value of a key of a table, in TOML; an empty one takes the key out.
+    State {
+        /// Number of the table in the list of [`Request::Look`], from 0.
+        table: usize,
+        /// The key.
+        key: String,
+        /// The value.
+        value: String,
+    },
+    /// Runs the campaign.
+    Run,
+    /// Pictures of all records of a file.
+    Pictures {
+        /// Its name.
+        path: String,
+    },
+    /// A part of the raw trace of a table.
+    Trace {
+        /// Number of the table, from 0.
+        table: usize,
+        /// Number of its file, from 0.
+        #[serde(default)]
+        file: usize,
+        /// From this time on, in s.
+        from: Option<f64>,
+        /// To this time, in s.
+        to: Option<f64>,
+        /// Number of columns of the picture.
+        columns: usize,
+    },
+    /// A file of the results.
+    File {
+        /// Its name.
+        name: String,
+    },
+    /// The campaign and all results as a zip archive.
+    Archive,
+}
+
+/// An answer to the page.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Reply {
+    /// An object.
+    Json(Value),
+    /// Content of a file.
+    Bytes(Vec<u8>),
+}

@@ -1,0 +1,130 @@
+//! A table of the campaign as the page shows it: its keys, those that are missing, and where it stands.
+
+use serde::Serialize;
+use vibroimpact::campaign::WrittenTable;
+use vibroimpact::proposal::{Proposal, Table};
+
+/// A table of records.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct SeenTable {
+    /// `sweep` for `[[sweep]]`.
+    pub section: String,
+    /// Its files in words.
+    pub files: String,
+    /// Kind of its files in words.
+    pub about: String,
+    /// Whether the kind is a guess.
+    pub guess: bool,
+    /// Its first line in the text, from 1; `None` while it lacks a value and is a comment.
+    pub line: Option<usize>,
+    /// Why its records give no answer yet.
+    pub refused: Option<String>,
+    /// Its keys.
+    pub keys: Vec<SeenKey>,
+    /// Its number in its section, from 1, while it is no comment.
+    #[serde(skip)]
+    pub number: Option<usize>,
+    /// Its number in the proposal.
+    #[serde(skip)]
+    pub proposed: Option<usize>,
+}
+
+/// A key of a table.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct SeenKey {
+    /// Its name.
+    pub key: String,
+    /// Its value as TOML; empty where it has none.
+    pub value: String,
+    /// `stated`, `found`, `guessed`, `open` or `missing`.
+    pub known: String,
+    /// Reason of a guess, or what to state.
+    pub why: String,
+}
+
+/// Keys by which the table of a proposal is found again in the text; the first that both have decides.
+const NAMES: [&str; 5] = ["file", "list", "traces", "force", "name"];
+
+/// Values that stand for a record in a proposal's trial are no values.
+fn key_of(row: &vibroimpact::proposal::TableKey) -> SeenKey {
+    use vibroimpact::proposal::KeyStatus;
+    let (known, value) = match row.known {
+        KeyStatus::Found => ("found", row.value.clone()),
+        KeyStatus::Guessed(_) => ("guessed", row.value.clone()),
+        KeyStatus::Open(_) => ("open", String::new()),
+        KeyStatus::Missing(_) => ("missing", String::new()),
+    };
+    let why = row.known.why().unwrap_or_default().to_owned();
+    SeenKey { key: row.key.to_owned(), value, known: known.to_owned(), why }
+}
+
+impl SeenTable {
+    /// The tables of a text, then those of the proposal that are comments in it.
+    pub fn all(text: &str, written: &[WrittenTable], proposal: Option<&Proposal>) -> Vec<SeenTable> {
+        let proposed = proposal.map_or(&[][..], |proposal| &proposal.tables);
+        let mut taken = vec![false; proposed.len()];
+        let mut all: Vec<SeenTable> = Vec::new();
+        for table in written {
+            let is_same = |(k, one): &(usize, &Table)| !taken[*k] && is_of(one, table);
+            let known = proposed.iter().enumerate().find(is_same);
+            if let Some((k, _)) = known {
+                taken[k] = true;
+            }
+            all.push(SeenTable::written(table, known));
+        }
+        for (k, table) in proposed.iter().enumerate().filter(|(k, _)| !taken[*k]) {
+            if table.lacks() && proposal.is_some_and(|proposal| text.contains(&proposal.block(k))) {
+                all.push(SeenTable { line: None, number: None, ..SeenTable::proposed(k, table) });
+            }
+        }
+        all
+    }
+
+    fn proposed(k: usize, table: &Table) -> SeenTable {
+        SeenTable {
+            section: table.section.to_owned(),
+            files: table.files.clone(),
+            about: table.about.to_owned(),
+            guess: table.guess,
+            line: None,
+            refused: table.refused.as_ref().map(vibroimpact::proposal::Refusal::in_words),
+            keys: table.rows.iter().map(key_of).collect(),
+            number: None,
+            proposed: Some(k),
+        }
+    }
+
+    fn written(table: &WrittenTable, known: Option<(usize, &Table)>) -> SeenTable {
+        let stated = |(key, value): &(String, String)| {
+            let row = known.and_then(|(_, known)| known.rows.iter().find(|row| row.key == key));
+            let same = row.map(key_of).filter(|row| row.value == *value);
+            let (key, value) = (key.clone(), value.clone());
+            same.unwrap_or(SeenKey { key, value, known: "stated".to_owned(), why: String::new() })
+        };
+        let mut keys: Vec<SeenKey> = table.keys.iter().map(stated).collect();
+        let open = known.into_iter().flat_map(|(_, known)| &known.rows).map(key_of);
+        keys.extend(open.filter(|row| row.value.is_empty() && table.value(&row.key).is_none()));
+        let files = NAMES.iter().find_map(|name| table.value(name)).unwrap_or_default();
+        let files = files.trim_matches('"').to_owned();
+        let of_text = SeenTable {
+            section: table.section.clone(),
+            files,
+            about: vibroimpact::analysis::title(&table.section).unwrap_or(&table.section).to_owned(),
+            guess: false,
+            line: None,
+            refused: None,
+            keys: Vec::new(),
+            number: None,
+            proposed: None,
+        };
+        let base = known.map_or(of_text, |(k, known)| SeenTable::proposed(k, known));
+        SeenTable { line: Some(table.line), number: Some(table.number), keys, ..base }
+    }
+}
+
+/// Whether a table of the text is this one of a proposal.
+fn is_of(proposed: &Table, written: &WrittenTable) -> bool {
+    let value = |key: &str| proposed.rows.iter().find(|row| row.key == key).map(|row| row.value.as_str());
+    let both = NAMES.iter().find_map(|name| value(name).zip(written.value(name)));
+    proposed.section == written.section && both.is_some_and(|(a, b)| a == b)
+}

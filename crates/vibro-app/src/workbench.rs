@@ -1,0 +1,288 @@
+//! The files of a page, its campaign, and its results, all in memory.
+
+use crate::archive::{packed, unpacked};
+use crate::{Picture, Reply, Request, SeenRecording, SeenTable};
+use serde_json::{Value, json};
+use std::path::{Path, PathBuf};
+use vibroimpact::analysis::{self, AnswerCache, Progress};
+use vibroimpact::campaign::{Campaign, WrittenTable};
+use vibroimpact::error::{Error, Result};
+use vibroimpact::proposal::Proposal;
+use vibroimpact::read::{Folder, Owner, Reader};
+use vibroimpact::report::Output;
+use vibroimpact::report::words::{self, Voice};
+
+/// Files that a person gave, the campaign for them, and the results of its last run.
+#[derive(Debug)]
+pub struct Workbench {
+    folder: Folder,
+    /// The proposal, where the files came without a campaign.
+    proposal: Option<Proposal>,
+    text: String,
+    /// Folder and names of the results.
+    results: (PathBuf, Vec<String>),
+    /// Files of archives that were left out, with the reason.
+    left: Vec<(String, String)>,
+}
+
+impl Default for Workbench {
+    fn default() -> Workbench {
+        Workbench::named("")
+    }
+}
+
+/// Columns of the small picture of a record.
+const COLUMNS: usize = 160;
+
+/// An error in the words of a campaign.
+fn in_words(error: &Error) -> String {
+    error.text_with(|key, value| Voice::Campaign.set(key, value), ToString::to_string)
+}
+
+/// The error of a number that no table has.
+fn no_table() -> Error {
+    Error::usage("no such table", "one of the list")
+}
+
+/// An error as the page shows it.
+fn problem(error: &Error) -> Value {
+    json!({ "text": in_words(error), "line": error.line() })
+}
+
+impl Workbench {
+    /// An empty one for a folder of this name.
+    pub fn named(name: &str) -> Workbench {
+        let folder = Folder::memory(name, <[(&str, Vec<u8>); 0]>::default());
+        let (text, results, left) = (String::new(), (PathBuf::new(), Vec::new()), Vec::new());
+        Workbench { folder, proposal: None, text, results, left }
+    }
+
+    /// Adds a file by its name in the folder, in place of one of the same name.
+    ///
+    /// # Errors
+    /// If the name leads outside the folder.
+    pub fn add(&mut self, name: &str, bytes: Vec<u8>) -> Result<()> {
+        self.folder.hold(Path::new(name), bytes)
+    }
+
+    /// Answers a request of the page.
+    ///
+    /// # Errors
+    /// If there is no answer; the error is for people.
+    pub fn answer(&mut self, request: &Request, progress: &dyn Progress) -> Result<Reply> {
+        Ok(Reply::Json(match request {
+            Request::Example { name } => self.example(name)?,
+            Request::Unpack { path } => self.unpack(path)?,
+            Request::Look => self.look(progress)?,
+            Request::Edit { text } => {
+                text.clone_into(&mut self.text);
+                self.state()
+            }
+            Request::State { table, key, value } => {
+                self.set(*table, key, value)?;
+                self.state()
+            }
+            Request::Run => self.run(progress)?,
+            Request::Pictures { path } => self.pictures(path)?,
+            Request::Trace { table, file, from, to, columns } => {
+                self.trace(*table, *file, (*from, *to), *columns)?
+            }
+            Request::File { name } => return Ok(Reply::Bytes(self.file(name)?)),
+            Request::Archive => return Ok(Reply::Bytes(self.archive()?)),
+        }))
+    }
+
+    fn example(&mut self, name: &str) -> Result<Value> {
+        let demo = vibro_demo::DEMOS.iter().find(|demo| demo.name == name);
+        let demo = demo.ok_or_else(|| Error::usage(format!("no example {name:?}"), "one that there is"))?;
+        *self = Workbench::named(name);
+        demo.make(&mut |name, bytes| self.add(name, bytes.to_vec()))?;
+        Ok(json!({}))
+    }
+
+    fn unpack(&mut self, path: &str) -> Result<Value> {
+        let file = self.folder.path(Path::new(path))?;
+        let bytes = self.folder.read(&file)?;
+        self.folder.remove(&file)?;
+        let (members, left) = unpacked(Path::new(path), bytes)?;
+        let beside = Path::new(path).parent().unwrap_or(Path::new(""));
+        // An archive of one folder has the files of that folder.
+        let top = common_folder(members.iter().map(|(name, _)| name.as_str()));
+        for (name, bytes) in members {
+            let name = beside.join(name.strip_prefix(&top).unwrap_or(&name));
+            self.folder.hold(&name, bytes)?;
+        }
+        self.left.extend(left);
+        Ok(json!({}))
+    }
+
+    /// Path of the campaign.
+    fn path(&self) -> PathBuf {
+        self.folder.root().join(Proposal::FILE)
+    }
+
+    fn campaign(&self) -> Result<Campaign> {
+        analysis::parse(&self.folder, &self.path(), self.text.clone())
+    }
+
+    /// Lists the files, and takes the campaign among them, else proposes one.
+    fn look(&mut self, progress: &dyn Progress) -> Result<Value> {
+        let found = analysis::recordings(&self.folder)?;
+        progress.start("reading files", found.files.len());
+        let seen = |path: &PathBuf| {
+            let seen = SeenRecording::of(&self.folder, path);
+            progress.step();
+            seen
+        };
+        let recordings: Vec<SeenRecording> = found.files.iter().map(seen).collect();
+        let own = self.folder.own_file(Proposal::FILE);
+        let mut none = None;
+        match own {
+            Some(bytes) => {
+                self.proposal = None;
+                self.text = String::from_utf8_lossy(&bytes).into_owned();
+            }
+            None => {
+                match Proposal::of(&self.folder, &Default::default(), None, &AnswerCache::default(), progress)
+                {
+                    Ok(proposal) => {
+                        self.text = proposal.toml();
+                        self.proposal = Some(proposal);
+                    }
+                    Err(error) => none = Some(in_words(&error)),
+                }
+            }
+        }
+        let of_proposal = self.proposal.iter().flat_map(|proposal| &proposal.left);
+        let left: Vec<_> = self.left.iter().chain(of_proposal).collect();
+        let seen = json!({ "recordings": recordings, "left": left, "none": none });
+        Ok(joined(seen, self.state()))
+    }
+
+    /// The text of the campaign, its tables, and its errors.
+    fn state(&self) -> Value {
+        let tables = match WrittenTable::all(&self.text) {
+            Ok(written) => SeenTable::all(&self.text, &written, self.proposal.as_ref()),
+            Err(_) => Vec::new(),
+        };
+        let problems: Vec<Value> = match self.campaign() {
+            Ok(campaign) => campaign.faults().iter().map(|fault| problem(&fault.error)).collect(),
+            Err(error) => vec![problem(&error)],
+        };
+        json!({ "text": self.text, "tables": tables, "problems": problems })
+    }
+
+    /// The table of this number in the list, from 0.
+    fn table(&self, table: usize) -> Result<SeenTable> {
+        let all = SeenTable::all(&self.text, &WrittenTable::all(&self.text)?, self.proposal.as_ref());
+        all.into_iter().nth(table).ok_or_else(no_table)
+    }
+
+    /// The text with this table, its section and its number there. A table that lacks a value is a comment
+    /// as a whole: the marks of the comment are taken away.
+    fn with_table(&self, table: usize) -> Result<(String, String, usize)> {
+        let seen = self.table(table)?;
+        if let Some(number) = seen.number {
+            return Ok((self.text.clone(), seen.section, number));
+        }
+        let (proposal, k) = self.proposal.as_ref().zip(seen.proposed).ok_or_else(no_table)?;
+        let text = self.text.replacen(&proposal.block(k), &proposal.opened(k), 1);
+        let written = WrittenTable::all(&text)?;
+        let all = SeenTable::all(&text, &written, Some(proposal));
+        let number = all.iter().find(|one| one.proposed == Some(k)).and_then(|one| one.number);
+        Ok((text, seen.section, number.ok_or_else(no_table)?))
+    }
+
+    /// Sets a key of a table.
+    fn set(&mut self, table: usize, key: &str, value: &str) -> Result<()> {
+        let (text, section, number) = self.with_table(table)?;
+        self.text = Campaign::text_with(&text, (&section, number), key, value)?;
+        Ok(())
+    }
+
+    /// Runs the campaign, and keeps its results in memory.
+    fn run(&mut self, progress: &dyn Progress) -> Result<Value> {
+        let campaign = self.campaign()?;
+        let results = campaign.within().at(campaign.out());
+        let kept = AnswerCache::of(&results);
+        let mut output = Output::new(results, Owner::Run)?.replace(true);
+        let outcome = analysis::run(&campaign, &kept, &mut output, progress)?;
+        output.commit()?;
+        self.results = (campaign.out(), outcome.files.clone());
+        let problems: Vec<Value> = campaign.faults().iter().map(|fault| problem(&fault.error)).collect();
+        let of_all = outcome.answer.findings.iter().filter(|(_, finding)| finding.code == analysis::LEFT_OUT);
+        let refused: Vec<_> =
+            of_all.map(|(name, finding)| (name, words::sentence(finding, Voice::Campaign))).collect();
+        Ok(
+            json!({ "answered": outcome.answered, "files": outcome.files, "problems": problems, "refused": refused }),
+        )
+    }
+
+    fn pictures(&self, path: &str) -> Result<Value> {
+        let path = self.folder.path(Path::new(path))?;
+        let recording = Reader::new().within(&self.folder).from_path(path)?;
+        let pictures: Vec<Picture> =
+            recording.records.iter().map(|record| Picture::of_record(record, COLUMNS)).collect();
+        Ok(json!(pictures))
+    }
+
+    fn trace(
+        &self,
+        table: usize,
+        file: usize,
+        part: (Option<f64>, Option<f64>),
+        columns: usize,
+    ) -> Result<Value> {
+        let (text, section, number) = self.with_table(table)?;
+        let campaign = analysis::parse(&self.folder, &self.path(), text)?;
+        let (trace, files) = analysis::raw_trace(&campaign, (&section, number), file)?;
+        let n = trace.axis.len();
+        let (first, last) = (trace.axis.at(0), trace.axis.at(n.saturating_sub(1)));
+        let (from, to) = (part.0.unwrap_or(first).max(first), part.1.unwrap_or(last).min(last));
+        let picture = Picture::of_trace(&trace, from, to, columns.min(4096));
+        let spectrum = Picture::of_spectrum(&trace, from, to, columns.min(4096));
+        let files: Vec<String> = files.iter().map(|file| file.display().to_string()).collect();
+        let (name, unit) = (&trace.meta.name, trace.meta.unit.symbol());
+        let about =
+            json!({ "first": first, "last": last, "n": n, "name": name, "unit": unit, "files": files });
+        Ok(joined(about, json!({ "picture": picture, "spectrum": spectrum })))
+    }
+
+    /// A file of the results.
+    fn file(&self, name: &str) -> Result<Vec<u8>> {
+        if name == Proposal::FILE {
+            return Ok(self.text.clone().into_bytes());
+        }
+        let known = self.results.1.iter().any(|known| known == name);
+        if !known {
+            return Err(Error::usage(format!("no result {name:?}"), "a file of the results"));
+        }
+        self.folder.read(&self.results.0.join(name))
+    }
+
+    fn archive(&self) -> Result<Vec<u8>> {
+        let names = std::iter::once(Proposal::FILE).chain(self.results.1.iter().map(String::as_str));
+        let files: Result<Vec<(&str, Vec<u8>)>> = names.map(|name| Ok((name, self.file(name)?))).collect();
+        packed(files?)
+    }
+}
+
+/// Two objects as one.
+fn joined(mut one: Value, other: Value) -> Value {
+    if let (Value::Object(one), Value::Object(other)) = (&mut one, other) {
+        one.extend(other);
+    }
+    one
+}
+
+/// The folder that all names begin with, with its `/`; empty if there is none.
+fn common_folder<'a>(mut names: impl Iterator<Item = &'a str>) -> String {
+    let Some(top) = names.next().and_then(|name| name.split_once('/')).map(|(top, _)| format!("{top}/"))
+    else {
+        return String::new();
+    };
+    if names.all(|name| name.starts_with(&top)) { top } else { String::new() }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,63 @@
+use super::*;
+
+fn json(bench: &mut Workbench, request: &Request) -> Value {
+    match bench.answer(request, &()).unwrap() {
+        Reply::Json(value) => value,
+        Reply::Bytes(_) => panic!("no JSON"),
+    }
+}
+
+/// An example gives what its run on a disk gives, but for the path of the campaign.
+#[test]
+fn an_example_runs_in_memory() {
+    let mut bench = Workbench::default();
+    json(&mut bench, &Request::Example { name: "bench".to_owned() });
+    let seen = json(&mut bench, &Request::Look);
+    assert_eq!(seen["recordings"].as_array().unwrap().len(), 5);
+    assert_eq!(seen["tables"].as_array().unwrap().len(), 7);
+    let run = json(&mut bench, &Request::Run);
+    assert_eq!(run["answered"], true);
+    let Reply::Bytes(report) = bench.answer(&Request::File { name: "report.html".to_owned() }, &()).unwrap()
+    else {
+        panic!("no bytes")
+    };
+    assert!(report.starts_with(b"<!DOCTYPE html>"));
+    assert!(bench.answer(&Request::File { name: "../BENCH.CSV".to_owned() }, &()).is_err());
+}
+
+#[test]
+fn a_missing_value_is_filled_in_and_the_record_answers() {
+    let mut bench = Workbench::named("series");
+    let values = |seed: u32| {
+        let mut text = "time [s],sound [Pa]\n".to_owned();
+        for k in 0..20_000_u32 {
+            let (t, noise) = (f64::from(k) * 1e-4, f64::from((k * 7919 + seed) % 101) * 1e-5);
+            let ring = |at: f64, size: f64| {
+                if t < at { 0.0 } else { size * (-(t - at) / 2e-3).exp() * (9000.0 * (t - at)).sin() }
+            };
+            let value = noise + ring(0.3, 1.0) + ring(0.9, 0.8) + ring(1.35, 0.6);
+            text += &format!("{t},{value}\n");
+        }
+        text.into_bytes()
+    };
+    bench.add("bounce.csv", values(3)).unwrap();
+    let seen = json(&mut bench, &Request::Look);
+    let tables = seen["tables"].as_array().unwrap();
+    assert!(!tables.is_empty(), "{seen}");
+    let set = Request::State { table: 0, key: "threshold".to_owned(), value: "0.2".to_owned() };
+    let after = json(&mut bench, &set);
+    assert!(after["text"].as_str().unwrap().contains("threshold = 0.2"), "{after}");
+    let trace =
+        json(&mut bench, &Request::Trace { table: 0, file: 0, from: Some(0.2), to: Some(0.4), columns: 50 });
+    assert_eq!(trace["picture"]["low"].as_array().unwrap().len(), 50);
+    assert_eq!(trace["n"], 20_000);
+}
+
+#[test]
+fn an_error_in_the_text_points_at_its_line() {
+    let mut bench = Workbench::named("series");
+    let seen = json(&mut bench, &Request::Edit { text: "name = \"x\"\n[[decay]]\nfile = 3\n".to_owned() });
+    assert_eq!(seen["problems"][0]["line"], 3, "{seen}");
+    let seen = json(&mut bench, &Request::Edit { text: "name = x\n".to_owned() });
+    assert_eq!(seen["problems"][0]["line"], 1, "{seen}");
+}

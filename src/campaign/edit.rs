@@ -1,0 +1,176 @@
+//! The text of a campaign changed in one place, with all else as it was written.
+
+use super::Campaign;
+use super::locate::written;
+use crate::error::{Error, Result};
+use crate::record::shown;
+use std::ops::Range;
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+/// A table of records as it is written in a campaign.
+#[derive(Debug, Clone, PartialEq, Eq, serde::Serialize)]
+pub struct WrittenTable {
+    /// `sweep` for `[[sweep]]`.
+    pub section: String,
+    /// Its number in the section, from 1.
+    pub number: usize,
+    /// Its first line, from 1.
+    pub line: usize,
+    /// Keys with their values as TOML.
+    pub keys: Vec<(String, String)>,
+    #[serde(skip)]
+    rows: Rows,
+}
+
+/// Bytes of keys with their values.
+type Rows = Vec<(String, Range<usize>)>;
+
+impl WrittenTable {
+    /// The tables of records of a text, in its order.
+    ///
+    /// # Errors
+    /// If it is not TOML.
+    pub fn all(text: &str) -> Result<Vec<WrittenTable>> {
+        let mut tables = Vec::new();
+        for (section, all) in &written(text, &[]).parse()? {
+            let DeValue::Array(all) = all.get_ref() else { continue };
+            for (number, table) in (1..).zip(all) {
+                let Some(keys) = table.get_ref().as_table() else { continue };
+                let begins = table.span().start;
+                tables.push((begins, WrittenTable::of(text, section.get_ref(), number, begins, keys)));
+            }
+        }
+        tables.sort_by_key(|(begins, _)| *begins);
+        Ok(tables.into_iter().map(|(_, table)| table).collect())
+    }
+
+    fn of(text: &str, section: &str, number: usize, begins: usize, keys: &DeTable<'_>) -> WrittenTable {
+        let mut all: Vec<(&str, Range<usize>, Range<usize>)> = Vec::new();
+        for (key, value) in keys {
+            all.push((key.get_ref(), key.span().start..value.span().end, Spanned::span(value)));
+        }
+        all.sort_by_key(|(_, row, _)| row.start);
+        WrittenTable {
+            section: section.to_owned(),
+            number,
+            line: 1 + text[..begins].matches('\n').count(),
+            keys: all
+                .iter()
+                .map(|(key, _, value)| ((*key).to_owned(), text[value.clone()].to_owned()))
+                .collect(),
+            rows: all.into_iter().map(|(key, row, _)| (key.to_owned(), row)).collect(),
+        }
+    }
+
+    /// The value of a key as TOML.
+    pub fn value(&self, key: &str) -> Option<&str> {
+        self.keys.iter().find(|(name, _)| name == key).map(|(_, value)| value.as_str())
+    }
+
+    /// The text with a key of the table set to a value in TOML; without a value the line of the key is taken
+    /// out. A comment `# KEY =` in the table makes room for its key.
+    fn with(&self, text: &str, key: &str, value: &str) -> String {
+        let line = format!("{key} = {value}");
+        let whole = |row: &Range<usize>| {
+            let begins = text[..row.start].rfind('\n').map_or(0, |at| at + 1);
+            begins..text[row.end..].find('\n').map_or(text.len(), |at| row.end + at + 1)
+        };
+        let replaced =
+            |range: Range<usize>, by: &str| format!("{}{by}{}", &text[..range.start], &text[range.end..]);
+        if let Some((_, row)) = self.rows.iter().find(|(name, _)| name == key) {
+            return if value.is_empty() { replaced(whole(row), "") } else { replaced(row.clone(), &line) };
+        }
+        if value.is_empty() {
+            return text.to_owned();
+        }
+        let head = text.match_indices('\n').nth(self.line - 1).map_or(text.len(), |(at, _)| at + 1);
+        let ends = text[head..].find("\n[").map_or(text.len(), |at| head + at);
+        let mut at = head;
+        for row in text[head..ends].split_inclusive('\n') {
+            let comment = row.strip_prefix('#').and_then(|row| row.trim_start().strip_prefix(key));
+            if comment.is_some_and(|rest| rest.trim_start().starts_with('=')) {
+                return replaced(at..at + row.len(), &(line + "\n"));
+            }
+            at += row.len();
+        }
+        let last = self.rows.iter().map(|(_, row)| whole(row).end).max().unwrap_or(head);
+        let broken = if text[..last].ends_with('\n') { "" } else { "\n" };
+        replaced(last..last, &format!("{broken}{line}\n"))
+    }
+}
+
+impl Campaign {
+    /// The text of a campaign with a key of one table of records set to a value in TOML. An empty value
+    /// takes the key out. All else stays as it is written.
+    ///
+    /// ```
+    /// use vibroimpact::campaign::Campaign;
+    /// let text = "[[decay]]\nfile = \"a.csv\"   # let go\n# band =\n\n[[pulse]]\nduration = 1e-3\n";
+    /// let with = Campaign::text_with(text, ("decay", 1), "band", "[40, 80]")?;
+    /// assert_eq!(with, text.replace("# band =", "band = [40, 80]"));
+    /// # Ok::<(), vibroimpact::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// If the text or the value is not TOML, or there is no such table.
+    pub fn text_with(text: &str, table: (&str, usize), key: &str, value: &str) -> Result<String> {
+        let (section, number) = table;
+        let all = WrittenTable::all(text)?;
+        let found = all.iter().find(|table| (table.section.as_str(), table.number) == (section, number));
+        let found = found.ok_or_else(|| {
+            Error::usage(format!("no table {number} of [[{}]]", shown(section)), "a table of the campaign")
+        })?;
+        let changed = found.with(text, key, value);
+        let after = WrittenTable::all(&changed)?;
+        // A value such as `1\nfile = 2` would be more than a value.
+        let is_one = after.len() == all.len()
+            && after.iter().zip(&all).all(|(a, b)| {
+                let others = |table: &WrittenTable| {
+                    table.keys.iter().filter(|(name, _)| name != key).cloned().collect::<Vec<_>>()
+                };
+                others(a) == others(b)
+            });
+        if !is_one {
+            let found = format!("{key} = {}", shown(value));
+            return Err(Error::usage(found, "one value: a number, true, \"text\" or [1, 2]"));
+        }
+        Ok(changed)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const TEXT: &str = "name = \"x\"\n\n[[drop]]\nfile = \"a.csv\"  # first\nheight = 1\n\n# of the second\n[[drop]]\nfile = \"b.csv\"";
+
+    #[test]
+    fn a_key_is_set_in_its_table_and_nothing_else_changes() {
+        let set = |number, key, value| Campaign::text_with(TEXT, ("drop", number), key, value);
+        assert_eq!(set(1, "height", "0.5").unwrap(), TEXT.replace("height = 1", "height = 0.5"));
+        assert_eq!(set(1, "height", "").unwrap(), TEXT.replace("height = 1\n", ""));
+        assert_eq!(set(2, "height", "0.5").unwrap(), format!("{TEXT}\nheight = 0.5\n"));
+        assert_eq!(
+            set(1, "contact_time", "1e-3").unwrap(),
+            TEXT.replace("height = 1\n", "height = 1\ncontact_time = 1e-3\n")
+        );
+        assert_eq!(set(1, "band", "").unwrap(), TEXT);
+    }
+
+    #[test]
+    fn what_is_no_value_is_refused() {
+        for value in ["1\nfile = 2", "0,5", "\"", "1 [[drop]]", "1\n[[decay]]\nfile = \"c\""] {
+            assert!(Campaign::text_with(TEXT, ("drop", 1), "height", value).is_err(), "{value:?}");
+        }
+        assert!(Campaign::text_with(TEXT, ("drop", 3), "height", "1").is_err());
+    }
+
+    #[test]
+    fn tables_are_listed_as_they_are_written() {
+        let all = WrittenTable::all(TEXT).unwrap();
+        let seen: Vec<_> =
+            all.iter().map(|t| (t.section.as_str(), t.number, t.line, t.value("file"))).collect();
+        assert_eq!(seen, [("drop", 1, 3, Some("\"a.csv\"")), ("drop", 2, 8, Some("\"b.csv\""))]);
+    }
+}
