@@ -173,32 +173,21 @@ fn apart(fit: &Fit) -> f64 {
     z.dot(&(correlations.try_inverse().unwrap() * &z))
 }
 
-/// χ² with 7 degrees of freedom that is exceeded in 5 % of cases (Abramowitz & Stegun, table 26.8).
-const SEVEN: f64 = 14.067;
-
 /// The fit begins at the truth, the rig of the campaign; its data pass through files, spectra, integration
 /// and sweeps. The noise differs from draw to draw. The averaging of the converter lowers the amplitudes of
 /// all draws alike, by up to 1e-4, which the uncertainty `calibration` covers.
 #[test]
-fn the_truth_lies_within_the_joint_region_of_the_fit() {
-    let apart = apart(&fitted_again(1..=1)[0]);
-    // χ² with 7 degrees of freedom is larger in one case of two million, as often as 5 standard deviations.
-    assert!(apart <= 42.0, "{apart}");
+#[ignore = "Monte Carlo: cargo test --release -- --ignored"]
+fn the_truth_lies_as_far_from_four_fits_as_their_regions_are_wide() {
+    let apart: Vec<f64> = fitted_again(1..=4).iter().map(apart).collect();
+    println!("{apart:.1?}, draws 1 to 4");
+    // Four draws of seven parameters: χ² with 28 degrees of freedom leaves this range in two of a thousand
+    // cases (Abramowitz & Stegun, table 26.8).
+    assert!((10.391..=56.892).contains(&apart.iter().sum()), "{apart:?}");
 }
 
-#[test]
-#[ignore = "Monte Carlo: cargo test --release -- --ignored"]
-fn of_twelve_draws_the_truth_lies_within_the_joint_region_of_nine() {
-    let inside = fitted_again(1..=12)
-        .iter()
-        .map(apart)
-        .inspect(|a| println!("{a:.1}"))
-        .filter(|a| *a <= SEVEN)
-        .count();
-    println!("{inside} of 12, draws 1 to 12");
-    // With a coverage of 95 %, eight or fewer of twelve occur in one of 450 cases (binomial distribution).
-    assert!(inside >= 9, "{inside}");
-}
+/// χ² with 7 degrees of freedom that is exceeded in 5 % of cases (Abramowitz & Stegun, table 26.8).
+const SEVEN: f64 = 14.067;
 
 /// The same with 100 draws, to be run by hand: some ten minutes with `--release`.
 #[test]

@@ -13,6 +13,7 @@ mod failure_map;
 mod found;
 mod impacts_reference;
 mod layers;
+mod links;
 mod model_reference;
 mod others_files;
 mod read;

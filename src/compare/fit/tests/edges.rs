@@ -201,8 +201,18 @@ fn masses_far_from_what_they_weigh_are_named() {
 /// scatter is stated.
 #[test]
 fn amplitudes_that_stray_need_their_scatter() {
+    need_their_scatter(&[39]);
+}
+
+#[test]
+#[ignore = "Monte Carlo: cargo test --release -- --ignored"]
+fn amplitudes_that_stray_need_their_scatter_in_all_draws() {
+    need_their_scatter(&[39, 40]);
+}
+
+fn need_their_scatter(seeds: &[u64]) {
     let names = "parameters = [\"restitution\", \"c1\", \"c2\", \"gap\"]";
-    for seed in [39, 40] {
+    for &seed in seeds {
         let strayed = |data: &mut Data| {
             let mut normal = Noise::new(700 + seed);
             for _ in 0..16 {
@@ -232,11 +242,22 @@ fn amplitudes_that_stray_need_their_scatter() {
 /// uncertainty.
 #[test]
 fn a_restitution_near_one_is_found_or_doubted() {
+    near_one(45..46);
+}
+
+#[test]
+#[ignore = "Monte Carlo: cargo test --release -- --ignored"]
+fn a_restitution_near_one_is_found_or_doubted_in_all_draws() {
+    near_one(45..49);
+}
+
+fn near_one(seeds: std::ops::Range<u64>) {
+    let all = 4 * (seeds.end - seeds.start);
     let setting = example().with(Parameter::Restitution, 0.999);
     let (clean, kinds) = truth(&setting, PACE);
     let entry: FitEntry = toml::from_str("parameters = [\"restitution\", \"c1\", \"c2\", \"gap\"]").unwrap();
     let mut stated = 0;
-    for seed in 45..49 {
+    for seed in seeds {
         println!("seed {seed}");
         let data = noisy(&clean, &kinds, &setting, seed);
         let start = setting.with(Parameter::Restitution, 0.95).with(Parameter::C2, 0.08);
@@ -245,11 +266,11 @@ fn a_restitution_near_one_is_found_or_doubted() {
         for found in &fit.parameters {
             let Estimate { value, std, .. } = found.estimate;
             let off = (value - setting.get(found.parameter)).abs();
-            stated += usize::from(std.is_some());
+            stated += u64::from(std.is_some());
             // Four standard deviations of sixteen values: exceeded in one of a thousand cases.
             assert!(std.is_none_or(|std| off < 4.0 * std), "{found:?}");
         }
     }
-    println!("{stated} of 16 stated");
-    assert!(stated >= 8, "{stated}");
+    println!("{stated} of {all} stated");
+    assert!(2 * stated >= all, "{stated}");
 }
