@@ -49,7 +49,13 @@ pub const KINDS: &[Kind] = &[
         anti-alias filter of order 8, 4 to 12 time constants apart; noise of the force 0.01 to 0.1 % of its peak, of the response \
         0.01 to 1 %",
         every: 4,
-        draw: |mix| hammer_test(mix, 1),
+        draw: |mix| hammer_test(mix, false),
+    },
+    Kind {
+        name: "hammer test, short segments",
+        ranges: "as before; stated segments of 0.3 to 3 time constants",
+        every: 4,
+        draw: |mix| hammer_test(mix, true),
     },
     Kind {
         name: "one mode of averaged spectra",
@@ -239,14 +245,15 @@ fn function_of(channels: [Trace; 2], options: &SpectralOptions) -> Option<Measur
 }
 
 /// Three to eight blows of a hammer behind an anti-alias filter (Butterworth, order 8, corner at 0.39 of the
-/// sampling rate), which rings around each blow in the sampled force.
-fn hammer_test(mix: &mut Mix, count: usize) -> Record {
+/// sampling rate), which rings around each blow in the sampled force. Segments reach to the next blow, or are
+/// stated and `short`.
+fn hammer_test(mix: &mut Mix, short: bool) -> Record {
     let rate = 4096.0;
     let centre = rate * mix.log(0.01, 0.15);
     let zeta = mix.log(0.005, 0.05);
     mix.note("ζ", zeta);
     mix.note("frequency", centre);
-    let poles = draw_modes(mix, count, zeta, centre);
+    let poles = draw_modes(mix, 1, zeta, centre);
     let (_, power, unit) = draw_quantity(mix);
     let blows = mix.random.between(3.0, 9.0) as usize;
     let slowest = poles.iter().map(|p| p.zeta * p.frequency).fold(f64::INFINITY, f64::min);
@@ -304,8 +311,13 @@ fn hammer_test(mix: &mut Mix, count: usize) -> Record {
     for v in &mut force {
         *v += noise * mix.random.normal();
     }
-    let options =
-        SpectralOptions { hammer: true, estimator: Some(Estimator::H1), ..SpectralOptions::default() };
+    let segment = short.then(|| {
+        let long = mix.log(0.3, 3.0);
+        mix.note("time constants a segment", long);
+        (long / (TAU * slowest) * rate / 2.0) as usize * 2
+    });
+    let estimator = Some(Estimator::H1);
+    let options = SpectralOptions { hammer: true, segment, estimator, ..SpectralOptions::default() };
     let measured = function_of([trace("N", rate, force), trace(unit, rate, motion)], &options);
     measured.map_or_else(|| mode_answers(&poles, |_| None), |m| compare_modes(&m, &poles))
 }

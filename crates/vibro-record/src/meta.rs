@@ -162,10 +162,17 @@ impl Meta {
         self.history.iter().rev().find(|step| step.name == "blows")?.argument("count")?.parse().ok()
     }
 
-    /// Time in s from the single blow of a hammer to the end of its record, from the history.
+    /// Time in s from the centre of a hammer blow to the end of its record, from the history.
     pub fn after_blow(&self) -> Option<f64> {
-        let made = self.history.iter().rev().find(|step| step.name == "one_blow")?;
+        let made = self.history.iter().rev().find(|step| step.name == "end_of_blows")?;
         made.argument("after")?.parse().ok()
+    }
+
+    /// Shortest time in s between hammer blows, from the history; infinite for a single one.
+    pub fn between_blows(&self) -> Option<f64> {
+        let made = self.history.iter().rev().find(|step| step.name == "between_blows");
+        let single = (self.blows() == Some(1)).then_some(f64::INFINITY);
+        made.and_then(|step| step.argument("apart")?.parse().ok()).or(single)
     }
 
     /// Takes over the unit that an instrument wrote: stores its SI unit and quantity, notes the conversion in

@@ -175,14 +175,17 @@ pub fn from_blows(
     let averages = sums.mean(&vec![1.0; how.length], apart, rate, true);
     let metas: [Meta; 2] = [force.meta.clone(), response.meta.clone()];
     let mut transfer = transfer(&averages, 1, &metas, estimator)?;
-    transfer
-        .frf
-        .meta
-        .step("blows", &[("count", &kept.len()), ("length", &how.length), ("before", &how.before)]);
-    // What each of several blows leaves to the next is as large as what the end of its record cuts off.
-    if let [blow] = clean[..] {
-        let after = ((how.length - how.before) as f64 - delay(force, blow, how)) / rate;
-        transfer.frf.meta.step("one_blow", &[("after", &after)]);
+    let meta = &mut transfer.frf.meta;
+    meta.step("blows", &[("count", &kept.len()), ("length", &how.length), ("before", &how.before)]);
+    // H1 weights each blow by the square of its force.
+    let [delays, squares] = clean.iter().fold([0.0; 2], |[delays, squares], blow| {
+        [delays + blow.peak * blow.peak * delay(force, blow, how), squares + blow.peak * blow.peak]
+    });
+    let after = ((how.length - how.before) as f64 - delays / squares) / rate;
+    meta.step("end_of_blows", &[("after", &after)]);
+    let apart = blows.windows(2).map(|pair| pair[1].time - pair[0].time).reduce(f64::min);
+    if let Some(apart) = apart {
+        meta.step("between_blows", &[("apart", &apart)]);
     }
     let left = left::widen(&mut transfer, &response.values, &kept, how, &weights[1]);
     let force = &averages.auto[0];

@@ -10,7 +10,7 @@ use nalgebra::{DMatrix, DVector};
 use num_complex::Complex64;
 use std::cell::RefCell;
 use std::f64::consts::TAU;
-use vibro_math::{Fit, least_squares, minimise};
+use vibro_math::{Fit, minimise};
 use vibro_record::{Error, Result, Window, sort_by_number};
 
 /// Modes fitted together.
@@ -96,6 +96,10 @@ const ENOUGH: f64 = 16.0;
 /// The search over frequencies and damping ratios ends where a step lowers the sum of squares by less than
 /// this fraction; then all parameters are fitted together.
 const NEAR_ENOUGH: f64 = 1e-6;
+
+/// The last search ends where a step lowers the sum of squares of `n` numbers by less than this fraction: by
+/// 1e-10 n of the noise, where a standard uncertainty is 1. Rounding may keep a search from ever ending.
+const AT_THE_MINIMUM: f64 = 1e-10;
 
 impl<'a> Scaled<'a> {
     /// Number of lines in a row whose means leave [`ENOUGH`] in the narrowest half bandwidth of the first
@@ -287,7 +291,7 @@ impl Scaled<'_> {
         let q: Vec<f64> = free.iter().map(|i| start[*i]).collect();
         let largest = q.iter().fold(0.0_f64, |a, b| a.max(b.abs()));
         let scale: Vec<f64> = q.iter().map(|v| v.abs().max(1e-3 * largest.min(1.0))).collect();
-        let mut fit = least_squares(residuals, self.rows(), &q, &scale)?;
+        let mut fit = minimise(residuals, self.rows(), &q, &scale, Some(AT_THE_MINIMUM))?.fit()?;
         if !fit.converged {
             return Err(Error::refused("the fit did not converge"));
         }

@@ -69,8 +69,9 @@ impl Candidate<'_> {
         if let Some(after_blow) = measured.after_blow {
             // The response left by the blow before, e^(sT) of its own, has the same pole, and any phase: it
             // changes A by a factor, half of whose mean square is along A. Its mean over blows of independent
-            // phases is smaller by √n; a coherence needs two.
-            let left = (-TAU * pole.frequency * pole.zeta * after_blow).exp();
+            // phases is smaller by √n; a coherence needs two. No exponential window adds to its decay.
+            let apart = measured.between_blows.unwrap_or(after_blow);
+            let left = (-TAU * own.frequency * own.zeta * apart).exp();
             let cut_off = Finding::caution(code::MODAL_BLOW_CUT_OFF).number("part", left);
             find(left * pole.constant.norm() > std[2], cut_off);
             let left = left / (2.0 * measured.blows.unwrap_or(2) as f64).sqrt();

@@ -27,6 +27,8 @@ pub struct Measured {
     /// Time in s from a blow of a hammer to the end of its record, where the function was averaged over
     /// blows.
     pub after_blow: Option<f64>,
+    /// Time in s from a blow to the next, where it is known: at least `after_blow`.
+    pub between_blows: Option<f64>,
     /// Number of these blows, where it is known.
     pub blows: Option<usize>,
     /// Standard uncertainty of one component of each value, above 0, where it is known.
@@ -44,6 +46,7 @@ impl Measured {
             coherence: None,
             window: None,
             after_blow: None,
+            between_blows: None,
             blows: None,
             std: None,
         }
@@ -55,7 +58,8 @@ impl Measured {
         let all = Measured::of(&frf.axis, frf.values.clone(), frf.meta.quantity);
         let record = frf.axis.step().map(|step| (1.0 - 1.0 / BEFORE as f64) / step);
         let after_blow = frf.meta.after_blow().or(record.filter(|_| frf.meta.from_blows()));
-        Measured { window, after_blow, blows: frf.meta.blows(), ..all }
+        let between_blows = frf.meta.between_blows();
+        Measured { window, after_blow, between_blows, blows: frf.meta.blows(), ..all }
     }
 
     fn of(axis: &Axis, values: Vec<Complex64>, kind: Quantity) -> Measured {
