@@ -85,6 +85,7 @@ class App {
   /** Begins with other files: lists them, and runs the campaign for them. */
   async look({ files = [], name = "", example = null, text = null }) {
     [this.files, this.name, this.example, this.results] = [files, example ?? name, example, null];
+    this.text = "";
     this.drawn.clear();
     this.trace.close();
     at("troubles").replaceChildren();
@@ -93,13 +94,16 @@ class App {
       const largest = files.reduce((a, b) => (b.file.size > a.file.size ? b : a));
       return this.trouble(`${Math.round(all / 1e6)} MB are more than a page holds; the largest file is ${largest.path} with ${Math.round(largest.file.size / 1e6)} MB. Drop fewer files, or use the command on this computer: vibro run ${JSON.stringify(name)}`);
     }
-    const seen = await this.work("reading files", () => this.load());
-    if (!seen) return undefined;
+    const listed = await this.work("reading files", () => this.load());
+    if (!listed) return undefined;
     at("bench").hidden = false;
     at("drop").hidden = true;
-    this.recordings.show(seen);
-    if (seen.none && !seen.tables.length) this.trouble(seen.none);
-    return text === null ? this.state(seen) : this.edit(text);
+    this.recordings.show(listed.recordings);
+    const found = await this.work("looking at files", () => this.program.ask("propose"));
+    this.recordings.showLeft(found?.left ?? []);
+    if (found?.none && !found.tables.length) this.trouble(found.none);
+    if (text !== null) return this.edit(text);
+    return found ? this.state(found) : this.edit(`name = ${JSON.stringify(this.name)}\n`);
   }
 
   /** Gives the program its files; also after it was stopped. */
@@ -213,10 +217,8 @@ class App {
     } catch (error) {
       if (error instanceof Stopped) {
         const why = error.message === "stopped" ? "Stopped." : `The page could not finish: ${error.message}. The command on this computer has more room: vibro run ${JSON.stringify(this.name || "FOLDER")}`;
-        const text = this.text;
-        if (isRun || what !== "reading files") {
-          await this.load().then(() => text && this.program.ask("edit", { text })).catch(() => {});
-        }
+        // Stopped while files were read, there is nothing to go on with.
+        if (what !== "reading files") await this.load().then(() => this.text && this.program.ask("edit", { text: this.text })).catch(() => {});
         this.trouble(why);
       } else if (!(isRun && error instanceof Refused && this.problems.some((one) => one.text === error.message))) this.trouble(error.message);
       return null;

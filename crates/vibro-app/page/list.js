@@ -74,7 +74,7 @@ class Recordings {
     this.watch = new IntersectionObserver((seen) => seen.filter((one) => one.isIntersecting).forEach(({ target }) => this.draw(target)));
   }
 
-  show({ recordings, left }) {
+  show(recordings) {
     this.watch.disconnect();
     const head = make("tr", {}, ...["file", "channel", "what", "unit", "rate", "length", ""].map((name) => make("th", { textContent: name })));
     const body = make("tbody");
@@ -87,9 +87,15 @@ class Recordings {
       all.onclick = () => { rows.forEach((row) => { row.hidden = false; }); all.remove(); };
       this.host.append(all);
     }
-    if (left?.length) {
+    this.left = make("div");
+    this.host.append(this.left);
+  }
+
+  /** Files that no table uses, each with the reason. */
+  showLeft(left) {
+    if (left.length) {
       const items = left.map(([name, why]) => make("li", { textContent: `${name}: ${why}` }));
-      this.host.append(make("details", {}, make("summary", { textContent: `${left.length} not used` }), make("ul", {}, ...items)));
+      this.left.replaceChildren(make("details", {}, make("summary", { textContent: `${left.length} not used` }), make("ul", {}, ...items)));
     }
   }
 

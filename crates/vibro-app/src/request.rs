@@ -17,8 +17,10 @@ pub enum Request {
         /// Its name.
         path: String,
     },
-    /// What the files are, and the campaign for them.
+    /// What the files are.
     Look,
+    /// The campaign among the files, else one that is proposed for them: a record of unknown kind is tried.
+    Propose,
     /// The text of the campaign, as a person changed it.
     Edit {
         /// The text.

@@ -74,6 +74,7 @@ impl Workbench {
             Request::Example { name } => self.example(name)?,
             Request::Unpack { path } => self.unpack(path)?,
             Request::Look => self.look(progress)?,
+            Request::Propose => self.propose(progress)?,
             Request::Edit { text } => {
                 text.clone_into(&mut self.text);
                 self.state()
@@ -125,8 +126,8 @@ impl Workbench {
         analysis::parse(&self.folder, &self.path(), self.text.clone())
     }
 
-    /// Lists the files, and takes the campaign among them, else proposes one.
-    fn look(&mut self, progress: &dyn Progress) -> Result<Value> {
+    /// Lists the files.
+    fn look(&self, progress: &dyn Progress) -> Result<Value> {
         let found = analysis::recordings(&self.folder)?;
         progress.start("reading files", found.files.len());
         let seen = |path: &PathBuf| {
@@ -135,28 +136,29 @@ impl Workbench {
             seen
         };
         let recordings: Vec<SeenRecording> = found.files.iter().map(seen).collect();
-        let own = self.folder.own_file(Proposal::FILE);
+        Ok(json!({ "recordings": recordings }))
+    }
+
+    /// Takes the campaign among the files, else proposes one.
+    fn propose(&mut self, progress: &dyn Progress) -> Result<Value> {
         let mut none = None;
-        match own {
-            Some(bytes) => {
-                self.proposal = None;
-                self.text = String::from_utf8_lossy(&bytes).into_owned();
-            }
-            None => {
-                match Proposal::of(&self.folder, &Default::default(), None, &AnswerCache::default(), progress)
-                {
-                    Ok(proposal) => {
-                        self.text = proposal.toml();
-                        self.proposal = Some(proposal);
-                    }
-                    Err(error) => none = Some(in_words(&error)),
+        if let Some(bytes) = self.folder.own_file(Proposal::FILE) {
+            self.proposal = None;
+            self.text = String::from_utf8_lossy(&bytes).into_owned();
+        } else if analysis::recordings(&self.folder)?.files.is_empty() {
+            none = Some("no recording among these files".to_owned());
+        } else {
+            match Proposal::of(&self.folder, &Default::default(), None, &AnswerCache::default(), progress) {
+                Ok(proposal) => {
+                    self.text = proposal.toml();
+                    self.proposal = Some(proposal);
                 }
+                Err(error) => none = Some(in_words(&error)),
             }
         }
         let of_proposal = self.proposal.iter().flat_map(|proposal| &proposal.left);
         let left: Vec<_> = self.left.iter().chain(of_proposal).collect();
-        let seen = json!({ "recordings": recordings, "left": left, "none": none });
-        Ok(joined(seen, self.state()))
+        Ok(joined(json!({ "left": left, "none": none }), self.state()))
     }
 
     /// The text of the campaign, its tables, and its errors.

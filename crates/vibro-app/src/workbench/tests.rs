@@ -14,6 +14,7 @@ fn an_example_runs_in_memory() {
     json(&mut bench, &Request::Example { name: "bench".to_owned() });
     let seen = json(&mut bench, &Request::Look);
     assert_eq!(seen["recordings"].as_array().unwrap().len(), 5);
+    let seen = json(&mut bench, &Request::Propose);
     assert_eq!(seen["tables"].as_array().unwrap().len(), 7);
     let run = json(&mut bench, &Request::Run);
     assert_eq!(run["answered"], true);
@@ -41,7 +42,7 @@ fn a_missing_value_is_filled_in_and_the_record_answers() {
         text.into_bytes()
     };
     bench.add("bounce.csv", values(3)).unwrap();
-    let seen = json(&mut bench, &Request::Look);
+    let seen = json(&mut bench, &Request::Propose);
     let tables = seen["tables"].as_array().unwrap();
     assert!(!tables.is_empty(), "{seen}");
     let set = Request::State { table: 0, key: "threshold".to_owned(), value: "0.2".to_owned() };
