@@ -6,6 +6,8 @@ to=$(cd "$1" && pwd)
 cd "$(dirname "$0")/.."
 
 packaging/check.py
+# The library without the command. Alone: beside the Python module it would have all of its features.
+cargo clippy --locked --release -p vibroimpact --lib --no-default-features -- -D warnings
 python3 -m venv "$to/env"
 "$to/env/bin/pip" --quiet --disable-pip-version-check install --requirement packaging/requirements.txt
 export PATH="$to/env/bin:$PATH"

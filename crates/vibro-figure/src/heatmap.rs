@@ -86,22 +86,28 @@ impl Heatmap {
     pub(super) fn cells(&self, x: &Axis, y: &Axis, across: usize, down: usize) -> Array2<Option<Rgb>> {
         let (columns, rows) = (cover(&self.x, x, across), cover(&self.y, y, down));
         let bar = self.colour_axis();
-        Array2::from_shape_fn((down, across), |(row, column)| {
-            let (rows, columns) = (&rows[down - 1 - row], &columns[column]);
-            match (&self.key, &bar) {
-                (Key::Quantity(_), Some(bar)) => {
-                    let block = rows.clone().flat_map(|r| columns.clone().map(move |c| (r, c)));
-                    let shade = block.map(|at| bar.at(self.values[at])).fold(f64::NAN, f64::max);
-                    (!shade.is_nan()).then(|| colour::viridis(shade))
-                }
-                (Key::Classes(names), _) => {
-                    let middle = |range: &Range<usize>| range.clone().nth(range.len() / 2);
-                    let class = self.values.get((middle(rows)?, middle(columns)?))?;
-                    (0.0..names.len() as f64).contains(class).then(|| Heatmap::class_colour(*class as usize))
-                }
-                _ => None,
+        let cell = |rows: &Range<usize>, columns: &Range<usize>| match (&self.key, &bar) {
+            (Key::Quantity(_), Some(bar)) => {
+                let block = rows.clone().flat_map(|r| columns.clone().map(move |c| (r, c)));
+                let shade = block.map(|at| bar.at(self.values[at])).fold(f64::NAN, f64::max);
+                (!shade.is_nan()).then(|| colour::viridis(shade))
             }
-        })
+            (Key::Classes(names), _) => {
+                let middle = |range: &Range<usize>| range.clone().nth(range.len() / 2);
+                let class = self.values.get((middle(rows)?, middle(columns)?))?;
+                (0.0..names.len() as f64).contains(class).then(|| Heatmap::class_colour(*class as usize))
+            }
+            _ => None,
+        };
+        let (mut line, mut cells) = (Vec::new(), Vec::with_capacity(across * down));
+        for row in (0..down).rev() {
+            // A coarse map has many lines of cells over the same positions, which look alike.
+            if line.is_empty() || rows[row] != rows[row + 1] {
+                line = columns.iter().map(|columns| cell(&rows[row], columns)).collect();
+            }
+            cells.extend_from_slice(&line);
+        }
+        Array2::from_shape_vec((down, across), cells).expect("a colour for each cell")
     }
 
     /// Draws the cells that fill the frame.

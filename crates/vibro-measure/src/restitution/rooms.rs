@@ -27,7 +27,7 @@ fn answer(drops: &Drops) -> Option<Restitution> {
 #[test]
 #[ignore = "Monte Carlo: cargo test --release -- --ignored"]
 fn drops_in_rooms_are_covered_or_refused() {
-    let cases = 24;
+    let cases = 12;
     // Bodies that hardly bounce, in the dull room, show few impacts: four of five series are answered.
     for (room, part) in [(Room::Ordinary, 0.97), (Room::Hard, 0.97), (Room::Dull, 0.8)] {
         let score = |seed: u64| {
@@ -41,12 +41,12 @@ fn drops_in_rooms_are_covered_or_refused() {
         let largest = scores.iter().fold(0.0, |most: f64, z| z.abs().max(most));
         println!("drops, {room:?} room: {n} of {cases} answered, {inside} within 1.96, largest {largest:.1}");
         // At least this fraction of the series is answered, less 2.5 standard deviations of a binomial
-        // count. Of these 95 % are covered, less 2.5 standard deviations of 1.1.
+        // count. Of these 95 % are covered, less 2.5 standard deviations of 0.75.
         let count = cases as f64;
         let least = part * count - 2.5 * (count * part * (1.0 - part)).sqrt();
         assert!(n as f64 >= least, "{room:?}: {n}");
         assert!(
-            inside as f64 >= 0.95 * n as f64 - 2.7 && largest < 4.0,
+            inside as f64 >= 0.95 * n as f64 - 1.9 && largest < 4.0,
             "{room:?}: {inside} of {n}, {scores:?}"
         );
     }
