@@ -189,6 +189,8 @@ pub fn from_blows(
     let variance = force::variance(&averages.auto[0], averages.step());
     let apart = blows.windows(2).map(|pair| pair[1].time - pair[0].time).fold(f64::INFINITY, f64::min);
     let sample = rate.recip();
+    let noise = noise * weights[0].iter().map(|w| w * w).sum::<f64>();
+    let scatter = (0.5 * noise / (kept.len() as f64 * averages.auto[0][1])).sqrt();
     transfer.frf.meta.step(
         "blows",
         &[
@@ -199,11 +201,11 @@ pub fn from_blows(
             ("apart", &apart),
             ("variance", &variance),
             ("sample", &sample),
+            ("scatter", &scatter),
         ],
     );
     let left = left::widen(&mut transfer, &response.values, &kept, how, &weights[1]);
     let force = &averages.auto[0];
-    let noise = noise * weights[0].iter().map(|w| w * w).sum::<f64>();
     transfer.silence(|k| force[k + 1] <= AUDIBLE * noise, Finding::caution("frf-not-excited"));
     if let Some([_, mode]) = left.filter(|[_, mode]| mode.part > 0.0) {
         let after = (how.length - how.before) as f64 / rate;

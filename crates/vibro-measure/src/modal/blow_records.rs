@@ -12,6 +12,8 @@ pub struct BlowRecords {
     pub variance: f64,
     /// Time in s between samples; 0 where it is not known.
     pub sample: f64,
+    /// Standard deviation of one component of the force's lowest line, over the line: noise of its sensor.
+    pub scatter: f64,
     /// Shortest time in s from a blow to the next, where it is known.
     pub apart: Option<f64>,
     /// Number of blows, where it is known.
@@ -29,6 +31,7 @@ impl BlowRecords {
             after: of("after").or(record)?,
             variance: of("variance").unwrap_or(0.0),
             sample: of("sample").unwrap_or(0.0),
+            scatter: of("scatter").unwrap_or(0.0),
             apart: of("apart"),
             count: of("count"),
         })

@@ -74,6 +74,8 @@ impl Candidate<'_> {
             let cut_off = Finding::caution(code::MODAL_BLOW_CUT_OFF).number("part", left);
             find(left * pole.constant.norm() > std[2], cut_off);
             let left = left / (2.0 * blows.count.unwrap_or(2.0)).sqrt();
+            // Noise within a short force window is alike on neighbouring lines: it scales the whole mode.
+            let left = left.hypot(blows.scatter);
             (std[2], std[3]) = (std[2].hypot(left * pole.constant.norm()), std[3].hypot(left));
         }
         let phase = own.constant.arg().to_degrees();
