@@ -105,11 +105,10 @@ impl AnswerCache {
 
     /// The digest of the running program; in a browser, where it has no file, of its version.
     pub fn program(&self) -> Option<Digest> {
-        if cfg!(target_family = "wasm") {
-            return Some(digest([env!("CARGO_PKG_VERSION")]));
-        }
         static PROGRAM: OnceLock<Option<Digest>> = OnceLock::new();
-        *PROGRAM.get_or_init(|| Folder::default().digest(&std::env::current_exe().ok()?).ok())
+        let of_version = || digest([env!("CARGO_PKG_VERSION")]);
+        let of_file = || Folder::default().digest(&std::env::current_exe().ok()?).ok();
+        *PROGRAM.get_or_init(|| if cfg!(target_family = "wasm") { Some(of_version()) } else { of_file() })
     }
 }
 

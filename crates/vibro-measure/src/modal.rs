@@ -5,6 +5,7 @@
 //! for a mobility, −ω² for an accelerance). The largest line, the half-power bandwidth and the circle fit are
 //! given for comparison.
 
+mod blow_records;
 #[cfg(test)]
 mod blows;
 mod classical;
@@ -20,6 +21,7 @@ mod result;
 mod selection;
 mod stabilisation;
 
+pub use blow_records::BlowRecords;
 pub use response::Measured;
 pub use result::{ByMethod, ModalOptions, ModalResult, Mode, Pole};
 pub use stabilisation::{OrderedPole, stabilisation};
@@ -74,7 +76,7 @@ fn damped(measured: &Measured, options: &ModalOptions) -> Result<ModalResult> {
     let (mut fits, mut unsupported, mut failed) = (Vec::new(), Vec::new(), None);
     let groups = groups(&lines, options.band)?;
     // A coherence shows that the function was averaged, but not how.
-    let unsaid = lines.window.is_none() && lines.coherence.is_some() && lines.after_blow.is_none();
+    let unsaid = lines.window.is_none() && lines.coherence.is_some() && lines.blows.is_none();
     let unsaid = unsaid && !averaging(&mut lines, &groups);
     for mut group in groups {
         match chosen(&lines, &mut group, &mut unsupported) {
@@ -351,8 +353,8 @@ mod tests {
             2.0 * (part(pole) - part(pole.conj())) / Complex64::new(0.0, 2.0 * pole.im)
         });
         let kind = Quantity::Receptance;
-        let measured =
-            Measured { after_blow: Some(length), values: values.collect(), kind, ..measured.clone() };
+        let blows = Some(BlowRecords { after: length, ..BlowRecords::default() });
+        let measured = Measured { blows, values: values.collect(), kind, ..measured.clone() };
         let result = found(&measured, &ModalOptions::default());
         let mode = &result.modes[0];
         assert!((mode.zeta.value / zeta - 1.0).abs() < 1e-4, "{mode:?}");

@@ -15,7 +15,7 @@ use std::f64::consts::TAU;
 use vibro_record::code;
 use vibro_record::units::Unit;
 use vibro_record::{Axis, Doubt, Error, Finding, Meta, Result, Scaling, Spectrum, Trace, Traces, Window};
-use vibro_signal::impact::{BlowTransfer, Blows, from_blows, spacing};
+use vibro_signal::impact::{BlowTransfer, Blows, force_window, from_blows, spacing};
 use vibro_signal::integrate::in_frequency;
 use vibro_signal::rails::Rails;
 use vibro_signal::segment::Segments;
@@ -33,6 +33,9 @@ const BLOWS: f64 = 15.0;
 const SHORTEST: usize = 256;
 /// A hammer record begins 1/50 of its length before the blow.
 pub(crate) const BEFORE: usize = 50;
+/// But at least this many samples, up to a quarter of a record: the force rises, and an anti-alias filter
+/// rings, before the trigger.
+const RISE: usize = 16;
 
 /// The spectrum of the only channel, or with an estimator the frequency response function from the first
 /// channel to the second. `progress` gets the number of samples read.
@@ -292,9 +295,10 @@ fn of_blows(
     while options.segment.is_none() && length > longest && length > SHORTEST {
         length /= 2;
     }
-    let of = |length| {
-        let before = length / BEFORE;
-        let (force_window, left_at_end) = (options.force_window, options.left_at_end);
+    let width = options.force_window.map_or_else(|| force_window(force), Ok)?;
+    let of = |length: usize| {
+        let before = (length / BEFORE).max(RISE.min(length / 4));
+        let (force_window, left_at_end) = (Some(width), options.left_at_end);
         from_blows(force, response, &Blows { length, before, force_window, left_at_end }, estimator)
     };
     let clean = |found: &BlowTransfer| found.blows.iter().filter(|blow| blow.rejected.is_none()).count();

@@ -157,22 +157,9 @@ impl Meta {
         self.history.iter().any(|step| step.name == "blows") || self.notes.iter().any(said)
     }
 
-    /// Number of blows over which it was averaged, from the history.
-    pub fn blows(&self) -> Option<usize> {
-        self.history.iter().rev().find(|step| step.name == "blows")?.argument("count")?.parse().ok()
-    }
-
-    /// Time in s from the centre of a hammer blow to the end of its record, from the history.
-    pub fn after_blow(&self) -> Option<f64> {
-        let made = self.history.iter().rev().find(|step| step.name == "end_of_blows")?;
-        made.argument("after")?.parse().ok()
-    }
-
-    /// Shortest time in s between hammer blows, from the history; infinite for a single one.
-    pub fn between_blows(&self) -> Option<f64> {
-        let made = self.history.iter().rev().find(|step| step.name == "between_blows");
-        let single = (self.blows() == Some(1)).then_some(f64::INFINITY);
-        made.and_then(|step| step.argument("apart")?.parse().ok()).or(single)
+    /// A number of the records of blows over which it was averaged, from the history.
+    pub fn of_blows(&self, key: &str) -> Option<f64> {
+        self.history.iter().rev().find(|step| step.name == "blows")?.argument(key)?.parse().ok()
     }
 
     /// Takes over the unit that an instrument wrote: stores its SI unit and quantity, notes the conversion in

@@ -5,6 +5,7 @@
 //! ends is weighted down to its end (exponential window, on the force, too). That adds damping by a known
 //! amount, which is reported.
 
+mod force;
 mod left;
 
 use super::fft::Transform;
@@ -38,6 +39,11 @@ const AUDIBLE: f64 = 10.0;
 /// Least distance of a clipping level from the quiet level, as a fraction of the largest deviation. A nearer
 /// extreme is the force at rest between blows: a blow does not pull.
 const RAIL: f64 = 0.1;
+
+/// Width of the force window where none is stated, in contact times of the longest blow.
+const CONTACTS: usize = 10;
+/// But at least this number of samples: filters of converters ring for some thirty.
+const RINGING: usize = 64;
 
 const CUT_OFF: &str = "the record cuts it off";
 const DOUBLE: &str = "double hit";
@@ -175,21 +181,31 @@ pub fn from_blows(
     let averages = sums.mean(&vec![1.0; how.length], apart, rate, true);
     let metas: [Meta; 2] = [force.meta.clone(), response.meta.clone()];
     let mut transfer = transfer(&averages, 1, &metas, estimator)?;
-    let meta = &mut transfer.frf.meta;
-    meta.step("blows", &[("count", &kept.len()), ("length", &how.length), ("before", &how.before)]);
     // H1 weights each blow by the square of its force.
     let [delays, squares] = clean.iter().fold([0.0; 2], |[delays, squares], blow| {
-        [delays + blow.peak * blow.peak * delay(force, blow, how), squares + blow.peak * blow.peak]
+        [delays + blow.peak * blow.peak * force::delay(force, blow, how), squares + blow.peak * blow.peak]
     });
     let after = ((how.length - how.before) as f64 - delays / squares) / rate;
-    meta.step("end_of_blows", &[("after", &after)]);
-    let apart = blows.windows(2).map(|pair| pair[1].time - pair[0].time).reduce(f64::min);
-    if let Some(apart) = apart {
-        meta.step("between_blows", &[("apart", &apart)]);
-    }
+    let variance = force::variance(&averages.auto[0], averages.step());
+    let apart = blows.windows(2).map(|pair| pair[1].time - pair[0].time).fold(f64::INFINITY, f64::min);
+    let sample = rate.recip();
+    let noise = noise * weights[0].iter().map(|w| w * w).sum::<f64>();
+    let scatter = (0.5 * noise / (kept.len() as f64 * averages.auto[0][1])).sqrt();
+    transfer.frf.meta.step(
+        "blows",
+        &[
+            ("count", &kept.len()),
+            ("length", &how.length),
+            ("before", &how.before),
+            ("after", &after),
+            ("apart", &apart),
+            ("variance", &variance),
+            ("sample", &sample),
+            ("scatter", &scatter),
+        ],
+    );
     let left = left::widen(&mut transfer, &response.values, &kept, how, &weights[1]);
     let force = &averages.auto[0];
-    let noise = noise * weights[0].iter().map(|w| w * w).sum::<f64>();
     transfer.silence(|k| force[k + 1] <= AUDIBLE * noise, Finding::caution("frf-not-excited"));
     if let Some([_, mode]) = left.filter(|[_, mode]| mode.part > 0.0) {
         let after = (how.length - how.before) as f64 / rate;
@@ -218,26 +234,6 @@ pub fn from_blows(
     })
 }
 
-/// Delay in samples from the trigger of a blow to the centre of its force, with the ringing of filters within
-/// four contact times.
-///
-/// With the transform F(s) of the force, a mode of pole s that rings at the end T of the record lacks e^((s −
-/// iω)T) F(s)/F(iω) of its transform. Near the mode F(s)/F(iω) is e^((iω − s)c), where c is that centre: the
-/// record ends T − c after an impulse.
-fn delay(force: &Trace, blow: &Blow, how: &Blows) -> f64 {
-    let part = &force.values[blow.start..blow.start + how.length];
-    let quiet = how.before / 2;
-    let level = part[..quiet].iter().sum::<f64>() / quiet.max(1) as f64;
-    let share = |v: &f64| (v - level) / blow.peak;
-    let contact = part[how.before..].iter().take_while(|v| share(v) > TRIGGER).count();
-    let from = how.before.saturating_sub(4 * contact).max(quiet);
-    let around = &part[from..(how.before + 5 * contact).min(how.length)];
-    let [moment, sum] = around.iter().enumerate().fold([0.0, 0.0], |[moment, sum], (i, v)| {
-        [moment + ((from + i) as f64 - how.before as f64) * share(v), sum + share(v)]
-    });
-    if sum > 0.0 { moment / sum } else { 0.0 }
-}
-
 /// Longest record in samples that holds a single blow: the shortest interval between blows, or from the last
 /// blow to the end.
 ///
@@ -248,10 +244,7 @@ fn delay(force: &Trace, blow: &Blow, how: &Blows) -> f64 {
 pub fn spacing(force: &Trace) -> Result<usize> {
     let bounce = (BOUNCE * force.sampling_rate()?) as usize;
     let values = &force.values;
-    let rest = Quiet::of(values);
-    let push = values.iter().map(|v| v - rest.level);
-    let extreme = push.clone().fold(0.0f64, |m, v| if v.abs() > m.abs() { v } else { m });
-    let above: Vec<bool> = push.map(|v| v * extreme.signum() > TRIGGER * extreme.abs()).collect();
+    let above = triggered(values);
     let begins: Vec<usize> = (0..above.len()).filter(|i| above[*i] && (*i == 0 || !above[i - 1])).collect();
     let between = begins.windows(2).map(|w| w[1] - w[0]).filter(|gap| *gap > bounce).min();
     let behind = values.len() - begins.last().copied().unwrap_or(0);
@@ -260,6 +253,26 @@ pub fn spacing(force: &Trace) -> Result<usize> {
         Some(gap) => gap.min(behind),
         None => behind,
     })
+}
+
+/// Width in s of a force window for the blows of a force: no blow lasts longer.
+///
+/// Force sensors are noisy, and a record is long: without a window a line shows the noise of all samples.
+///
+/// # Errors
+/// If the force has no sampling rate.
+pub fn force_window(force: &Trace) -> Result<f64> {
+    let runs = triggered(&force.values);
+    let contact = runs.split(|above| !above).map(<[bool]>::len).max().unwrap_or(0);
+    Ok((CONTACTS * contact).max(RINGING) as f64 / force.sampling_rate()?)
+}
+
+/// Which samples of a force are above the trigger.
+fn triggered(values: &[f64]) -> Vec<bool> {
+    let rest = Quiet::of(values);
+    let push = values.iter().map(|v| v - rest.level);
+    let extreme = push.clone().fold(0.0f64, |m, v| if v.abs() > m.abs() { v } else { m });
+    push.map(|v| v * extreme.signum() > TRIGGER * extreme.abs()).collect()
 }
 
 /// The finding that blows are left out, counted by reason; `None` where all count.

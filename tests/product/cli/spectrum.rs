@@ -224,13 +224,13 @@ fn a_hammer_names_the_windows_applied() {
         complaint(&hammer[..4], 1).contains("comes in blows")
             && complaint(&hammer[..4], 1).contains("--hammer")
     );
-    assert_eq!(ask(&[]), ("rectangular".to_owned(), 1.0));
+    assert_eq!(ask(&[]), ("force".to_owned(), 1.0));
     assert_eq!(ask(&["--force-window", "0.05"]), ("force".to_owned(), 1.0));
     let (window, enbw) = ask(&["--left-at-end", "0.01"]);
     // Weight 1 for 2 % of the record, then an exponential decay to 0.01.
     let weights = (0..1000).map(|i| 0.01f64.powf(f64::from((i - 20).max(0)) / 980.0));
     let (sum, squares) = weights.fold((0.0, 0.0), |(s, q), w| (s + w, q + w * w));
-    assert_eq!(window, "exponential");
+    assert_eq!(window, "force and exponential");
     assert!((enbw / (1000.0 * squares / (sum * sum)) - 1.0).abs() < 1e-12, "{enbw}");
     // The response decays by 0.003 a sample at 0.3 rad a sample, so ζ = 0.01. The decay of the window is
     // written to the file, read back and subtracted.

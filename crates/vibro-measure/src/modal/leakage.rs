@@ -9,27 +9,37 @@
 //! = (1 − exp(−z))/z, L(z) = (1 − E(z))/z and bⱼ = cⱼ/(πi) Σ cₘ/(m − j) over m ≠ j: the products of two terms
 //! of w, each integrated from 0 to T − τ.
 //!
-//! The record of a blow multiplies the impulse response by 1 up to its end T after the blow: T E(z).
+//! The record of a blow ends while the response F(p) exp(pt) rings, F(p) the transform of the force. With s =
+//! iω − p and T the time from the centre of the force to the first sample after the record, the sum over the
+//! samples after it, Δt apart, lacks from 1/s: exp(−sT) Δt/(1 − exp(−sΔt)) exp((p² + ω²)v/2). The last factor
+//! is F(p)/F(iω) about the centre: v is the variance of the force over time, its second cumulant.
 
-use super::Measured;
+use super::{BlowRecords, Measured};
 use num_complex::Complex64;
 use std::f64::consts::{PI, TAU};
 use vibro_record::Window;
 
-/// The integral above for one window and segment length.
+/// What takes the place of 1/s, for times over the inverse unit of s.
 #[derive(Debug, Clone)]
-pub(super) struct Leakage {
-    length: f64,
-    /// 2πj, cⱼ² and bⱼ over Σ cₖ².
-    terms: Vec<(f64, f64, Complex64)>,
+pub(super) enum Leakage {
+    /// The integral above for one window and segment length.
+    Segments {
+        length: f64,
+        /// 2πj, cⱼ² and bⱼ over Σ cₖ².
+        terms: Vec<(f64, f64, Complex64)>,
+    },
+    Blows(BlowRecords),
 }
+
+/// Fall of the power of a force over frequency, ω²v, up to which its second cumulant describes it: 10 dB.
+const FALL: f64 = 2.3;
 
 impl Measured {
     /// Leakage of the records over which the function was averaged, for angular frequencies over `unit` in
     /// rad/s.
     pub(super) fn leakage(&self, unit: f64) -> Option<Leakage> {
         let segments = self.window.map(|window| Leakage::of(window, unit / self.spacing()));
-        segments.or(self.after_blow.map(|length| Leakage::of_blows(unit * length)))
+        segments.or(self.blows.map(|blows| Leakage::of_blows(&blows, unit)))
     }
 }
 
@@ -48,33 +58,51 @@ impl Leakage {
             let b = Complex64::new(0.0, -c(j) * beside / PI);
             (TAU * f64::from(j), c(j) * c(j) / power, b / power)
         };
-        Leakage { length, terms: (-most..=most).map(term).collect() }
+        Leakage::Segments { length, terms: (-most..=most).map(term).collect() }
     }
 
-    /// For the records of blows that end `length` after the blow, in the inverse unit of s.
-    pub fn of_blows(length: f64) -> Leakage {
-        Leakage { length, terms: vec![(0.0, 0.0, Complex64::ONE)] }
+    /// For the records of blows, for angular frequencies over `unit` in rad/s.
+    pub fn of_blows(blows: &BlowRecords, unit: f64) -> Leakage {
+        Leakage::Blows(BlowRecords {
+            after: unit * blows.after,
+            variance: unit * unit * blows.variance,
+            sample: unit * blows.sample,
+            ..*blows
+        })
     }
 
-    /// The integral, which takes the place of 1/s.
-    pub fn inverse(&self, s: Complex64) -> Complex64 {
-        let decayed = (-s * self.length).exp();
-        let sum = self.terms.iter().map(|(shift, square, b)| {
-            let z = s * self.length - Complex64::new(0.0, *shift);
+    /// What takes the place of 1/(iω − p) at the line `at` = iω, for a pole p.
+    pub fn inverse(&self, at: Complex64, pole: Complex64) -> Complex64 {
+        let s = at - pole;
+        let (length, terms) = match self {
+            Leakage::Segments { length, terms } => (*length, terms),
+            Leakage::Blows(BlowRecords { after, variance, sample, .. }) => {
+                let fall = (variance * at.im * at.im).min(FALL);
+                let left = (0.5 * (variance * pole * pole + fall) - s * after).exp();
+                // Of an undamped mode on a line: the limit, to 1e-6.
+                let whole =
+                    if (s * after).norm_sqr() < 1e-12 { after + variance * at } else { (1.0 - left) / s };
+                // Δt/(1 − exp(−sΔt)) = 1/s + Δt/2 + sΔt²/12 …
+                return whole - left * sample * (0.5 + s * sample / 12.0);
+            }
+        };
+        let decayed = (-s * length).exp();
+        let sum = terms.iter().map(|(shift, square, b)| {
+            let z = s * length - Complex64::new(0.0, *shift);
             // z = 0 is an undamped mode on a line; near it both are at their limits 1 and ½, to 1e-6.
             let small = z.norm_sqr() < 1e-12;
             let e = if small { Complex64::new(1.0, 0.0) } else { (1.0 - decayed) / z };
             let l = if small { Complex64::new(0.5, 0.0) } else { (1.0 - e) / z };
             square * l + b * e
         });
-        self.length * sum.sum::<Complex64>()
+        length * sum.sum::<Complex64>()
     }
 
     /// Response at the angular frequency `x` of a mode with natural angular frequency `own`, damping ratio
     /// `zeta` and modal constant 1, times (ix)^`power`.
     pub fn mode(&self, x: f64, (own, zeta): (f64, f64), power: i32) -> Complex64 {
         let pole = own * Complex64::new(-zeta, (1.0 - zeta * zeta).max(0.0).sqrt());
-        let part = |pole: Complex64| pole.powi(power) * self.inverse(Complex64::new(0.0, x) - pole);
+        let part = |pole: Complex64| pole.powi(power) * self.inverse(Complex64::new(0.0, x), pole);
         let smooth = if power == 2 { 1.0 } else { 0.0 };
         smooth + (part(pole) - part(pole.conj())) / Complex64::new(0.0, 2.0 * pole.im)
     }
@@ -114,7 +142,8 @@ mod tests {
     fn the_closed_form_is_the_integral() {
         for window in Window::ALL {
             for s in [Complex64::new(0.8, 0.3), Complex64::new(0.1, -2.0), Complex64::new(3.0, 9.0)] {
-                let (found, expected) = (Leakage::of(window, 2.0).inverse(s), by_sums(window, 2.0, s));
+                let (found, expected) =
+                    (Leakage::of(window, 2.0).inverse(s, Complex64::ZERO), by_sums(window, 2.0, s));
                 // Simpson's rule on 2000 steps of functions with up to 8 periods: (8·2π/2000)⁴/180 is 2e-9.
                 assert!(
                     (found - expected).norm() < 1e-7 * expected.norm(),

@@ -66,15 +66,16 @@ impl Candidate<'_> {
             find(true, of(Finding::caution("modal-leakage")));
         }
         find(measured.window.is_some() && leaks, of(Finding::note("modal-leakage-fitted")));
-        if let Some(after_blow) = measured.after_blow {
+        if let Some(blows) = measured.blows {
             // The response left by the blow before, e^(sT) of its own, has the same pole, and any phase: it
             // changes A by a factor, half of whose mean square is along A. Its mean over blows of independent
             // phases is smaller by √n; a coherence needs two. No exponential window adds to its decay.
-            let apart = measured.between_blows.unwrap_or(after_blow);
-            let left = (-TAU * own.frequency * own.zeta * apart).exp();
+            let left = (-TAU * own.frequency * own.zeta * blows.apart.unwrap_or(blows.after)).exp();
             let cut_off = Finding::caution(code::MODAL_BLOW_CUT_OFF).number("part", left);
             find(left * pole.constant.norm() > std[2], cut_off);
-            let left = left / (2.0 * measured.blows.unwrap_or(2) as f64).sqrt();
+            let left = left / (2.0 * blows.count.unwrap_or(2.0)).sqrt();
+            // Noise within a short force window is alike on neighbouring lines: it scales the whole mode.
+            let left = left.hypot(blows.scatter);
             (std[2], std[3]) = (std[2].hypot(left * pole.constant.norm()), std[3].hypot(left));
         }
         let phase = own.constant.arg().to_degrees();

@@ -1,6 +1,6 @@
 //! The lines of a frequency response function that may be fitted.
 
-use crate::spectral::BEFORE;
+use super::BlowRecords;
 use num_complex::Complex64;
 use vibro_record::units::Quantity;
 use vibro_record::{
@@ -24,13 +24,8 @@ pub struct Measured {
     /// Window of the segments that the function was averaged over, each as long as the inverse of the line
     /// spacing. `None` where it was not averaged so, or that is not known.
     pub window: Option<Window>,
-    /// Time in s from a blow of a hammer to the end of its record, where the function was averaged over
-    /// blows.
-    pub after_blow: Option<f64>,
-    /// Time in s from a blow to the next, where it is known: at least `after_blow`.
-    pub between_blows: Option<f64>,
-    /// Number of these blows, where it is known.
-    pub blows: Option<usize>,
+    /// Records of the blows of a hammer, where the function was averaged over them.
+    pub blows: Option<BlowRecords>,
     /// Standard uncertainty of one component of each value, above 0, where it is known.
     pub std: Option<Vec<f64>>,
 }
@@ -45,8 +40,6 @@ impl Measured {
             kind,
             coherence: None,
             window: None,
-            after_blow: None,
-            between_blows: None,
             blows: None,
             std: None,
         }
@@ -56,10 +49,7 @@ impl Measured {
     pub fn complex(frf: &Frf) -> Measured {
         let window = frf.meta.averaged_with();
         let all = Measured::of(&frf.axis, frf.values.clone(), frf.meta.quantity);
-        let record = frf.axis.step().map(|step| (1.0 - 1.0 / BEFORE as f64) / step);
-        let after_blow = frf.meta.after_blow().or(record.filter(|_| frf.meta.from_blows()));
-        let between_blows = frf.meta.between_blows();
-        Measured { window, after_blow, between_blows, blows: frf.meta.blows(), ..all }
+        Measured { window, blows: BlowRecords::of(frf), ..all }
     }
 
     fn of(axis: &Axis, values: Vec<Complex64>, kind: Quantity) -> Measured {

@@ -39,7 +39,7 @@ pub struct SpectralOptions {
     pub estimator: Option<Estimator>,
     /// Whether the first channel is the force of a hammer: one record of `segment` samples a blow.
     pub hammer: bool,
-    /// Width of the force window in s.
+    /// Width of the force window in s. Default: ten contact times, at least 64 samples.
     pub force_window: Option<f64>,
     /// Value of the exponential window on the response at the end of a record; it is 1 at the beginning.
     pub left_at_end: Option<f64>,
