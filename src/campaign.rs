@@ -42,7 +42,8 @@ pub(crate) use entry::Entry;
 pub(crate) use key_range::KeyRange;
 #[cfg(test)]
 pub(crate) use key_range::SHARED;
-pub(crate) use reading::{Channel, Reading, above_zero};
+pub use reading::Reading;
+pub(crate) use reading::{Channel, above_zero};
 pub(crate) use value::{LowPass, channel, channels, one_or_more, two, word};
 
 use crate::error::{Error, Place, Result};

@@ -57,10 +57,6 @@ const GROUPS: &[(&str, &[CommandRow])] = &[
             ),
             CommandRow::of::<init::Check>("check campaign.toml", "Check a campaign without computing"),
             CommandRow::of::<demo::Open>("open measurements", "Open the report of a folder in a browser"),
-            CommandRow::of::<app::App>(
-                "app",
-                "Write the page vibro.html: the same in a browser, without a terminal",
-            ),
             CommandRow::of::<demo::Demo>("demo bench", "Write an example with its recordings, and run it"),
         ],
     ),
@@ -141,8 +137,12 @@ const GROUPS: &[(&str, &[CommandRow])] = &[
         ],
     ),
     (
-        "Shell",
+        "Browser and shell",
         &[
+            CommandRow::of::<app::App>(
+                "app --out page",
+                "Write the page vibro.html: the same without a terminal",
+            ),
             CommandRow::of::<shell::Completions>(
                 "completions bash > ~/.local/share/bash-completion/completions/vibro",
                 "Print the completions for a shell",

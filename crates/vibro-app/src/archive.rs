@@ -16,11 +16,14 @@ const MOST: usize = 20_000;
 /// A file of an archive: its name and its bytes.
 type Member = (String, Vec<u8>);
 
+/// Files that were left out, each with the reason.
+pub(crate) type LeftOut = Vec<(String, String)>;
+
 /// The files of an archive, and those left out with the reason.
 ///
 /// # Errors
 /// If it is damaged, has more than 20 000 files, or unpacks to more than 1 GiB.
-pub(crate) fn unpacked(path: &Path, bytes: Vec<u8>) -> Result<(Vec<Member>, Vec<(String, String)>)> {
+pub(crate) fn unpacked(path: &Path, bytes: Vec<u8>) -> Result<(Vec<Member>, LeftOut)> {
     let damaged = |error: &ZipError| Error::input(Place::file(path), format!("{error}"), "a zip archive");
     let too_large = |found: String, most: String| {
         Error::input(Place::file(path), found, most).hint("unpack it, and drop only the files that you need")

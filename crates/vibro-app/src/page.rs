@@ -24,6 +24,10 @@ unsafe extern "C" {
     safe fn progress(what: *const u8, len: usize, done: usize, all: usize);
 }
 
+/// Elsewhere nobody looks.
+#[cfg(not(target_family = "wasm"))]
+fn progress(_what: *const u8, _len: usize, _done: usize, _all: usize) {}
+
 /// Progress on the page.
 #[derive(Debug, Default)]
 struct OnPage {
@@ -34,7 +38,6 @@ struct OnPage {
 
 impl OnPage {
     fn show(&self) {
-        #[cfg(target_family = "wasm")]
         if let Ok(what) = self.what.lock() {
             progress(what.as_ptr(), what.len(), self.done.load(Relaxed), self.all.load(Relaxed));
         }

@@ -1,11 +1,11 @@
 //! The files of a page, its campaign, and its results, all in memory.
 
-use crate::archive::{packed, unpacked};
+use crate::archive::{LeftOut, packed, unpacked};
 use crate::{Picture, Reply, Request, SeenRecording, SeenTable};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use vibroimpact::analysis::{self, AnswerCache, Progress};
-use vibroimpact::campaign::{Campaign, WrittenTable};
+use vibroimpact::campaign::{Campaign, Reading, WrittenTable};
 use vibroimpact::error::{Error, Result};
 use vibroimpact::proposal::Proposal;
 use vibroimpact::read::{Folder, Owner, Reader};
@@ -22,7 +22,7 @@ pub struct Workbench {
     /// Folder and names of the results.
     results: (PathBuf, Vec<String>),
     /// Files of archives that were left out, with the reason.
-    left: Vec<(String, String)>,
+    left: LeftOut,
 }
 
 impl Default for Workbench {
@@ -148,7 +148,7 @@ impl Workbench {
         } else if analysis::recordings(&self.folder)?.files.is_empty() {
             none = Some("no recording among these files".to_owned());
         } else {
-            match Proposal::of(&self.folder, &Default::default(), None, &AnswerCache::default(), progress) {
+            match Proposal::of(&self.folder, &Reading::default(), None, &AnswerCache::default(), progress) {
                 Ok(proposal) => {
                     self.text = proposal.toml();
                     self.proposal = Some(proposal);

@@ -25,7 +25,7 @@ fn commands(text: &str) -> Vec<(String, String)> {
 /// (`tests/product/drill.rs`). `vibro precision` measures every method, which takes a minute in a debug
 /// build (`tests/product/failure_map.rs`, `tests/product/cli/precision.rs`).
 #[cfg(unix)]
-const ELSEWHERE: [&str; 2] = ["vibro drill", "vibro precision"];
+const ELSEWHERE: [&str; 3] = ["vibro drill", "vibro precision", "vibro app"];
 
 /// Runs a shell command in a folder, with `vibro` on its path.
 #[cfg(unix)]
@@ -241,4 +241,22 @@ fn every_command_and_every_key_of_a_campaign_is_described() {
         let described = [format!("[{key}]"), format!("`{key}`")].iter().any(|k| campaign.contains(k));
         assert!(described, "docs/campaign.md says nothing of {key}");
     }
+}
+
+/// A command that was built with the page writes it and replaces nobody's file; any other says how to get it.
+#[test]
+fn the_page_is_written_where_the_command_has_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let written = || super::vibro(&["app", "--out", folder.path().to_str().unwrap()]);
+    let page = folder.path().join("vibro.html");
+    std::fs::write(&page, "mine").unwrap();
+    let first = written();
+    assert!(!first.status.success());
+    assert_eq!(std::fs::read_to_string(&page).unwrap(), "mine");
+    if String::from_utf8_lossy(&first.stderr).contains("built without the page") {
+        return;
+    }
+    std::fs::remove_file(&page).unwrap();
+    assert!(written().status.success());
+    assert!(std::fs::read_to_string(&page).unwrap().starts_with("<!DOCTYPE html>"));
 }

@@ -1,4 +1,5 @@
 use super::*;
+use std::fmt::Write as _;
 
 fn json(bench: &mut Workbench, request: &Request) -> Value {
     match bench.answer(request, &()).unwrap() {
@@ -37,7 +38,7 @@ fn a_missing_value_is_filled_in_and_the_record_answers() {
                 if t < at { 0.0 } else { size * (-(t - at) / 2e-3).exp() * (9000.0 * (t - at)).sin() }
             };
             let value = noise + ring(0.3, 1.0) + ring(0.9, 0.8) + ring(1.35, 0.6);
-            text += &format!("{t},{value}\n");
+            let _ = writeln!(text, "{t},{value}");
         }
         text.into_bytes()
     };
