@@ -12,6 +12,16 @@ for target in $PROGRAMS $WHEELS; do
   [ "$target" = sdist ] || rustup --quiet target add "$target"
 done
 
+# The page with the whole tool, which every program brings; with the licences of what is in it, once.
+rustup --quiet target add wasm32-unknown-unknown
+mkdir -p target/app
+crates/vibro-app/build.sh target/app
+export VIBRO_APP=$PWD/target/app/vibro.html
+if [ "$(uname)" = Linux ]; then
+  cp "$VIBRO_APP" "$to"
+  "$python" packaging/workspace.py vibro-app wasm32-unknown-unknown >"$to/vibro.html-LICENSES.txt"
+fi
+
 # The program that prints the manual page for those that do not run here.
 speaker=()
 for target in $PROGRAMS; do

@@ -4,6 +4,7 @@ import json
 import os
 import pathlib
 import subprocess
+import sys
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 RUSTC = subprocess.run(["rustc", "-vV"], capture_output=True, text=True, check=True).stdout
@@ -59,3 +60,8 @@ def notices(name, target):
     for licence, bearers in licences.items():
         text.append(f"\n{'=' * 80}\n{', '.join(bearers)}\n\n{licence}")
     return "\n".join(text) + "\n"
+
+
+if __name__ == "__main__":
+    # The licences in a crate for a target: workspace.py NAME TARGET
+    print(notices(*sys.argv[1:]), end="")

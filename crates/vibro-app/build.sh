@@ -9,4 +9,4 @@ to=$(realpath "${1:?the folder for vibro.html}")
 home=${CARGO_HOME:-$HOME/.cargo}
 export RUSTFLAGS="--remap-path-prefix=$home=cargo --remap-path-prefix=$PWD=vibroimpact"
 cargo build --locked --quiet --profile app --package vibro-app --lib --target wasm32-unknown-unknown --target-dir target/app
-python3 crates/vibro-app/pack.py target/app/wasm32-unknown-unknown/app/vibro_app.wasm "$to/vibro.html"
+"$(command -v python3 || command -v python)" crates/vibro-app/pack.py target/app/wasm32-unknown-unknown/app/vibro_app.wasm "$to/vibro.html"

@@ -83,7 +83,7 @@ pub struct Keys {
     pub fmin: Option<f64>,
     /// Hammer test: one segment for each blow
     pub hammer: bool,
-    /// Width of the force window in s
+    /// Width of the force window in s [default: ten contact times, 64 samples at least]
     pub force_window: Option<f64>,
     /// Value of the exponential window at the end of a segment
     pub left_at_end: Option<f64>,

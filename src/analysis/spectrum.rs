@@ -60,7 +60,7 @@ pub struct Keys {
     pub estimator: Option<Estimator>,
     /// Hammer test: one segment for each blow; the level before the blow is removed
     pub hammer: bool,
-    /// Width of the force window in s
+    /// Width of the force window in s [default: ten contact times, 64 samples at least]
     pub force_window: Option<f64>,
     /// Value of the exponential window at the end of a segment, e.g. 0.01
     pub left_at_end: Option<f64>,

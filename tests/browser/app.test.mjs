@@ -143,6 +143,39 @@ test("dropped files are listed, a missing value is filled in, and the report ans
   assert.match(text, /^height = 0\.5/m);
 }));
 
+test("files that are added keep what was changed, and take no name that is there", { skip }, () => open({}, async (page) => {
+  await drop(page, { "fall.csv": bounces() });
+  await ran(page);
+  const before = await runs(page);
+  await page.locator("#campaign summary").click();
+  await page.locator("#text").fill(`# mine\n${await page.locator("#text").inputValue()}`);
+  await ran(page, before + 1);
+  await drop(page, { "fall.csv": bounces({ first: 0.35 }), "other.csv": bounces({ first: 0.2 }) });
+  await ran(page, before + 2);
+  assert.match(await troubles(page), /fall\.csv was there already/);
+  const text = await page.locator("#text").inputValue();
+  assert.ok(text.startsWith("# mine\n") && text.includes("other.csv") && text.includes("fall (2).csv"), text);
+}));
+
+test("a field that is typed in while the report is made keeps its text", { skip }, () => open({}, async (page) => {
+  await page.click("[data-example=drop_test]");
+  await ran(page);
+  const before = await runs(page), fields = page.locator(".card").first().locator("input");
+  await fields.nth(2).fill("0.56");
+  await page.keyboard.press("Tab");
+  await page.keyboard.type("0.002");
+  await ran(page, before + 1);
+  await page.waitForTimeout(300);
+  assert.equal(await fields.nth(3).inputValue(), "0.002");
+  await page.keyboard.press("Tab");
+  await ran(page, before + 2);
+  assert.match(await page.locator("#text").inputValue(), /height = 0\.56\nheight_std = 0\.002/);
+  // A change that gives no answer leaves the report, and says so.
+  await fields.nth(2).fill("abc");
+  await fields.nth(2).press("Enter");
+  await page.locator(".card .refused").first().waitFor();
+}));
+
 test("the campaign is edited in place, with its error at the line", { skip }, () => open({}, async (page) => {
   await page.click("[data-example=drop_test]");
   await ran(page);
@@ -203,7 +236,7 @@ test("a hostile folder loses only itself", { skip }, () => open({}, async (page)
   assert.ok(seen.includes("fall3.csv"));
   assert.equal(await page.locator("img").count(), 0);
   assert.equal(await report(page).locator("img").count(), 0);
-  await page.locator("#recordings summary").click();
+  for (const fold of await page.locator("#recordings summary").all()) await fold.click();
   assert.match(await page.locator("#recordings").innerText(), /outside\.csv: its name leads outside/);
 }));
 

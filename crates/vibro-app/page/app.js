@@ -23,6 +23,7 @@ class App {
     const look = (k) => this.trace.open(k, this.tables[k]).catch((error) => this.trouble(error.message));
     this.cards = new Tables(at("tables"), { set, look, find: (line) => this.editor.find(line) });
     this.editor = new Editor(at("campaign"), (text) => this.edit(text));
+    this.changed = false;
     const ask = (what, more) => this.program.ask(what, more);
     this.trace = new TraceView(at("trace"), { ask, set, events: (table, file) => this.events(table, file) });
     this.drawn = new Map();
@@ -37,12 +38,16 @@ class App {
       at(id).onchange = () => { this.take(chosen(at(id))); at(id).value = ""; };
     }
     for (const button of document.querySelectorAll("[data-example]")) button.onclick = () => this.look({ example: button.dataset.example });
-    at("anew").onclick = () => shelf.clear().catch(() => {}).then(() => location.reload());
+    at("anew").onclick = () => location.reload();
     at("to-report").onclick = () => at("report").scrollIntoView();
+    at("again").onclick = () => this.look({ files: this.files, name: this.name, example: this.example, known: this.changed ? this.text : null });
     at("stop").onclick = () => this.program.end("stopped");
     at("save-report").onclick = () => this.save("report.html", "text/html");
     at("save-campaign").onclick = () => this.save("campaign.toml", "text/plain");
-    at("save-all").onclick = () => this.work("packing", async () => save(`${this.name || "results"}.zip`, await this.program.ask("archive"), "application/zip"));
+    at("save-all").onclick = () => this.work("packing", async () => {
+      save(`${this.name || "results"}.zip`, await this.program.ask("archive"), "application/zip");
+      this.changed = false;
+    });
     at("keep").onclick = () => this.keep();
     const over = (on) => (event) => { event.preventDefault(); document.body.classList.toggle("over", on); };
     addEventListener("dragover", over(true));
@@ -51,6 +56,11 @@ class App {
       over(false)(event);
       this.take(await dropped(event.dataTransfer).catch(() => []));
     });
+    // The browser asks before it closes a page with changes that were neither saved nor kept.
+    addEventListener("beforeunload", (event) => this.changed && event.preventDefault());
+    const redraw = () => this.trace.k !== undefined && this.trace.data && this.trace.draw();
+    addEventListener("resize", redraw);
+    matchMedia("(prefers-color-scheme: dark)").addEventListener("change", redraw);
     addEventListener("message", ({ source, data }) => {
       if (source !== at("report").contentWindow) return;
       if (typeof data.scroll === "number") this.scroll = data.scroll;
@@ -63,7 +73,9 @@ class App {
   offer(kept) {
     const again = make("button", { textContent: `go on with ${kept.name}, kept in this browser` });
     again.onclick = () => { again.remove(); this.look({ files: kept.files, name: kept.name, text: kept.text }); };
-    at("drop").append(make("p", {}, again));
+    const forget = make("button", { textContent: "forget it" });
+    forget.onclick = () => shelf.clear().then(() => { again.remove(); forget.remove(); }, () => {});
+    at("drop").append(make("p", {}, again, " ", forget));
   }
 
   keep() {
@@ -71,6 +83,7 @@ class App {
       const files = await Promise.all(this.files.map(async ({ path, file }) => ({ path, file: new Blob([await file.arrayBuffer()]) })));
       await shelf.put({ name: this.name, files, text: this.text });
       at("keep").textContent = "kept";
+      this.changed = false;
     });
   }
 
@@ -78,12 +91,24 @@ class App {
     if (!files.length) return undefined;
     const { name, files: own } = inFolder(files);
     const before = this.example ? [] : this.files;
-    const known = new Map([...before, ...own].map((one) => [one.path, one]));
-    return this.look({ files: Array.from(known.values()), name: before.length ? this.name : name });
+    const known = new Map(before.map((one) => [one.path, one])), renamed = [];
+    for (const { path, file } of own) {
+      const same = (held) => held.size === file.size && held.lastModified === file.lastModified;
+      let free = path;
+      for (let k = 2; known.has(free) && !same(known.get(free).file); k++) free = path.replace(/(\.[^./]*)?$/, ` (${k})$1`);
+      if (free !== path) renamed.push(`${path} was there already: the new file is ${free}`);
+      known.set(free, { path: free, file });
+    }
+    // What a person changed stays: tables for further files are added at its end.
+    const looked = this.look({ files: Array.from(known.values()), name: before.length ? this.name : name, known: this.changed ? this.text : null });
+    renamed.forEach((text) => this.trouble(text));
+    return looked;
   }
 
   /** Begins with other files: lists them, and runs the campaign for them. */
-  async look({ files = [], name = "", example = null, text = null }) {
+  async look({ files = [], name = "", example = null, text = null, known = null }) {
+    const before = this.text;
+    this.changed = text !== null || known !== null;
     [this.files, this.name, this.example, this.results] = [files, example ?? name, example, null];
     this.text = "";
     this.drawn.clear();
@@ -99,11 +124,13 @@ class App {
     at("bench").hidden = false;
     at("drop").hidden = true;
     this.recordings.show(listed.recordings);
-    const found = await this.work("looking at files", () => this.program.ask("propose"));
+    const found = await this.work("looking at files", () => this.program.ask("propose", { known }));
     this.recordings.showLeft(found?.left ?? []);
     if (found?.none && !found.tables.length) this.trouble(found.none);
+    at("unseen").hidden = found !== null;
     if (text !== null) return this.edit(text);
-    return found ? this.state(found) : this.edit(`name = ${JSON.stringify(this.name)}\n`);
+    // Stopped, the page goes on with what it had.
+    return found ? this.state(found) : this.edit(known ?? (before || `name = ${JSON.stringify(this.name)}\n`));
   }
 
   /** Gives the program its files; also after it was stopped. */
@@ -135,11 +162,13 @@ class App {
   }
 
   async set(table, key, value) {
+    this.changed = true;
     at("troubles").replaceChildren();
     await this.state(await this.program.ask("state", { table, key, value }));
   }
 
   async edit(text) {
+    this.changed ||= this.text !== text;
     at("troubles").replaceChildren();
     await this.state(await this.program.ask("edit", { text }));
   }
@@ -151,15 +180,17 @@ class App {
       return;
     }
     this.running = true;
+    let done = null;
     do {
       this.again = false;
-      const done = await this.work("running", () => this.program.ask("run"), true);
+      done = await this.work("running", () => this.program.ask("run"), true);
       if (!done) continue;
       this.cards.refused = done.refused;
       await this.report();
       this.cards.show(this.tables, this.problems);
     } while (this.again);
     this.running = false;
+    at("stale").hidden = done !== null || !at("report").srcdoc;
     if (this.trace.k !== undefined) await this.trace.refresh(this.tables);
     document.body.dataset.runs = String(1 + Number(document.body.dataset.runs ?? 0));
   }
@@ -195,7 +226,10 @@ class App {
   }
 
   save(name, type) {
-    return this.work("saving", async () => save(name, await this.program.ask("file", { name }), type));
+    return this.work("saving", async () => {
+      save(name, await this.program.ask("file", { name }), type);
+      this.changed &&= name !== "campaign.toml";
+    });
   }
 
   progress({ what, done, all }) {
@@ -211,7 +245,8 @@ class App {
 
   /** Does something that may take long; says what fails. Stopped or out of memory, the program gets its files again. */
   async work(what, todo, isRun = false) {
-    const late = setTimeout(() => this.progress({ what, done: 0, all: 0 }), 300);
+    const began = performance.now(), late = setTimeout(() => this.progress({ what, done: 0, all: 0 }), 300);
+    const clock = setInterval(() => { at("took").textContent = `${Math.round((performance.now() - began) / 1000)} s`; }, 1000);
     try {
       return await todo();
     } catch (error) {
@@ -224,7 +259,8 @@ class App {
       return null;
     } finally {
       clearTimeout(late);
-      at("doing").textContent = "";
+      clearInterval(clock);
+      at("doing").textContent = at("took").textContent = "";
       at("bar").hidden = at("stop").hidden = true;
     }
   }

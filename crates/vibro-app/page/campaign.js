@@ -7,13 +7,16 @@ class Editor {
     this.text.addEventListener("input", () => {
       this.number([]);
       clearTimeout(later);
-      later = setTimeout(() => changed(this.text.value), 500);
+      later = setTimeout(() => changed(this.known = this.text.value), 500);
     });
   }
 
   show(text, problems) {
-    // What is being typed stays as it is.
-    if (document.activeElement !== this.text && this.text.value !== text) this.text.value = text;
+    // What is being typed, and not yet known, stays as it is.
+    if (document.activeElement !== this.text || this.text.value === this.known) {
+      if (this.text.value !== text) this.text.value = text;
+      this.known = text;
+    }
     this.number(problems.map(({ line }) => line));
     this.problems.replaceChildren(...problems.map(({ text: words }) => make("li", { textContent: words })));
     if (problems.some(({ line }) => line)) this.fold.open = true;

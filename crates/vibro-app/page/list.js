@@ -76,9 +76,10 @@ class Recordings {
 
   show(recordings) {
     this.watch.disconnect();
-    const head = make("tr", {}, ...["file", "channel", "what", "unit", "rate", "length", ""].map((name) => make("th", { textContent: name })));
+    const head = make("tr", {}, ...["file", "channel", "what", "unit", "rate", "length", ""].map((name) => make("th", { textContent: name, className: /rate|length/.test(name) ? "number" : "" })));
     const body = make("tbody");
-    for (const file of recordings) body.append(...this.rows(file));
+    const unread = recordings.filter(({ problem }) => problem);
+    for (const file of recordings.filter(({ problem }) => !problem)) body.append(...this.rows(file));
     const rows = Array.from(body.rows);
     rows.slice(FIRST_ROWS).forEach((row) => { row.hidden = true; });
     this.host.replaceChildren(make("div", { className: "files" }, make("table", {}, make("thead", {}, head), body)));
@@ -89,19 +90,23 @@ class Recordings {
     }
     this.left = make("div");
     this.host.append(this.left);
+    this.fold(this.host, `${unread.length} without records that can be read`, unread.map(({ path, problem }) => `${path}: ${inShort(problem)}`));
+  }
+
+  /** A folded list; nothing where it is empty. */
+  fold(host, name, lines) {
+    const items = lines.map((line) => make("li", { textContent: line }));
+    if (items.length) host.append(make("details", {}, make("summary", { textContent: name }), make("ul", {}, ...items)));
   }
 
   /** Files that no table uses, each with the reason. */
   showLeft(left) {
-    if (left.length) {
-      const items = left.map(([name, why]) => make("li", { textContent: `${name}: ${why}` }));
-      this.left.replaceChildren(make("details", {}, make("summary", { textContent: `${left.length} not used` }), make("ul", {}, ...items)));
-    }
+    this.left.replaceChildren();
+    this.fold(this.left, `${left.length} not used`, left.map(([name, why]) => `${name}: ${why}`));
   }
 
   rows(file) {
     const cell = (text, className = "") => make("td", { textContent: text, className });
-    if (file.problem) return [make("tr", {}, cell(file.path), make("td", { colSpan: 6, textContent: file.problem }))];
     return file.records.map((record, k) => {
       const canvas = make("canvas", { title: "smallest and largest values" });
       Object.assign(canvas.dataset, { path: file.path, record: k });
@@ -121,6 +126,9 @@ class Recordings {
     if (picture) thumbnail(canvas, picture);
   }
 }
+
+/** An error without the line of the text at which it stands: that is shown in the text. */
+const inShort = (message) => message.split("\n").filter((line) => !/^\s*(\d+\s*)?\|/.test(line)).join("\n");
 
 /** A value as a person types it, in TOML. */
 function toToml(typed) {
@@ -147,10 +155,18 @@ class Tables {
   }
 
   show(tables, problems) {
-    const focus = document.activeElement?.dataset?.field;
+    // A field that is being typed in stays as it is, and a fold as it was opened.
+    const { dataset, value, selectionStart, selectionEnd } = document.activeElement ?? {}, field = dataset?.field;
+    const folds = Array.from(this.host.children, (card) => card.querySelector("details")?.open);
     this.host.replaceChildren(...tables.map((table, k) => this.card(table, k, tables[k + 1]?.line, problems)));
-    if (!tables.length) this.host.append(make("p", { textContent: "Nothing yet: the recordings above give no table. Write one below, in the campaign." }));
-    if (focus) this.host.querySelector(`[data-field="${CSS.escape(focus)}"]`)?.focus();
+    folds.forEach((open, k) => { const fold = this.host.children[k]?.querySelector("details"); if (fold && open) fold.open = true; });
+    const none = problems.length ? "The campaign has an error, which its text below names: put right, the tables come back." : "Nothing is measured yet. A table can be written below, in the campaign.";
+    if (!tables.length) this.host.append(make("p", { textContent: none }));
+    const input = field && this.host.querySelector(`[data-field="${CSS.escape(field)}"]`);
+    if (!input) return;
+    input.value = value;
+    input.focus();
+    input.setSelectionRange(selectionStart, selectionEnd);
   }
 
   card(table, k, next, problems) {
@@ -164,7 +180,7 @@ class Tables {
       if (record === name || record === table.files) card.append(make("p", { className: "refused", textContent: why }));
     }
     const wrong = problems.filter(({ line }) => line && table.line && line >= table.line && line < (next ?? Infinity));
-    for (const { text } of wrong) card.append(make("p", { className: "refused", textContent: text }));
+    for (const { text } of wrong) card.append(make("p", { className: "refused", textContent: inShort(text) }));
     const rows = (...known) => table.keys.filter((row) => known.includes(row.known)).map((row) => this.row(row, k));
     card.append(...rows("missing"), ...rows("guessed"), ...rows("stated"), ...rows("found"));
     const open = rows("open");
@@ -183,12 +199,15 @@ class Tables {
     const input = make("input", { id, value: fromToml(value), autocomplete: "off", spellcheck: false });
     input.dataset.field = name;
     const wrong = make("span", { className: "wrong" });
-    input.onchange = async () => {
-      wrong.textContent = "";
+    let sent = value;
+    input.onchange = input.onblur = async () => {
+      const typed = toToml(input.value);
+      if (typed === sent || !input.isConnected) return;
+      [sent, wrong.textContent] = [typed, ""];
       try {
-        await this.set(k, key, toToml(input.value));
+        await this.set(k, key, typed);
       } catch (error) {
-        wrong.textContent = error.message;
+        wrong.textContent = inShort(error.message);
       }
     };
     const reason = known === "guessed" ? `guessed: ${why}` : known === "missing" ? `missing: ${why}` : why;

@@ -16,11 +16,11 @@ const pairOf = (value) => (value ?? "").match(/[-+\d.eE]+/g)?.map(Number) ?? nul
 class TraceView {
   constructor(host, { ask, set, events }) {
     Object.assign(this, { host, ask, set, events });
-    this.part = [null, null];
+    [this.part, this.times] = [[null, null], []];
   }
 
   async open(k, table, file = 0) {
-    if (this.k !== k || this.file !== file) this.part = [null, null];
+    if (this.k !== k || this.file !== file) [this.part, this.times] = [[null, null], []];
     Object.assign(this, { k, table, file });
     this.host.hidden = false;
     await this.load();
@@ -37,7 +37,7 @@ class TraceView {
     if (this.k === undefined) return;
     if (!tables[this.k]) return this.close();
     this.table = tables[this.k];
-    await this.load().catch(() => this.close());
+    await this.load().catch((error) => { this.said.textContent = inShort(error.message); });
   }
 
   value(key) {
@@ -51,7 +51,10 @@ class TraceView {
   async load() {
     const [from, to] = this.part, columns = Math.max(200, Math.round(this.host.clientWidth) - 60);
     this.data = await this.ask("trace", { table: this.k, file: this.file, from, to, columns });
-    this.times = this.events(this.table, this.data.files[this.file]);
+    // Where nothing is detected any more, the marks stay as they were.
+    const found = this.events(this.table, this.data.files[this.file]);
+    this.lost = found.length === 0 && this.times?.length > 0;
+    if (!this.lost) this.times = found;
     this.build();
     this.draw();
   }
@@ -94,7 +97,7 @@ class TraceView {
     };
     this.canvas.ondblclick = () => this.go(null, null);
     this.band.onpointerdown = (event) => this.pressBand(event);
-    const help = this.times.length ? `${this.times.length} detected: the marks below. ` : "";
+    const help = this.lost ? "Nothing is detected now: the marks are those of before. " : this.times.length ? `${this.times.length} detected: the marks below. ` : "";
     this.said.textContent = `${help}Drag a line to move it; drag beside the lines to zoom, double-click for all.`;
   }
 

@@ -20,7 +20,12 @@ pub enum Request {
     /// What the files are.
     Look,
     /// The campaign among the files, else one that is proposed for them: a record of unknown kind is tried.
-    Propose,
+    Propose {
+        /// The text of the campaign as a person changed it: it stays, and has tables for further files at its
+        /// end.
+        #[serde(default)]
+        known: Option<String>,
+    },
     /// The text of the campaign, as a person changed it.
     Edit {
         /// The text.

@@ -74,7 +74,7 @@ impl Workbench {
             Request::Example { name } => self.example(name)?,
             Request::Unpack { path } => self.unpack(path)?,
             Request::Look => self.look(progress)?,
-            Request::Propose => self.propose(progress)?,
+            Request::Propose { known } => self.propose(known.as_deref(), progress)?,
             Request::Edit { text } => {
                 text.clone_into(&mut self.text);
                 self.state()
@@ -139,26 +139,41 @@ impl Workbench {
         Ok(json!({ "recordings": recordings }))
     }
 
-    /// Takes the campaign among the files, else proposes one.
-    fn propose(&mut self, progress: &dyn Progress) -> Result<Value> {
+    /// Takes the campaign among the files, else proposes one. The `known` text is extended.
+    fn propose(&mut self, known: Option<&str>, progress: &dyn Progress) -> Result<Value> {
+        let own = || self.folder.own_file(Proposal::FILE).map(|b| String::from_utf8_lossy(&b).into_owned());
+        let empty = analysis::recordings(&self.folder)?.files.is_empty();
         let mut none = None;
-        if let Some(bytes) = self.folder.own_file(Proposal::FILE) {
-            self.proposal = None;
-            self.text = String::from_utf8_lossy(&bytes).into_owned();
-        } else if analysis::recordings(&self.folder)?.files.is_empty() {
+        self.proposal = None;
+        if let (None, Some(text)) = (known, own()) {
+            self.text = text;
+        } else if empty {
             none = Some("no recording among these files".to_owned());
         } else {
-            match Proposal::of(&self.folder, &Reading::default(), None, &AnswerCache::default(), progress) {
-                Ok(proposal) => {
-                    self.text = proposal.toml();
-                    self.proposal = Some(proposal);
+            match self.proposed(known, progress) {
+                Ok((text, proposal)) => (self.text, self.proposal) = (text, Some(proposal)),
+                Err(error) => {
+                    self.text = known.unwrap_or_default().to_owned();
+                    none = Some(in_words(&error));
                 }
-                Err(error) => none = Some(in_words(&error)),
             }
         }
         let of_proposal = self.proposal.iter().flat_map(|proposal| &proposal.left);
         let left: Vec<_> = self.left.iter().chain(of_proposal).collect();
         Ok(joined(json!({ "left": left, "none": none }), self.state()))
+    }
+
+    /// The text of a proposed campaign: the known one with tables for further files, else a new one.
+    fn proposed(&self, known: Option<&str>, progress: &dyn Progress) -> Result<(String, Proposal)> {
+        let campaign = known.map(|text| analysis::parse(&self.folder, &self.path(), text.to_owned()));
+        let campaign = campaign.transpose()?;
+        let none = AnswerCache::default();
+        let proposal = Proposal::of(&self.folder, &Reading::default(), campaign.as_ref(), &none, progress)?;
+        let text = match known {
+            Some(known) => format!("{}\n{}", known.trim_end(), proposal.tables()),
+            None => proposal.toml(),
+        };
+        Ok((text, proposal))
     }
 
     /// The text of the campaign, its tables, and its errors.

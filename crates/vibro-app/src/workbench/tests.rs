@@ -15,7 +15,7 @@ fn an_example_runs_in_memory() {
     json(&mut bench, &Request::Example { name: "bench".to_owned() });
     let seen = json(&mut bench, &Request::Look);
     assert_eq!(seen["recordings"].as_array().unwrap().len(), 5);
-    let seen = json(&mut bench, &Request::Propose);
+    let seen = json(&mut bench, &Request::Propose { known: None });
     assert_eq!(seen["tables"].as_array().unwrap().len(), 7);
     let run = json(&mut bench, &Request::Run);
     assert_eq!(run["answered"], true);
@@ -43,7 +43,7 @@ fn a_missing_value_is_filled_in_and_the_record_answers() {
         text.into_bytes()
     };
     bench.add("bounce.csv", values(3)).unwrap();
-    let seen = json(&mut bench, &Request::Propose);
+    let seen = json(&mut bench, &Request::Propose { known: None });
     let tables = seen["tables"].as_array().unwrap();
     assert!(!tables.is_empty(), "{seen}");
     let set = Request::State { table: 0, key: "threshold".to_owned(), value: "0.2".to_owned() };
@@ -53,6 +53,20 @@ fn a_missing_value_is_filled_in_and_the_record_answers() {
         json(&mut bench, &Request::Trace { table: 0, file: 0, from: Some(0.2), to: Some(0.4), columns: 50 });
     assert_eq!(trace["picture"]["low"].as_array().unwrap().len(), 50);
     assert_eq!(trace["n"], 20_000);
+}
+
+/// Files that come later get tables of their own; what a person wrote stays.
+#[test]
+fn a_changed_campaign_is_extended_for_further_files() {
+    let mut bench = Workbench::default();
+    json(&mut bench, &Request::Example { name: "bench".to_owned() });
+    let mine = "name = \"mine\"\n\n[[decay]]\nfile = \"DECAY.CSV\"  # by hand\n".to_owned();
+    let seen = json(&mut bench, &Request::Propose { known: Some(mine.clone()) });
+    let text = seen["text"].as_str().unwrap();
+    assert!(text.starts_with(mine.trim_end()) && text.contains("PULSE.CSV"), "{text}");
+    assert_eq!(text.matches("DECAY.CSV").count(), 1);
+    let wrong = json(&mut bench, &Request::Propose { known: Some("name = x".to_owned()) });
+    assert_eq!((wrong["text"].as_str(), wrong["problems"][0]["line"].as_u64()), (Some("name = x"), Some(1)));
 }
 
 #[test]

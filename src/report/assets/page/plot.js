@@ -7,6 +7,26 @@ function theme(element) {
   return { ink: of("--ink"), faint: of("--faint"), paper: of("--paper"), font: `12px ${style.fontFamily}` };
 }
 
+/** Relative luminance of a colour #rrggbb (WCAG 2). */
+function luminance(parts) {
+  const [r, g, b] = parts.map((v) => (v <= 10.31475 ? v / 3294.6 : ((v / 255 + 0.055) / 1.055) ** 2.4));
+  return 0.2126 * r + 0.7152 * g + 0.0722 * b;
+}
+
+/** Least contrast of a line with a dark page. */
+const CONTRAST = 4.5;
+
+/** A colour of print as the page shows it: on a dark page black is white, greys are as far from the paper as in print, and dark colours are lightened. */
+function onPage(colour, ink) {
+  if (colour === "#000000") return ink;
+  if (ink <= "#8") return colour;
+  let parts = [1, 3, 5].map((k) => parseInt(colour.slice(k, k + 2), 16));
+  if (parts.every((v) => v === parts[0])) parts = parts.map((v) => 255 - v);
+  // The dark paper, #16181a, has a luminance of 0.009.
+  while (luminance(parts) + 0.05 < CONTRAST * 0.059) parts = parts.map((v) => Math.round(v + 0.08 * (255 - v)));
+  return `rgb(${parts.join(",")})`;
+}
+
 /** A button with a text. */
 function button(text, title, action) {
   const made = document.createElement("button");
@@ -215,7 +235,7 @@ class Plot {
         y: { distr: y.log ? 3 : 1, range: [y.low, y.high] },
       },
       axes: [{ ...axis, size: 34, label: x.title }, { ...axis, size: 58, label: y.title, ...marks(y.log) }],
-      series: [{}, { stroke: "#0072b2", width: 1.2, points: { show: false } }],
+      series: [{}, { stroke: onPage("#0072b2", ink), width: 1.2, points: { show: false } }],
     }, data, this.below);
   }
 
@@ -240,9 +260,7 @@ class Plot {
 
   pen(c, series, ink, ratio) {
     const { colour, width, dashes } = series.look;
-    // On a dark page black is white, and greys are as far from the paper as in print.
-    const [r, g, b] = [1, 3, 5].map((k) => parseInt(colour.slice(k, k + 2), 16)), dark = ink > "#8";
-    c.strokeStyle = colour === "#000000" ? ink : dark && r === g && g === b ? `rgb(${255 - r},${255 - r},${255 - r})` : colour;
+    c.strokeStyle = onPage(colour, ink);
     c.fillStyle = c.strokeStyle;
     c.lineWidth = 1.3 * width * ratio;
     c.setLineDash(dashes.map((d) => 1.3 * d * ratio));
@@ -336,10 +354,17 @@ class Plot {
       }
       c.setLineDash([]);
       c.fillStyle = ink;
+      const taken = [], tall = 13 * ratio;
       for (const note of this.panel.notes) {
         const [x, y] = this.at(note.x, note.y), right = x > this.plot.bbox.left + 0.6 * this.plot.bbox.width;
-        c.textAlign = right ? "right" : "left";
-        c.fillText(note.text, x + (right ? -6 : 6) * ratio, y - 6 * ratio);
+        const wide = c.measureText(note.text).width, begins = x + (right ? -6 * ratio - wide : 6 * ratio);
+        let foot = y - 6 * ratio;
+        // Names of near peaks stand above each other.
+        const over = (one) => begins < one.ends && one.begins < begins + wide && Math.abs(foot - one.foot) < tall;
+        while (taken.some(over) && foot > this.plot.bbox.top + tall) foot -= tall;
+        taken.push({ begins, ends: begins + wide, foot });
+        c.textAlign = "left";
+        c.fillText(note.text, begins, foot);
       }
     });
   }
