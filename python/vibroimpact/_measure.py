@@ -74,7 +74,7 @@ def spectrum(
         estimator: FRF estimator: h1 for noise in the response, h2 for noise in the excitation, hv for
             noise in both [default: h1].
         hammer: Hammer test: one segment for each blow; the level before the blow is removed.
-        force_window: Width of the force window in s.
+        force_window: Width of the force window in s [default: ten contact times, 64 samples at least].
         left_at_end: Value of the exponential window at the end of a segment, e.g. 0.01.
         delay: Channel delay to remove, in s: the channel was recorded later than the reference.
         decibel: Give levels in decibels over this reference, in SI units of the channel: 1, or 1e-6 for 1
@@ -433,7 +433,7 @@ def modal(
         integrate: Integrations in frequency [default: 0].
         fmin: Lowest frequency in Hz [default: two lines where integrated, else 0].
         hammer: Hammer test: one segment for each blow.
-        force_window: Width of the force window in s.
+        force_window: Width of the force window in s [default: ten contact times, 64 samples at least].
         left_at_end: Value of the exponential window at the end of a segment.
         delay: Channel delay to remove, in s.
 
