@@ -153,7 +153,7 @@ impl Workbench {
             match self.proposed(known, progress) {
                 Ok((text, proposal)) => (self.text, self.proposal) = (text, Some(proposal)),
                 Err(error) => {
-                    self.text = known.unwrap_or_default().to_owned();
+                    known.unwrap_or_default().clone_into(&mut self.text);
                     none = Some(in_words(&error));
                 }
             }
