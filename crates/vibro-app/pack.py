@@ -16,18 +16,18 @@ def as_text(data: bytes) -> str:
 def main(module: str, page: str) -> None:
     wasm = gzip.compress(Path(module).read_bytes(), 9, mtime=0)
     parts = {
-        "STYLE": (HERE / "app.css").read_text(),
-        "WORKER": (HERE / "worker.js").read_text(),
-        "SCRIPTS": "\n".join((HERE / name).read_text() for name in SCRIPTS),
+        "STYLE": (HERE / "app.css").read_text(encoding="utf-8"),
+        "WORKER": (HERE / "worker.js").read_text(encoding="utf-8"),
+        "SCRIPTS": "\n".join((HERE / name).read_text(encoding="utf-8") for name in SCRIPTS),
         "BYTES": str(len(wasm)),
         "MODULE": as_text(wasm),
     }
-    text = (HERE / "app.html").read_text()
+    text = (HERE / "app.html").read_text(encoding="utf-8")
     for name, part in parts.items():
         text = text.replace("{{" + name + "}}", part)
     out = Path(page)
     new = out.with_suffix(".part")
-    new.write_text(text)
+    new.write_text(text, encoding="utf-8", newline="\n")
     new.replace(out)
     print(f"{out.name}: {len(text) / 1e6:.2f} MB, of which the module is {len(parts['MODULE']) / 1e6:.2f} MB")
 

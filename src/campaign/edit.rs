@@ -68,33 +68,42 @@ impl WrittenTable {
         self.keys.iter().find(|(name, _)| name == key).map(|(_, value)| value.as_str())
     }
 
-    /// The text with a key of the table set to a value in TOML; without a value the line of the key is taken
-    /// out. A comment `# KEY =` in the table makes room for its key.
+    /// The text with a key of the table set to a value in TOML; without a value the line of the key becomes a
+    /// comment. A comment `# KEY =` without a value in the table makes room for its key.
     fn with(&self, text: &str, key: &str, value: &str) -> String {
         let line = format!("{key} = {value}");
-        let whole = |row: &Range<usize>| {
-            let begins = text[..row.start].rfind('\n').map_or(0, |at| at + 1);
-            begins..text[row.end..].find('\n').map_or(text.len(), |at| row.end + at + 1)
-        };
+        let begins = |at: usize| text[..at].rfind('\n').map_or(0, |at| at + 1);
+        let ends = |at: usize| text[at..].find('\n').map_or(text.len(), |n| at + n + 1);
         let replaced =
             |range: Range<usize>, by: &str| format!("{}{by}{}", &text[..range.start], &text[range.end..]);
         if let Some((_, row)) = self.rows.iter().find(|(name, _)| name == key) {
-            return if value.is_empty() { replaced(whole(row), "") } else { replaced(row.clone(), &line) };
+            let as_comment = |range: Range<usize>| {
+                let rows: String =
+                    text[range.clone()].split_inclusive('\n').map(|row| format!("# {row}")).collect();
+                replaced(range, &rows)
+            };
+            let whole = begins(row.start)..ends(row.end);
+            return if value.is_empty() { as_comment(whole) } else { replaced(row.clone(), &line) };
         }
         if value.is_empty() {
             return text.to_owned();
         }
-        let head = text.match_indices('\n').nth(self.line - 1).map_or(text.len(), |(at, _)| at + 1);
-        let ends = text[head..].find("\n[").map_or(text.len(), |at| head + at);
+        let head = ends(text.split_inclusive('\n').take(self.line - 1).map(str::len).sum());
+        let last = self.rows.iter().map(|(_, row)| ends(row.end)).max().unwrap_or(head);
+        // Its comments: from the head to the first blank line or table behind the last key.
         let mut at = head;
-        for row in text[head..ends].split_inclusive('\n') {
+        for row in text[head..].split_inclusive('\n') {
+            let plain = row.trim_start();
+            if at >= last && (plain.is_empty() || plain.trim_start_matches(['#', ' ']).starts_with('[')) {
+                break;
+            }
             let comment = row.strip_prefix('#').and_then(|row| row.trim_start().strip_prefix(key));
-            if comment.is_some_and(|rest| rest.trim_start().starts_with('=')) {
+            let rest = comment.and_then(|rest| rest.trim_start().strip_prefix('='));
+            if rest.is_some_and(|rest| rest.trim().is_empty() || rest.trim_start().starts_with('#')) {
                 return replaced(at..at + row.len(), &(line + "\n"));
             }
             at += row.len();
         }
-        let last = self.rows.iter().map(|(_, row)| whole(row).end).max().unwrap_or(head);
         let broken = if text[..last].ends_with('\n') { "" } else { "\n" };
         replaced(last..last, &format!("{broken}{line}\n"))
     }
@@ -102,7 +111,7 @@ impl WrittenTable {
 
 impl Campaign {
     /// The text of a campaign with a key of one table of records set to a value in TOML. An empty value
-    /// takes the key out. All else stays as it is written.
+    /// makes the key a comment. All else stays as it is written.
     ///
     /// ```
     /// use vibroimpact::campaign::Campaign;
@@ -122,16 +131,17 @@ impl Campaign {
             Error::usage(format!("no table {number} of [[{}]]", shown(section)), "a table of the campaign")
         })?;
         let changed = found.with(text, key, value);
-        let after = WrittenTable::all(&changed)?;
         // A value such as `1\nfile = 2` would be more than a value.
-        let is_one = after.len() == all.len()
-            && after.iter().zip(&all).all(|(a, b)| {
-                let others = |table: &WrittenTable| {
-                    table.keys.iter().filter(|(name, _)| name != key).cloned().collect::<Vec<_>>()
-                };
-                others(a) == others(b)
-            });
-        if !is_one {
+        let rest = |text: &str| -> Result<(toml::Table, Option<toml::Value>)> {
+            let whole = written(text, &[]);
+            let mut all: toml::Table = whole.read(&whole.parse()?, 0..0)?;
+            let tables = all.get_mut(section).and_then(toml::Value::as_array_mut);
+            let table = tables.and_then(|tables| tables.get_mut(number - 1)?.as_table_mut());
+            let own = table.and_then(|table| table.remove(key));
+            Ok((all, own))
+        };
+        let ((before, _), (after, own)) = (rest(text)?, rest(&changed)?);
+        if before != after || own.is_none() != value.is_empty() {
             let found = format!("{key} = {}", shown(value));
             return Err(Error::usage(found, "one value: a number, true, \"text\" or [1, 2]"));
         }
@@ -149,13 +159,29 @@ mod tests {
     fn a_key_is_set_in_its_table_and_nothing_else_changes() {
         let set = |number, key, value| Campaign::text_with(TEXT, ("drop", number), key, value);
         assert_eq!(set(1, "height", "0.5").unwrap(), TEXT.replace("height = 1", "height = 0.5"));
-        assert_eq!(set(1, "height", "").unwrap(), TEXT.replace("height = 1\n", ""));
+        assert_eq!(set(1, "height", "").unwrap(), TEXT.replace("height = 1\n", "# height = 1\n"));
         assert_eq!(set(2, "height", "0.5").unwrap(), format!("{TEXT}\nheight = 0.5\n"));
         assert_eq!(
             set(1, "contact_time", "1e-3").unwrap(),
             TEXT.replace("height = 1\n", "height = 1\ncontact_time = 1e-3\n")
         );
         assert_eq!(set(1, "band", "").unwrap(), TEXT);
+    }
+
+    /// A comment of the next table, or one that a person wrote, is not taken for the place of a key.
+    #[test]
+    fn only_an_empty_comment_of_the_table_makes_room() {
+        let text = "[[drop]]\nfile = \"a\"\n# height =   # missing: m\n\n#[[drop]]\n#file = \"b\"\n#height =   # missing\n";
+        let set = |text: &str, value| Campaign::text_with(text, ("drop", 1), "height", value);
+        let filled = set(text, "1").unwrap();
+        assert_eq!(filled, text.replace("# height =   # missing: m", "height = 1"));
+        let again = set(&set(&filled, "").unwrap(), "2").unwrap();
+        assert!(again.contains("height = 2\n") && again.contains("#height =   # missing\n"), "{again}");
+        let noted = "[[drop]]\nfile = \"a\"\n# height = 1 was too low\n";
+        assert_eq!(set(noted, "2").unwrap(), noted.replace("\n# h", "\nheight = 2\n# h"));
+        assert!(Campaign::text_with("drop = [{ file = \"a\" }]\n", ("drop", 1), "height", "1").is_err());
+        let indented = "[[drop]]\r\nfile = \"a\"\r\n  [[drop]]\r\n# height =\r\n";
+        assert!(set(indented, "1").is_ok_and(|text| text.contains("\"a\"\r\nheight = 1\n  [[drop]]")));
     }
 
     #[test]

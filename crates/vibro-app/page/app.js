@@ -19,11 +19,12 @@ class App {
     [this.files, this.name, this.example, this.text] = [[], "", null, ""];
     [this.tables, this.problems, this.results, this.scroll] = [[], [], null, 0];
     this.recordings = new Recordings(at("recordings"), (path) => this.pictures(path));
-    const set = (table, key, value) => this.set(table, key, value);
-    const look = (k) => this.trace.open(k, this.tables[k]).catch((error) => this.trouble(error.message));
+    const set = (id, key, value) => this.set(id, key, value);
+    const look = (id) => this.trace.open(this.tables, id).catch((error) => this.trouble(error.message));
     this.cards = new Tables(at("tables"), { set, look, find: (line) => this.editor.find(line) });
     this.editor = new Editor(at("campaign"), (text) => this.edit(text));
-    this.changed = false;
+    // Edited: not as it was proposed. Unsaved: the edits are nowhere else.
+    [this.edited, this.unsaved, this.setting, this.looking] = [false, false, Promise.resolve(), Promise.resolve()];
     const ask = (what, more) => this.program.ask(what, more);
     this.trace = new TraceView(at("trace"), { ask, set, events: (table, file) => this.events(table, file) });
     this.drawn = new Map();
@@ -40,13 +41,14 @@ class App {
     for (const button of document.querySelectorAll("[data-example]")) button.onclick = () => this.look({ example: button.dataset.example });
     at("anew").onclick = () => location.reload();
     at("to-report").onclick = () => at("report").scrollIntoView();
-    at("again").onclick = () => this.look({ files: this.files, name: this.name, example: this.example, known: this.changed ? this.text : null });
+    at("again").onclick = () => this.look({ files: this.files, name: this.name, example: this.example, known: this.edited ? this.text : null });
     at("stop").onclick = () => this.program.end("stopped");
     at("save-report").onclick = () => this.save("report.html", "text/html");
     at("save-campaign").onclick = () => this.save("campaign.toml", "text/plain");
     at("save-all").onclick = () => this.work("packing", async () => {
+      await this.editor.flush();
       save(`${this.name || "results"}.zip`, await this.program.ask("archive"), "application/zip");
-      this.changed = false;
+      this.unsaved = false;
     });
     at("keep").onclick = () => this.keep();
     const over = (on) => (event) => { event.preventDefault(); document.body.classList.toggle("over", on); };
@@ -57,8 +59,8 @@ class App {
       this.take(await dropped(event.dataTransfer).catch(() => []));
     });
     // The browser asks before it closes a page with changes that were neither saved nor kept.
-    addEventListener("beforeunload", (event) => this.changed && event.preventDefault());
-    const redraw = () => this.trace.k !== undefined && this.trace.data && this.trace.draw();
+    addEventListener("beforeunload", (event) => this.unsaved && event.preventDefault());
+    const redraw = () => this.trace.id !== undefined && this.trace.data && this.trace.draw();
     addEventListener("resize", redraw);
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", redraw);
     addEventListener("message", ({ source, data }) => {
@@ -72,7 +74,7 @@ class App {
   /** Kept files are taken up only if the person says so. */
   offer(kept) {
     const again = make("button", { textContent: `go on with ${kept.name}, kept in this browser` });
-    again.onclick = () => { again.remove(); this.look({ files: kept.files, name: kept.name, text: kept.text }); };
+    again.onclick = () => { again.remove(); this.look(kept); };
     const forget = make("button", { textContent: "forget it" });
     forget.onclick = () => shelf.clear().then(() => { again.remove(); forget.remove(); }, () => {});
     at("drop").append(make("p", {}, again, " ", forget));
@@ -80,49 +82,68 @@ class App {
 
   keep() {
     return this.work("keeping", async () => {
-      const files = await Promise.all(this.files.map(async ({ path, file }) => ({ path, file: new Blob([await file.arrayBuffer()]) })));
-      await shelf.put({ name: this.name, files, text: this.text });
+      const files = await Promise.all(this.files.map(async ({ path, file, packed }) => ({ path, packed, file: new Blob([await file.arrayBuffer()]) })));
+      await this.editor.flush();
+      await shelf.put({ name: this.name, files, example: this.example, text: this.text });
       at("keep").textContent = "kept";
-      this.changed = false;
+      this.unsaved = false;
     });
   }
 
-  take(files) {
-    if (!files.length) return undefined;
-    const { name, files: own } = inFolder(files);
-    const before = this.example ? [] : this.files;
-    const known = new Map(before.map((one) => [one.path, one])), renamed = [];
-    for (const { path, file } of own) {
-      const same = (held) => held.size === file.size && held.lastModified === file.lastModified;
-      let free = path;
-      for (let k = 2; known.has(free) && !same(known.get(free).file); k++) free = path.replace(/(\.[^./]*)?$/, ` (${k})$1`);
-      if (free !== path) renamed.push(`${path} was there already: the new file is ${free}`);
-      known.set(free, { path: free, file });
-    }
-    // What a person changed stays: tables for further files are added at its end.
-    const looked = this.look({ files: Array.from(known.values()), name: before.length ? this.name : name, known: this.changed ? this.text : null });
-    renamed.forEach((text) => this.trouble(text));
-    return looked;
+  /** Takes files to those that are there. */
+  take(dropped) { return this.inTurn(() => this.taken(dropped)); }
+
+  /** Begins with other files. */
+  look(what) { return this.inTurn(() => this.begin(what)); }
+
+  /** One set of files after another. */
+  inTurn(todo) {
+    this.looking = this.looking.then(todo).catch((error) => this.trouble(error.message));
+    return this.looking;
   }
 
-  /** Begins with other files: lists them, and runs the campaign for them. */
-  async look({ files = [], name = "", example = null, text = null, known = null }) {
-    const before = this.text;
-    this.changed = text !== null || known !== null;
-    [this.files, this.name, this.example, this.results] = [files, example ?? name, example, null];
-    this.text = "";
-    this.drawn.clear();
-    this.trace.close();
+  async taken(dropped) {
+    const lost = dropped.filter(({ problem }) => problem), files = dropped.filter(({ problem }) => !problem);
+    const said = lost.map(({ path, problem }) => `${path} ${problem}`);
+    if (files.length) {
+      await this.editor.flush();
+      const { name, files: own } = inFolder(files);
+      const before = this.example ? [] : this.files;
+      const known = new Map(before.map((one) => [one.path, one]));
+      for (const { path, file, packed } of own) {
+        const same = (held) => held.size === file.size && held.lastModified === file.lastModified;
+        let free = path;
+        for (let k = 2; known.has(free) && !same(known.get(free).file); k++) free = path.replace(/(\.[^./]*)?$/, ` (${k})$1`);
+        if (free !== path) said.push(`${path} was there already: the new file is ${free}`);
+        known.set(free, { path: free, file, packed: packed && before.length === 0 });
+      }
+      // What a person changed stays: tables for further files are added at its end.
+      await this.begin({ files: Array.from(known.values()), name: before.length ? this.name : name, known: this.edited && before.length ? this.text : null });
+    }
+    said.forEach((text) => this.trouble(text));
+  }
+
+  /** Lists the files, and runs the campaign for them. Where that fails, all stays as it was. */
+  async begin({ files = [], name = "", example = null, text = null, known = null }) {
+    const before = { files: this.files, name: this.name, example: this.example };
     at("troubles").replaceChildren();
     const all = files.reduce((sum, { file }) => sum + file.size, 0);
     if (all > MOST_BYTES) {
       const largest = files.reduce((a, b) => (b.file.size > a.file.size ? b : a));
       return this.trouble(`${Math.round(all / 1e6)} MB are more than a page holds; the largest file is ${largest.path} with ${Math.round(largest.file.size / 1e6)} MB. Drop fewer files, or use the command on this computer: vibro run ${JSON.stringify(name)}`);
     }
+    Object.assign(this, { files, name: example ?? name, example });
     const listed = await this.work("reading files", () => this.load());
-    if (!listed) return undefined;
-    at("bench").hidden = false;
-    at("drop").hidden = true;
+    if (!listed) {
+      Object.assign(this, before);
+      if (this.files.length || this.example) await this.restore();
+      return undefined;
+    }
+    this.drawn.clear();
+    this.trace.close();
+    [at("bench").hidden, at("drop").hidden] = [false, true];
+    at("keep").textContent = "keep in this browser";
+    if (known === null) [this.results, this.edited, this.unsaved, at("report").srcdoc] = [null, false, false, ""];
     this.recordings.show(listed.recordings);
     const found = await this.work("looking at files", () => this.program.ask("propose", { known }));
     this.recordings.showLeft(found?.left ?? []);
@@ -130,7 +151,15 @@ class App {
     at("unseen").hidden = found !== null;
     if (text !== null) return this.edit(text);
     // Stopped, the page goes on with what it had.
-    return found ? this.state(found) : this.edit(known ?? (before || `name = ${JSON.stringify(this.name)}\n`));
+    return found ? this.state(found) : this.edit(known ?? `name = ${JSON.stringify(this.name)}\n`);
+  }
+
+  /** Gives the program that began anew its files and the campaign. */
+  async restore() {
+    await this.load();
+    Object.assign(this, await this.program.ask("edit", { text: this.text }));
+    this.cards.show(this.tables, this.problems);
+    at("unseen").hidden = false;
   }
 
   /** Gives the program its files; also after it was stopped. */
@@ -139,10 +168,10 @@ class App {
     if (this.example) await this.program.ask("example", { name: this.example });
     else {
       await this.program.begin(this.name);
-      for (const [k, { path, file }] of this.files.entries()) {
+      for (const [k, { path, file, packed }] of this.files.entries()) {
         this.progress({ what: `reading ${path}`, done: k, all: this.files.length });
         await this.program.add(path, file).catch((error) => this.without(error));
-        if (/\.zip$/i.test(path)) await this.program.ask("unpack", { path }).catch((error) => this.without(error));
+        if (packed) await this.program.ask("unpack", { path }).catch((error) => this.without(error));
       }
     }
     return this.program.ask("look");
@@ -161,15 +190,23 @@ class App {
     await this.run();
   }
 
-  async set(table, key, value) {
-    this.changed = true;
-    at("troubles").replaceChildren();
-    await this.state(await this.program.ask("state", { table, key, value }));
+  /** Sets a key of a table, one after another: a value may move its table in the list. */
+  set(id, key, value) {
+    const next = this.setting.catch(() => {}).then(async () => {
+      at("troubles").replaceChildren();
+      const table = this.tables.findIndex((_, k) => identity(this.tables, k) === id);
+      if (table < 0) throw new Error("this table has changed meanwhile: type it again");
+      const after = await this.program.ask("state", { table, key, value });
+      [this.edited, this.unsaved] = [true, true];
+      return after;
+    });
+    this.setting = next;
+    return next.then((after) => this.state(after));
   }
 
   async edit(text) {
-    this.changed ||= this.text !== text;
     at("troubles").replaceChildren();
+    if (this.text !== text) [this.edited, this.unsaved] = [true, true];
     await this.state(await this.program.ask("edit", { text }));
   }
 
@@ -181,17 +218,19 @@ class App {
     }
     this.running = true;
     let done = null;
-    do {
-      this.again = false;
-      done = await this.work("running", () => this.program.ask("run"), true);
-      if (!done) continue;
-      this.cards.refused = done.refused;
-      await this.report();
-      this.cards.show(this.tables, this.problems);
-    } while (this.again);
-    this.running = false;
+    try {
+      do {
+        this.again = false;
+        at("stale").hidden = !at("report").srcdoc;
+        done = await this.work("running", () => this.program.ask("run").then((found) => this.report().then(() => found)), true);
+        if (done) this.cards.refused = done.refused;
+        this.cards.show(this.tables, this.problems);
+      } while (this.again);
+    } finally {
+      this.running = false;
+    }
     at("stale").hidden = done !== null || !at("report").srcdoc;
-    if (this.trace.k !== undefined) await this.trace.refresh(this.tables);
+    await this.trace.refresh(this.tables);
     document.body.dataset.runs = String(1 + Number(document.body.dataset.runs ?? 0));
   }
 
@@ -227,8 +266,9 @@ class App {
 
   save(name, type) {
     return this.work("saving", async () => {
+      await this.editor.flush();
       save(name, await this.program.ask("file", { name }), type);
-      this.changed &&= name !== "campaign.toml";
+      this.unsaved &&= name !== "campaign.toml";
     });
   }
 
@@ -252,8 +292,8 @@ class App {
     } catch (error) {
       if (error instanceof Stopped) {
         const why = error.message === "stopped" ? "Stopped." : `The page could not finish: ${error.message}. The command on this computer has more room: vibro run ${JSON.stringify(this.name || "FOLDER")}`;
-        // Stopped while files were read, there is nothing to go on with.
-        if (what !== "reading files") await this.load().then(() => this.text && this.program.ask("edit", { text: this.text })).catch(() => {});
+        // Stopped while files were read, what was there before comes back elsewhere.
+        if (what !== "reading files") await this.restore().catch(() => {});
         this.trouble(why);
       } else if (!(isRun && error instanceof Refused && this.problems.some((one) => one.text === error.message))) this.trouble(error.message);
       return null;

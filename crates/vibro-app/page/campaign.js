@@ -3,12 +3,18 @@ class Editor {
   constructor(root, changed) {
     this.fold = root;
     [this.lines, this.text, this.problems] = ["lines", "text", "problems"].map((id) => document.getElementById(id));
-    let later;
+    this.changed = changed;
     this.text.addEventListener("input", () => {
       this.number([]);
-      clearTimeout(later);
-      later = setTimeout(() => changed(this.known = this.text.value), 500);
+      clearTimeout(this.later);
+      this.later = setTimeout(() => this.flush(), 500);
     });
+  }
+
+  /** Hands over what was typed and is not known yet. */
+  async flush() {
+    clearTimeout(this.later);
+    if (this.known !== undefined && this.text.value !== this.known) await this.changed(this.known = this.text.value);
   }
 
   show(text, problems) {

@@ -4,12 +4,12 @@ const MOST_BYTES = 1e9;
 /** All files of an entry that was dropped, each with its path. */
 async function filesOf(entry, above = "") {
   if (entry.isFile) {
-    const file = await new Promise((resolve, reject) => entry.file(resolve, reject));
-    return [{ path: above + entry.name, file }];
+    const path = above + entry.name;
+    return new Promise((resolve) => entry.file((file) => resolve([{ path, file }]), () => resolve([{ path, problem: "cannot be read" }])));
   }
   const reader = entry.createReader(), all = [];
   for (;;) {
-    const some = await new Promise((resolve, reject) => reader.readEntries(resolve, reject));
+    const some = await new Promise((resolve) => reader.readEntries(resolve, () => resolve([])));
     if (some.length === 0) break;
     for (const one of some) all.push(...await filesOf(one, `${above}${entry.name}/`));
   }
@@ -31,6 +31,8 @@ const chosen = (input) => Array.from(input.files, (file) => ({ path: file.webkit
 function inFolder(files) {
   const top = files[0]?.path.split("/")[0];
   const one = files.length > 0 && files.every(({ path }) => path.startsWith(`${top}/`));
+  // A zip that comes alone is the folder that was packed; beside other files it is a recording.
+  if (files.length === 1 && /\.zip$/i.test(top)) files[0].packed = true;
   const name = one ? top : files.length === 1 ? top.replace(/\.[^.]*$/, "") : "recordings";
   return { name, files: one ? files.map(({ path, file }) => ({ path: path.slice(top.length + 1), file })) : files };
 }

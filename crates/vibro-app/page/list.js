@@ -132,7 +132,8 @@ const inShort = (message) => message.split("\n").filter((line) => !/^\s*(\d+\s*)
 
 /** A value as a person types it, in TOML. */
 function toToml(typed) {
-  const text = typed.trim(), number = text.replace(/^(-?\d+),(\d+)$/, "$1.$2");
+  // 1,000 may be a thousand: it stays text, which no number takes.
+  const text = typed.trim(), number = text.replace(/^(-?\d+),(?!\d{3}$)(\d+)$/, "$1.$2").replace(/^(-?)\./, "$10.");
   if (text === "" || /^(true|false|["'[{].*|[-+]?\d[\d_]*(\.\d+)?([eE][-+]?\d+)?)$/s.test(number)) return number;
   return JSON.stringify(text);
 }
@@ -146,9 +147,19 @@ function fromToml(value) {
   return value;
 }
 
+/** The value of a key of a table. */
+const valueOf = (table, key) => table.keys.find((row) => row.key === key)?.value ?? "";
+
+/** What tells a table from the others, wherever it stands in the list. */
+function identity(tables, k) {
+  const of = (table) => [table.section, table.files, valueOf(table, "channel"), valueOf(table, "name")].join("\n");
+  const own = of(tables[k]);
+  return `${own}\n${tables.slice(0, k).filter((table) => of(table) === own).length}`;
+}
+
 /** The tables of the campaign as cards with fields. */
 class Tables {
-  /** `set(table, key, value)` states a value; `look(table)` shows the trace; `find(line)` shows the text. */
+  /** `set(identity, key, value)` states a value; `look(identity)` shows the trace; `find(line)` shows the text. */
   constructor(host, { set, look, find }) {
     Object.assign(this, { host, set, look, find });
     this.refused = [];
@@ -157,9 +168,9 @@ class Tables {
   show(tables, problems) {
     // A field that is being typed in stays as it is, and a fold as it was opened.
     const { dataset, value, selectionStart, selectionEnd } = document.activeElement ?? {}, field = dataset?.field;
-    const folds = Array.from(this.host.children, (card) => card.querySelector("details")?.open);
-    this.host.replaceChildren(...tables.map((table, k) => this.card(table, k, tables[k + 1]?.line, problems)));
-    folds.forEach((open, k) => { const fold = this.host.children[k]?.querySelector("details"); if (fold && open) fold.open = true; });
+    const open = new Set(Array.from(this.host.querySelectorAll("details[open]"), (fold) => fold.parentElement.dataset.table));
+    this.host.replaceChildren(...tables.map((table, k) => this.card(table, identity(tables, k), tables[k + 1]?.line, problems)));
+    for (const fold of this.host.querySelectorAll("details")) fold.open = open.has(fold.parentElement.dataset.table);
     const none = problems.length ? "The campaign has an error, which its text below names: put right, the tables come back." : "Nothing is measured yet. A table can be written below, in the campaign.";
     if (!tables.length) this.host.append(make("p", { textContent: none }));
     const input = field && this.host.querySelector(`[data-field="${CSS.escape(field)}"]`);
@@ -169,43 +180,44 @@ class Tables {
     input.setSelectionRange(selectionStart, selectionEnd);
   }
 
-  card(table, k, next, problems) {
+  card(table, id, next, problems) {
     const card = make("article", { className: "card" });
+    card.dataset.table = id;
     card.append(make("h3", { textContent: table.files || table.section }));
     const kind = [table.about || `[[${table.section}]]`, table.guess ? "guessed" : ""].filter(Boolean).join(", ");
     card.append(make("p", { className: "kind", textContent: kind }));
     if (table.refused && !table.line) card.append(make("p", { className: "refused", textContent: table.refused }));
-    const name = fromToml(table.keys.find(({ key }) => key === "name")?.value ?? "");
+    const name = fromToml(valueOf(table, "name"));
     for (const [record, why] of table.line ? this.refused : []) {
       if (record === name || record === table.files) card.append(make("p", { className: "refused", textContent: why }));
     }
     const wrong = problems.filter(({ line }) => line && table.line && line >= table.line && line < (next ?? Infinity));
     for (const { text } of wrong) card.append(make("p", { className: "refused", textContent: inShort(text) }));
-    const rows = (...known) => table.keys.filter((row) => known.includes(row.known)).map((row) => this.row(row, k));
+    const rows = (...known) => table.keys.filter((row) => known.includes(row.known)).map((row) => this.row(row, id));
     card.append(...rows("missing"), ...rows("guessed"), ...rows("stated"), ...rows("found"));
     const open = rows("open");
     if (open.length) card.append(make("details", {}, make("summary", { textContent: `${open.length} more that would help` }), ...open));
     const does = make("div", { className: "does" });
     if (table.keys.some(({ key, value }) => key === "file" && value)) {
-      does.append(make("button", { textContent: "see the record", onclick: () => this.look(k) }));
+      does.append(make("button", { textContent: "see the record", onclick: () => this.look(id) }));
     }
     if (table.line) does.append(make("button", { textContent: "in the text", onclick: () => this.find(table.line) }));
     card.append(does);
     return card;
   }
 
-  row({ key, value, known, why }, k) {
-    const name = `${k} ${key}`, id = `field-${k}-${key}`;
-    const input = make("input", { id, value: fromToml(value), autocomplete: "off", spellcheck: false });
-    input.dataset.field = name;
+  row({ key, value, known, why }, table) {
+    const id = `field-${table}-${key}`, input = make("input", { id, value: fromToml(value), autocomplete: "off", spellcheck: false });
+    // A value of several lines is changed in the text.
+    input.readOnly = value.includes("\n");
+    input.dataset.field = `${table} ${key}`;
     const wrong = make("span", { className: "wrong" });
-    let sent = value;
+    let sent = input.value;
     input.onchange = input.onblur = async () => {
-      const typed = toToml(input.value);
-      if (typed === sent || !input.isConnected) return;
-      [sent, wrong.textContent] = [typed, ""];
+      if (input.value === sent || input.readOnly || !input.isConnected) return;
+      [sent, wrong.textContent] = [input.value, ""];
       try {
-        await this.set(k, key, typed);
+        await this.set(table, key, toToml(input.value));
       } catch (error) {
         wrong.textContent = inShort(error.message);
       }

@@ -27,11 +27,18 @@ class Program {
       if (data.id === undefined) return this.onProgress(data);
       const { resolve, reject } = this.waiting.get(data.id);
       this.waiting.delete(data.id);
-      if (data.died !== undefined) reject(new Stopped(data.died));
+      // After a fault the program cannot go on: the next one begins without files.
+      if (data.died !== undefined) {
+        reject(new Stopped(data.died));
+        if (this.module) this.end(data.died);
+      }
       else if (data.refused) reject(new Refused(data.refused));
       else resolve(data.bytes ?? data.value ?? data.module);
     };
-    this.worker.onerror = (event) => this.end(event.message || "the worker failed");
+    this.worker.onerror = (event) => {
+      if (this.module) return this.end(event.message || "the worker failed");
+      for (const { reject } of this.waiting.values()) reject(new Stopped(event.message || "no worker"));
+    };
     const begun = this.module ? { module: this.module } : { packed: document.getElementById("module").textContent, bytes: Number(document.getElementById("module").dataset.bytes) };
     this.ready = this.send({ start: begun }).then((module) => { this.module = module; });
     this.ready.catch(() => {});

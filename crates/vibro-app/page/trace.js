@@ -9,7 +9,8 @@ const PICKS = {
 /** Threshold of the program where none is stated. */
 const THRESHOLD = 0.125;
 
-const shortest = (value) => String(Number(value.toPrecision(4)));
+/** A value with as many digits as a step of the picture tells. */
+const rounded = (value, step) => String(Number(value.toFixed(Math.min(Math.max(Math.ceil(-Math.log10(step || 1)), 0) + 1, 12))));
 const pairOf = (value) => (value ?? "").match(/[-+\d.eE]+/g)?.map(Number) ?? null;
 
 /** The raw trace of a table, with what was detected, and lines that the mouse drags. */
@@ -19,9 +20,10 @@ class TraceView {
     [this.part, this.times] = [[null, null], []];
   }
 
-  async open(k, table, file = 0) {
-    if (this.k !== k || this.file !== file) [this.part, this.times] = [[null, null], []];
-    Object.assign(this, { k, table, file });
+  async open(tables, id, file = 0) {
+    const k = tables.findIndex((_, k) => identity(tables, k) === id);
+    if (this.id !== id || this.file !== file) [this.part, this.times] = [[null, null], []];
+    Object.assign(this, { tables, id, k, table: tables[k], file });
     this.host.hidden = false;
     await this.load();
     this.host.scrollIntoView({ block: "nearest" });
@@ -29,19 +31,20 @@ class TraceView {
 
   close() {
     this.host.hidden = true;
-    this.k = undefined;
+    this.id = undefined;
   }
 
   /** The table as it is now; what is dragged is shown anew. */
   async refresh(tables) {
-    if (this.k === undefined) return;
-    if (!tables[this.k]) return this.close();
-    this.table = tables[this.k];
+    if (this.id === undefined) return;
+    const k = tables.findIndex((_, k) => identity(tables, k) === this.id);
+    if (k < 0) return this.close();
+    Object.assign(this, { tables, k, table: tables[k] });
     await this.load().catch((error) => { this.said.textContent = inShort(error.message); });
   }
 
   value(key) {
-    return this.table.keys.find((row) => row.key === key)?.value ?? "";
+    return valueOf(this.table, key);
   }
 
   picks() {
@@ -66,7 +69,7 @@ class TraceView {
     const shift = (by) => () => { const wide = this.wide(); this.go(data.picture.from + by * wide, data.picture.to + by * wide); };
     const bar = make("div", { className: "does" }, make("strong", { textContent: title }));
     if (data.files.length > 1) {
-      const choice = make("select", { onchange: () => this.open(this.k, this.table, Number(choice.value)) });
+      const choice = make("select", { onchange: () => this.open(this.tables, this.id, Number(choice.value)) });
       choice.setAttribute("aria-label", "File");
       data.files.forEach((name, k) => choice.append(make("option", { value: k, textContent: name, selected: k === this.file })));
       bar.append(choice);
@@ -101,6 +104,9 @@ class TraceView {
     this.said.textContent = `${help}Drag a line to move it; drag beside the lines to zoom, double-click for all.`;
   }
 
+  /** Time that a pixel stands for. */
+  pixel() { return this.wide() / this.canvas.clientWidth; }
+
   wide() { return this.data.picture.to - this.data.picture.from; }
 
   zoom(by, at) {
@@ -111,7 +117,7 @@ class TraceView {
   go(from, to) {
     const { first, last } = this.data;
     this.part = from === null ? [null, null] : [Math.max(from, first), Math.min(to, last)];
-    this.load();
+    this.load().catch((error) => { this.said.textContent = inShort(error.message); });
   }
 
   /** Median height of what was detected, by the picture. */
@@ -197,17 +203,16 @@ class TraceView {
     const all = [], { picture, first, last } = this.data, can = this.picks();
     if (can.includes("threshold")) {
       const height = this.height(), part = Number(this.value("threshold")) || THRESHOLD;
-      all.push({ name: "threshold", level: part * height, key: "threshold", to: (x, y) => shortest(Math.max(Math.abs(this.level(y)) / height, 1e-3)) });
+      all.push({ name: "threshold", level: part * height, key: "threshold", to: (x, y) => rounded(Math.max(Math.abs(this.level(y)) / height, 1e-3), 0.01) });
     }
     if (can.includes("refractory")) {
       const begins = this.times.find((t) => t >= picture.from) ?? this.times[0] ?? this.largest(), dead = Number(this.value("refractory")) || 0;
-      all.push({ name: "dead time", place: begins + (dead || 0.02 * this.wide()), key: "refractory", to: (x) => shortest(Math.max(this.at(x) - begins, 1e-6)) });
+      all.push({ name: "dead time", place: begins + (dead || 0.02 * this.wide()), key: "refractory", to: (x) => rounded(Math.max(this.at(x) - begins, 1e-6), this.pixel()) });
     }
     if (can.includes("span")) {
-      const [from, to] = pairOf(this.value("span")) ?? [first, last];
-      const both = (a, b) => `[${shortest(a)}, ${shortest(b)}]`;
-      all.push({ name: "from", place: from, key: "span", to: (x) => both(Math.min(this.at(x), to), to) });
-      all.push({ name: "to", place: to, key: "span", to: (x) => both(from, Math.max(this.at(x), from)) });
+      const [from, to] = pairOf(this.value("span")) ?? [first, last], [low, high] = this.value("span").match(/[-+\d.eE]+/g) ?? [String(first), String(last)];
+      all.push({ name: "from", place: from, key: "span", to: (x) => `[${rounded(Math.min(this.at(x), to), this.pixel())}, ${high}]` });
+      all.push({ name: "to", place: to, key: "span", to: (x) => `[${low}, ${rounded(Math.max(this.at(x), from), this.pixel())}]` });
     }
     return all;
   }
@@ -278,14 +283,14 @@ class TraceView {
     this.band.onpointerup = () => {
       this.band.onpointermove = this.band.onpointerup = null;
       if (Math.abs(moved - begun) < 4) return;
-      const [low, high] = [begun, moved].sort((a, b) => a - b).map((x) => shortest(this.hertz(x)));
+      const [low, high] = [begun, moved].sort((a, b) => a - b).map((x) => rounded(this.hertz(x), (this.data.spectrum.to - this.data.spectrum.from) / this.band.clientWidth));
       this.state("band", `[${low}, ${high}]`);
     };
   }
 
   async state(key, value) {
     try {
-      await this.set(this.k, key, value);
+      await this.set(this.id, key, value);
     } catch (error) {
       this.said.textContent = error.message;
     }

@@ -4,15 +4,18 @@ const utf8 = new TextEncoder(), text = new TextDecoder();
 /** Largest part of a file that is copied at once. */
 const PART = 1 << 23;
 
+/** What cannot be done, while the program goes on. */
+class Refusal extends Error {}
+
 /** Writes bytes where the module reads its input. */
 function put(bytes) {
-  const place = wasm.room(bytes.length);
-  if (place === 0) throw new Error("the memory of the page does not suffice");
+  const place = wasm.room(bytes.length) >>> 0;
+  if (place === 0) throw new Refusal("the memory of the page does not suffice");
   new Uint8Array(wasm.memory.buffer, place, bytes.length).set(bytes);
 }
 
 function answer(kind) {
-  const bytes = new Uint8Array(wasm.memory.buffer, wasm.answer_place(), wasm.answer_bytes());
+  const bytes = new Uint8Array(wasm.memory.buffer, wasm.answer_place() >>> 0, wasm.answer_bytes() >>> 0);
   if (kind === 2) return { bytes: bytes.slice() };
   const value = JSON.parse(text.decode(bytes));
   return kind === 1 ? { refused: value } : { value };
@@ -21,10 +24,11 @@ function answer(kind) {
 /** Copies a file into the module part by part, so that it is never in memory twice. */
 async function add(path, file) {
   const name = utf8.encode(path), place = wasm.room(name.length + file.size) >>> 0;
-  if (place === 0) throw new Error(`${path} has ${Math.round(file.size / 1e6)} MB, more than the memory of a page holds`);
+  if (place === 0) throw new Refusal(`${path} has ${Math.round(file.size / 1e6)} MB, more than the memory of a page holds`);
   new Uint8Array(wasm.memory.buffer, place, name.length).set(name);
   for (let at = 0; at < file.size; at += PART) {
-    const part = new Uint8Array(await file.slice(at, at + PART).arrayBuffer());
+    const read = file.slice(at, at + PART).arrayBuffer();
+    const part = new Uint8Array(await read.catch(() => { throw new Refusal(`${path} cannot be read; it may have been moved or deleted`); }));
     new Uint8Array(wasm.memory.buffer, place + name.length + at, part.length).set(part);
   }
   return answer(wasm.add(name.length));
@@ -54,7 +58,7 @@ async function started({ packed, bytes: length, module }) {
     const now = performance.now();
     if (now - shown < 50 && done !== 0) return;
     shown = now;
-    postMessage({ what: text.decode(new Uint8Array(wasm.memory.buffer, place, length).slice()), done, all });
+    postMessage({ what: text.decode(new Uint8Array(wasm.memory.buffer, place >>> 0, length).slice()), done, all });
   };
   // Libraries name functions of a browser, such as its clock, that no record needs.
   const imports = {};
@@ -66,7 +70,7 @@ async function started({ packed, bytes: length, module }) {
   return { module };
 }
 
-onmessage = async ({ data: { id, start, begin, path, file, ask } }) => {
+async function handle({ id, start, begin, path, file, ask }) {
   try {
     let found;
     if (start) found = await started(start);
@@ -75,6 +79,11 @@ onmessage = async ({ data: { id, start, begin, path, file, ask } }) => {
     else { put(utf8.encode(JSON.stringify(ask))); found = answer(wasm.ask()); }
     postMessage({ id, ...found }, found.bytes ? [found.bytes.buffer] : []);
   } catch (error) {
-    postMessage({ id, died: String(error.message ?? error) });
+    const text = String(error.message ?? error);
+    postMessage(error instanceof Refusal ? { id, refused: { text } } : { id, died: text });
   }
-};
+}
+
+// One after another: a file is read in parts, and all share the input of the program.
+let last = Promise.resolve();
+onmessage = ({ data }) => { last = last.then(() => handle(data)); };

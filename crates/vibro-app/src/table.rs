@@ -126,5 +126,8 @@ impl SeenTable {
 fn is_of(proposed: &Table, written: &WrittenTable) -> bool {
     let value = |key: &str| proposed.rows.iter().find(|row| row.key == key).map(|row| row.value.as_str());
     let both = NAMES.iter().find_map(|name| value(name).zip(written.value(name)));
-    proposed.section == written.section && both.is_some_and(|(a, b)| a == b)
+    let channels = value("channel").zip(written.value("channel"));
+    proposed.section == written.section
+        && both.is_some_and(|(a, b)| a == b)
+        && channels.is_none_or(|(a, b)| a == b)
 }

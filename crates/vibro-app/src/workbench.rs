@@ -141,12 +141,15 @@ impl Workbench {
 
     /// Takes the campaign among the files, else proposes one. The `known` text is extended.
     fn propose(&mut self, known: Option<&str>, progress: &dyn Progress) -> Result<Value> {
-        let own = || self.folder.own_file(Proposal::FILE).map(|b| String::from_utf8_lossy(&b).into_owned());
+        let own = || self.folder.own_file(Proposal::FILE);
         let empty = analysis::recordings(&self.folder)?.files.is_empty();
         let mut none = None;
         self.proposal = None;
-        if let (None, Some(text)) = (known, own()) {
-            self.text = text;
+        if let (None, Some(bytes)) = (known, own()) {
+            self.text = String::from_utf8(bytes).map_err(|_| {
+                Error::usage("campaign.toml is not UTF-8", "text in UTF-8")
+                    .hint("save the file as UTF-8 in your editor")
+            })?;
         } else if empty {
             none = Some("no recording among these files".to_owned());
         } else {
