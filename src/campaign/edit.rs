@@ -78,9 +78,9 @@ impl WrittenTable {
             |range: Range<usize>, by: &str| format!("{}{by}{}", &text[..range.start], &text[range.end..]);
         if let Some((_, row)) = self.rows.iter().find(|(name, _)| name == key) {
             let as_comment = |range: Range<usize>| {
-                let rows: String =
-                    text[range.clone()].split_inclusive('\n').map(|row| format!("# {row}")).collect();
-                replaced(range, &rows)
+                let rows = text[range.clone()].split_inclusive('\n');
+                let rows: Vec<&str> = rows.flat_map(|row| ["# ", row]).collect();
+                replaced(range, &rows.concat())
             };
             let whole = begins(row.start)..ends(row.end);
             return if value.is_empty() { as_comment(whole) } else { replaced(row.clone(), &line) };
