@@ -243,17 +243,17 @@ class App {
   }
 
   /** Times in s of what was detected in a file of a table. */
-  events({ section, number }, file) {
-    const name = file.split("/").pop(), results = this.results ?? {};
-    if (section === "impacts") return results.impacts?.find((one) => one.file?.split("/").pop() === name)?.times ?? [];
+  events({ section }, file) {
+    const own = (path) => path?.split("/").pop() === file.split("/").pop(), results = this.results ?? {};
+    if (section === "impacts") return results.impacts?.find((one) => own(one.file))?.times ?? [];
     if (section === "drop") {
       for (const { files = [], times = [] } of results.drops ?? []) {
-        const k = files.findIndex((one) => one.split("/").pop() === name);
+        const k = files.findIndex(own);
         if (k >= 0) return times[k] ?? [];
       }
     }
     if (section === "decay") {
-      const found = results.decays?.find((one) => one.file?.split("/").pop() === name);
+      const found = results.decays?.find((one) => own(one.file));
       return found ? [found.start, found.end].filter(Number.isFinite) : [];
     }
     return [];

@@ -198,7 +198,7 @@ class Tables {
     const open = rows("open");
     if (open.length) card.append(make("details", {}, make("summary", { textContent: `${open.length} more that would help` }), ...open));
     const does = make("div", { className: "does" });
-    if (table.keys.some(({ key, value }) => key === "file" && value)) {
+    if (valueOf(table, "file")) {
       does.append(make("button", { textContent: "see the record", onclick: () => this.look(id) }));
     }
     if (table.line) does.append(make("button", { textContent: "in the text", onclick: () => this.find(table.line) }));

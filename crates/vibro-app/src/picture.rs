@@ -15,8 +15,6 @@ pub struct Picture {
     pub low: Vec<Option<f64>>,
     /// Largest value of each column.
     pub high: Vec<Option<f64>>,
-    /// Whether values stand for levels over many decades: decimal logarithms of magnitudes.
-    pub log: bool,
 }
 
 /// Most samples of the spectrum of a trace.
@@ -25,7 +23,7 @@ const SPECTRUM: usize = 1 << 17;
 impl Picture {
     /// The part of a trace from `from` to `to` in s, in at most `columns` columns.
     pub fn of_trace(trace: &Trace, from: f64, to: f64, columns: usize) -> Picture {
-        Picture::of(&trace.axis.values(), &trace.values, (from, to), columns, false)
+        Picture::of(&trace.axis.values(), &trace.values, (from, to), columns)
     }
 
     /// The spectrum of a part of an evenly sampled trace, of its first 131 072 samples at most; `None` of
@@ -46,19 +44,17 @@ impl Picture {
         let axis = record.axis();
         let x = axis.values();
         let ends = (x.first().copied().unwrap_or(0.0), x.last().copied().unwrap_or(0.0));
-        let log = axis.kind == AxisKind::Frequency;
-        let level = |v: f64| if log { Some(v.abs().log10()).filter(|v| v.is_finite()) } else { Some(v) };
+        // The logarithm of nothing is not finite, and not shown.
+        let level = |v: f64| if axis.kind == AxisKind::Frequency { v.log10() } else { v };
         let values: Vec<f64> = match record {
             Record::Trace(trace) => trace.values.clone(),
-            Record::Spectrum(spectrum) => {
-                spectrum.values.magnitudes().into_iter().map(|v| level(v).unwrap_or(f64::NAN)).collect()
-            }
-            Record::Frf(frf) => frf.values.iter().map(|v| level(v.norm()).unwrap_or(f64::NAN)).collect(),
+            Record::Spectrum(spectrum) => spectrum.values.magnitudes().into_iter().map(level).collect(),
+            Record::Frf(frf) => frf.values.iter().map(|v| level(v.norm())).collect(),
         };
-        Picture::of(&x, &values, ends, columns, log)
+        Picture::of(&x, &values, ends, columns)
     }
 
-    fn of(x: &[f64], values: &[f64], (from, to): (f64, f64), columns: usize, log: bool) -> Picture {
+    fn of(x: &[f64], values: &[f64], (from, to): (f64, f64), columns: usize) -> Picture {
         let columns = columns.max(1);
         let (mut low, mut high) = (vec![None; columns], vec![None; columns]);
         let wide = (to - from) / columns as f64;
@@ -74,7 +70,7 @@ impl Picture {
             of(&mut low[column], f64::min);
             of(&mut high[column], f64::max);
         }
-        Picture { from, to, low, high, log }
+        Picture { from, to, low, high }
     }
 }
 
@@ -85,10 +81,10 @@ mod tests {
     #[test]
     fn each_column_has_its_smallest_and_its_largest_value() {
         let x: Vec<f64> = (0..8).map(f64::from).collect();
-        let picture = Picture::of(&x, &[1.0, 3.0, f64::NAN, 2.0, -1.0, 0.0, 5.0, 4.0], (0.0, 8.0), 4, false);
+        let picture = Picture::of(&x, &[1.0, 3.0, f64::NAN, 2.0, -1.0, 0.0, 5.0, 4.0], (0.0, 8.0), 4);
         assert_eq!(picture.low, [Some(1.0), Some(2.0), Some(-1.0), Some(4.0)]);
         assert_eq!(picture.high, [Some(3.0), Some(2.0), Some(0.0), Some(5.0)]);
-        let none = Picture::of(&[], &[], (0.0, 0.0), 2, false);
+        let none = Picture::of(&[], &[], (0.0, 0.0), 2);
         assert_eq!(none.low, [None, None]);
     }
 }

@@ -31,9 +31,9 @@ pub enum Request {
         /// The text.
         text: String,
     },
-    /// The value of a key of a table, in TOML; an empty one takes the key out.
+    /// The value of a key of a table, in TOML; an empty one makes the key a comment.
     State {
-        /// Number of the table in the list of [`Request::Look`], from 0.
+        /// Number of the table in the list of [`Request::Propose`], from 0.
         table: usize,
         /// The key.
         key: String,

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 use vibroimpact::campaign::WrittenTable;
-use vibroimpact::proposal::{Proposal, Table};
+use vibroimpact::proposal::{KeyStatus, Proposal, Refusal, Table, TableKey};
 
 /// A table of records.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -45,9 +45,8 @@ pub struct SeenKey {
 /// Keys by which the table of a proposal is found again in the text; the first that both have decides.
 const NAMES: [&str; 5] = ["file", "list", "traces", "force", "name"];
 
-/// Values that stand for a record in a proposal's trial are no values.
-fn key_of(row: &vibroimpact::proposal::TableKey) -> SeenKey {
-    use vibroimpact::proposal::KeyStatus;
+/// A key of a proposal. What stands for an open key in its trial is no value.
+fn key_of(row: &TableKey) -> SeenKey {
     let (known, value) = match row.known {
         KeyStatus::Found => ("found", row.value.clone()),
         KeyStatus::Guessed(_) => ("guessed", row.value.clone()),
@@ -74,7 +73,7 @@ impl SeenTable {
         }
         for (k, table) in proposed.iter().enumerate().filter(|(k, _)| !taken[*k]) {
             if table.lacks() && proposal.is_some_and(|proposal| text.contains(&proposal.block(k))) {
-                all.push(SeenTable { line: None, number: None, ..SeenTable::proposed(k, table) });
+                all.push(SeenTable::proposed(k, table));
             }
         }
         all
@@ -87,7 +86,7 @@ impl SeenTable {
             about: table.about.to_owned(),
             guess: table.guess,
             line: None,
-            refused: table.refused.as_ref().map(vibroimpact::proposal::Refusal::in_words),
+            refused: table.refused.as_ref().map(Refusal::in_words),
             keys: table.rows.iter().map(key_of).collect(),
             number: None,
             proposed: Some(k),

@@ -229,13 +229,10 @@ impl Workbench {
         let outcome = analysis::run(&campaign, &kept, &mut output, progress)?;
         output.commit()?;
         self.results = (campaign.out(), outcome.files.clone());
-        let problems: Vec<Value> = campaign.faults().iter().map(|fault| problem(&fault.error)).collect();
         let of_all = outcome.answer.findings.iter().filter(|(_, finding)| finding.code == analysis::LEFT_OUT);
         let refused: Vec<_> =
             of_all.map(|(name, finding)| (name, words::sentence(finding, Voice::Campaign))).collect();
-        Ok(
-            json!({ "answered": outcome.answered, "files": outcome.files, "problems": problems, "refused": refused }),
-        )
+        Ok(json!({ "answered": outcome.answered, "files": outcome.files, "refused": refused }))
     }
 
     fn pictures(&self, path: &str) -> Result<Value> {
