@@ -162,10 +162,17 @@ class Tables {
   /** `set(identity, key, value)` states a value; `look(identity)` shows the trace; `find(line)` shows the text. */
   constructor(host, { set, look, find }) {
     Object.assign(this, { host, set, look, find });
-    this.refused = [];
+    [this.refused, this.redraws] = [[], false];
   }
 
   show(tables, problems) {
+    // A browser may say that a field was left when it is only drawn anew: what is half typed in it is no value.
+    this.redraws = true;
+    this.draw(tables, problems);
+    this.redraws = false;
+  }
+
+  draw(tables, problems) {
     // A field that is being typed in stays as it is, and a fold as it was opened.
     const { dataset, value, selectionStart, selectionEnd } = document.activeElement ?? {}, field = dataset?.field;
     const open = new Set(Array.from(this.host.querySelectorAll("details[open]"), (fold) => fold.parentElement.dataset.table));
@@ -214,7 +221,7 @@ class Tables {
     const wrong = make("span", { className: "wrong" });
     let sent = input.value;
     input.onchange = input.onblur = async () => {
-      if (input.value === sent || input.readOnly || !input.isConnected) return;
+      if (input.value === sent || input.readOnly || this.redraws) return;
       [sent, wrong.textContent] = [input.value, ""];
       try {
         await this.set(table, key, toToml(input.value));
