@@ -44,7 +44,7 @@ pub use answer::LEFT_OUT;
 pub(crate) use answer::unwritten;
 pub use evidence::Evidence;
 pub use kept::AnswerCache;
-pub use kinds::{errors, files, open, open_in, parse, title};
+pub use kinds::{errors, files, open, open_in, parse, sections, title};
 pub(crate) use own_files::OWN;
 pub use own_files::{INPUTS, REPORT, RESULTS};
 pub use progress::Progress;
@@ -63,7 +63,6 @@ pub(crate) use kind::{Analysis, OfFile};
 pub(crate) use kinds::commands;
 #[cfg(any(feature = "cli", test))]
 pub(crate) use kinds::key_ranges;
-pub(crate) use kinds::sections;
 pub(crate) use named_file::few;
 pub(crate) use source::{Source, file_name};
 pub(crate) use twice::double_use;

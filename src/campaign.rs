@@ -31,11 +31,13 @@ mod edit;
 mod entry;
 mod key_range;
 mod locate;
+mod meaning;
 mod reading;
 mod tables;
 mod value;
 
 pub use edit::WrittenTable;
+pub use meaning::KeyMeaning;
 pub use tables::{Compute, Drive, FitEntry, Follows, ModelEntry};
 
 pub(crate) use entry::Entry;

@@ -29,7 +29,7 @@ pub(crate) const KINDS: &[AnalysisKind] = &[
 ];
 
 /// Names of the sections of a campaign, in the order in which they are measured and shown.
-pub(crate) fn sections() -> impl Iterator<Item = &'static str> {
+pub fn sections() -> impl Iterator<Item = &'static str> {
     KINDS.iter().map(|kind| kind.section)
 }
 

@@ -1,7 +1,7 @@
 //! The text of a campaign changed in one place, with all else as it was written.
 
-use super::Campaign;
 use super::locate::written;
+use super::{Campaign, KeyMeaning};
 use crate::error::{Error, Result};
 use crate::record::shown;
 use std::ops::Range;
@@ -107,6 +107,17 @@ impl WrittenTable {
         let broken = if text[..last].ends_with('\n') { "" } else { "\n" };
         replaced(last..last, &format!("{broken}{line}\n"))
     }
+
+    /// The text with the table in another section. Keys that this does not know become comments.
+    fn moved(&self, text: &str, section: &str) -> String {
+        let foreign = |key: &str| KeyMeaning::of(section).all(|known| known.key != key);
+        let rows = self.rows.iter().rev().filter(|(key, _)| foreign(key));
+        let mut text = rows.fold(text.to_owned(), |text, (key, _)| self.with(&text, key, ""));
+        let head: usize = text.split_inclusive('\n').take(self.line - 1).map(str::len).sum();
+        let own = text[head..].find(self.section.as_str()).map(|at| head + at);
+        own.into_iter().for_each(|at| text.replace_range(at..at + self.section.len(), section));
+        text
+    }
 }
 
 impl Campaign {
@@ -125,12 +136,7 @@ impl Campaign {
     /// If the text or the value is not TOML, or there is no such table.
     pub fn text_with(text: &str, table: (&str, usize), key: &str, value: &str) -> Result<String> {
         let (section, number) = table;
-        let all = WrittenTable::all(text)?;
-        let found = all.iter().find(|table| (table.section.as_str(), table.number) == (section, number));
-        let found = found.ok_or_else(|| {
-            Error::usage(format!("no table {number} of [[{}]]", shown(section)), "a table of the campaign")
-        })?;
-        let changed = found.with(text, key, value);
+        let changed = Campaign::written_table(text, table)?.with(text, key, value);
         // A value such as `1\nfile = 2` would be more than a value.
         let rest = |text: &str| -> Result<(toml::Table, Option<toml::Value>)> {
             let whole = written(text, &[]);
@@ -147,11 +153,63 @@ impl Campaign {
         }
         Ok(changed)
     }
+
+    /// The text of a campaign with one table of records in another section. Keys that this section does not
+    /// know become comments. All else stays as it is written.
+    ///
+    /// ```
+    /// use vibroimpact::campaign::Campaign;
+    /// let text = "[[impacts]]\nfile = \"a.csv\"\nenvelope = true\n";
+    /// let moved = Campaign::text_of_kind(text, ("impacts", 1), "drop")?;
+    /// assert_eq!(moved, "[[drop]]\nfile = \"a.csv\"\n# envelope = true\n");
+    /// # Ok::<(), vibroimpact::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// If the text is not TOML, or there is no such table or section.
+    pub fn text_of_kind(text: &str, table: (&str, usize), section: &str) -> Result<String> {
+        if KeyMeaning::of(section).next().is_none() {
+            return Err(Error::usage(format!("no kind [[{}]]", shown(section)), "a kind of record"));
+        }
+        let found = Campaign::written_table(text, table)?;
+        let head = text.lines().nth(found.line - 1).unwrap_or_default();
+        if !head.trim_start().starts_with("[[") {
+            return Err(Error::usage(shown(head), format!("a table that begins with [[{}]]", table.0)));
+        }
+        Ok(found.moved(text, section))
+    }
+
+    fn written_table(text: &str, (section, number): (&str, usize)) -> Result<WrittenTable> {
+        let mut all = WrittenTable::all(text)?.into_iter();
+        let found = all.find(|table| (table.section.as_str(), table.number) == (section, number));
+        found.ok_or_else(|| {
+            Error::usage(format!("no table {number} of [[{}]]", shown(section)), "a table of the campaign")
+        })
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_table_moves_to_another_section_with_the_keys_that_it_knows() {
+        let moved = Campaign::text_of_kind(TEXT, ("drop", 2), "decay").unwrap();
+        let (head, tail) = TEXT.rsplit_once("[[drop]]").unwrap();
+        assert_eq!(moved, format!("{head}[[decay]]{tail}"));
+        let moved = Campaign::text_of_kind(TEXT, ("drop", 1), "decay").unwrap();
+        let expected = TEXT.replacen("[[drop]]", "[[decay]]", 1).replace("height = 1", "# height = 1");
+        assert_eq!(moved, expected);
+        let lines = "[[drop]]\nheight = 1\nfile = \"a\"\nintervals = [\n  1,\n  2,\n]\nmasses = [1, 2]\n";
+        let moved = Campaign::text_of_kind(lines, ("drop", 1), "pulse").unwrap();
+        assert_eq!(
+            moved,
+            "[[pulse]]\n# height = 1\nfile = \"a\"\n# intervals = [\n#   1,\n#   2,\n# ]\n# masses = [1, 2]\n"
+        );
+        assert!(Campaign::text_of_kind(TEXT, ("drop", 1), "bell").is_err());
+        let inline = "drop = [{ file = \"a\" }, { file = \"b\" }]\n";
+        assert!(Campaign::text_of_kind(inline, ("drop", 2), "decay").is_err());
+    }
 
     const TEXT: &str = "name = \"x\"\n\n[[drop]]\nfile = \"a.csv\"  # first\nheight = 1\n\n# of the second\n[[drop]]\nfile = \"b.csv\"";
 

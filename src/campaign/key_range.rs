@@ -75,6 +75,12 @@ impl KeyRange {
         of_kinds.into_iter().chain(SHARED).find(|range| range.keys.contains(&key))
     }
 
+    /// Unit of the numbers; empty where it differs between keys.
+    #[cfg(test)]
+    pub(crate) fn unit(&self) -> &'static str {
+        self.unit
+    }
+
     /// Checks a number of a key.
     ///
     /// # Errors

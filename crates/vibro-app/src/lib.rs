@@ -16,6 +16,7 @@ mod picture;
 mod recording;
 mod request;
 mod table;
+mod words;
 mod workbench;
 
 pub use picture::Picture;

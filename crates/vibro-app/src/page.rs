@@ -6,6 +6,7 @@
     reason = "a name by which a page calls a function is an unsafe attribute; nothing else is unsafe here, but on the page's side the call that reports progress"
 )]
 
+use crate::workbench::problem;
 use crate::{Reply, Request, Workbench};
 use serde_json::json;
 use std::sync::Mutex;
@@ -110,9 +111,7 @@ fn with(work: impl FnOnce(&mut Workbench) -> Result<Reply>) -> u32 {
     let (kind, bytes) = match work(bench.get_or_insert_default()) {
         Ok(Reply::Json(answer)) => (0, answer.to_string().into_bytes()),
         Ok(Reply::Bytes(bytes)) => (2, bytes),
-        Err(error) => {
-            (1, json!({ "text": error.to_string(), "line": error.line() }).to_string().into_bytes())
-        }
+        Err(error) => (1, problem(&error).to_string().into_bytes()),
     };
     *output = bytes;
     kind

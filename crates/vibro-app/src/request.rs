@@ -40,6 +40,13 @@ pub enum Request {
         /// The value.
         value: String,
     },
+    /// Another kind of record for a table.
+    Kind {
+        /// Number of the table in the list, from 0.
+        table: usize,
+        /// The section of the kind.
+        section: String,
+    },
     /// Runs the campaign.
     Run,
     /// Pictures of all records of a file.

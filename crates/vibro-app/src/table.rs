@@ -1,8 +1,9 @@
 //! A table of the campaign as the page shows it: its keys, those that are missing, and where it stands.
 
+use crate::words;
 use serde::Serialize;
-use vibroimpact::campaign::WrittenTable;
-use vibroimpact::proposal::{KeyStatus, Proposal, Refusal, Table, TableKey};
+use vibroimpact::campaign::{KeyMeaning, WrittenTable};
+use vibroimpact::proposal::{KeyStatus, Proposal, Table, TableKey};
 
 /// A table of records.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -36,10 +37,20 @@ pub struct SeenKey {
     pub key: String,
     /// Its value as TOML; empty where it has none.
     pub value: String,
-    /// `stated`, `found`, `guessed`, `open` or `missing`.
-    pub known: String,
+    /// `stated`, `found`, `guessed`, `open`, `missing`, or `possible` for a key that nobody asks for.
+    pub known: &'static str,
     /// Reason of a guess, or what to state.
     pub why: String,
+    /// What it means.
+    #[serde(flatten)]
+    pub meaning: Option<KeyMeaning>,
+}
+
+impl SeenKey {
+    fn stated(key: &str, value: &str) -> SeenKey {
+        let (key, value) = (key.to_owned(), value.to_owned());
+        SeenKey { key, value, known: "stated", why: String::new(), meaning: None }
+    }
 }
 
 /// Keys by which the table of a proposal is found again in the text; the first that both have decides.
@@ -54,7 +65,7 @@ fn key_of(row: &TableKey) -> SeenKey {
         KeyStatus::Missing(_) => ("missing", String::new()),
     };
     let why = row.known.why().unwrap_or_default().to_owned();
-    SeenKey { key: row.key.to_owned(), value, known: known.to_owned(), why }
+    SeenKey { key: row.key.to_owned(), value, known, why, meaning: None }
 }
 
 impl SeenTable {
@@ -76,7 +87,22 @@ impl SeenTable {
                 all.push(SeenTable::proposed(k, table));
             }
         }
+        all.iter_mut().for_each(SeenTable::explain);
         all
+    }
+
+    /// Adds what the keys mean, and the further keys that the section knows.
+    fn explain(&mut self) {
+        for meaning in KeyMeaning::of(&self.section) {
+            match self.keys.iter_mut().find(|row| row.key == meaning.key) {
+                Some(row) => row.meaning = Some(meaning),
+                None => self.keys.push(SeenKey {
+                    known: "possible",
+                    meaning: Some(meaning),
+                    ..SeenKey::stated(meaning.key, "")
+                }),
+            }
+        }
     }
 
     fn proposed(k: usize, table: &Table) -> SeenTable {
@@ -86,7 +112,7 @@ impl SeenTable {
             about: table.about.to_owned(),
             guess: table.guess,
             line: None,
-            refused: table.refused.as_ref().map(Refusal::in_words),
+            refused: table.refused.as_ref().map(|why| words::as_kinds(&why.in_words())),
             keys: table.rows.iter().map(key_of).collect(),
             number: None,
             proposed: Some(k),
@@ -97,8 +123,7 @@ impl SeenTable {
         let stated = |(key, value): &(String, String)| {
             let row = known.and_then(|(_, known)| known.rows.iter().find(|row| row.key == key));
             let same = row.map(key_of).filter(|row| row.value == *value);
-            let (key, value) = (key.clone(), value.clone());
-            same.unwrap_or(SeenKey { key, value, known: "stated".to_owned(), why: String::new() })
+            same.unwrap_or_else(|| SeenKey::stated(key, value))
         };
         let mut keys: Vec<SeenKey> = table.keys.iter().map(stated).collect();
         let open = known.into_iter().flat_map(|(_, known)| &known.rows).map(key_of);

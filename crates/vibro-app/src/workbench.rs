@@ -1,7 +1,7 @@
 //! The files of a page, its campaign, and its results, all in memory.
 
 use crate::archive::{LeftOut, packed, unpacked};
-use crate::{Picture, Reply, Request, SeenRecording, SeenTable};
+use crate::{Picture, Reply, Request, SeenRecording, SeenTable, words};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use vibroimpact::analysis::{self, AnswerCache, Progress};
@@ -10,7 +10,7 @@ use vibroimpact::error::{Error, Result};
 use vibroimpact::proposal::Proposal;
 use vibroimpact::read::{Folder, Owner, Reader};
 use vibroimpact::report::Output;
-use vibroimpact::report::words::{self, Voice};
+use vibroimpact::report::words::{Voice, sentence};
 
 /// Files that a person gave, the campaign for them, and the results of its last run.
 #[derive(Debug)]
@@ -34,19 +34,14 @@ impl Default for Workbench {
 /// Columns of the small picture of a record.
 const COLUMNS: usize = 160;
 
-/// An error in the words of a campaign.
-fn in_words(error: &Error) -> String {
-    error.text_with(|key, value| Voice::Campaign.set(key, value), ToString::to_string)
-}
-
 /// The error of a number that no table has.
 fn no_table() -> Error {
     Error::usage("no such table", "one of the list")
 }
 
 /// An error as the page shows it.
-fn problem(error: &Error) -> Value {
-    json!({ "text": in_words(error), "line": error.line() })
+pub(crate) fn problem(error: &Error) -> Value {
+    json!({ "text": words::error(error), "line": error.line() })
 }
 
 impl Workbench {
@@ -81,6 +76,10 @@ impl Workbench {
             }
             Request::State { table, key, value } => {
                 self.set(*table, key, value)?;
+                self.state()
+            }
+            Request::Kind { table, section } => {
+                self.change_kind(*table, section)?;
                 self.state()
             }
             Request::Run => self.run(progress)?,
@@ -157,7 +156,7 @@ impl Workbench {
                 Ok((text, proposal)) => (self.text, self.proposal) = (text, Some(proposal)),
                 Err(error) => {
                     known.unwrap_or_default().clone_into(&mut self.text);
-                    none = Some(in_words(&error));
+                    none = Some(words::error(&error));
                 }
             }
         }
@@ -189,7 +188,7 @@ impl Workbench {
             Ok(campaign) => campaign.faults().iter().map(|fault| problem(&fault.error)).collect(),
             Err(error) => vec![problem(&error)],
         };
-        json!({ "text": self.text, "tables": tables, "problems": problems })
+        json!({ "text": self.text, "tables": tables, "problems": problems, "kinds": kinds() })
     }
 
     /// The table of this number in the list, from 0.
@@ -220,6 +219,13 @@ impl Workbench {
         Ok(())
     }
 
+    /// Gives a table another kind.
+    fn change_kind(&mut self, table: usize, to: &str) -> Result<()> {
+        let (text, section, number) = self.with_table(table)?;
+        self.text = Campaign::text_of_kind(&text, (&section, number), to)?;
+        Ok(())
+    }
+
     /// Runs the campaign, and keeps its results in memory.
     fn run(&mut self, progress: &dyn Progress) -> Result<Value> {
         let campaign = self.campaign()?;
@@ -230,8 +236,8 @@ impl Workbench {
         output.commit()?;
         self.results = (campaign.out(), outcome.files.clone());
         let of_all = outcome.answer.findings.iter().filter(|(_, finding)| finding.code == analysis::LEFT_OUT);
-        let refused: Vec<_> =
-            of_all.map(|(name, finding)| (name, words::sentence(finding, Voice::Campaign))).collect();
+        let said = |finding| words::as_kinds(&sentence(finding, Voice::Campaign));
+        let refused: Vec<_> = of_all.map(|(name, finding)| (name, said(finding))).collect();
         Ok(json!({ "answered": outcome.answered, "files": outcome.files, "refused": refused }))
     }
 
@@ -282,6 +288,12 @@ impl Workbench {
         let files: Result<Vec<(&str, Vec<u8>)>> = names.map(|name| Ok((name, self.file(name)?))).collect();
         packed(files?)
     }
+}
+
+/// Section and title of each kind of record. A sweep has several files, so no record becomes one.
+fn kinds() -> Vec<(&'static str, &'static str)> {
+    let titled = |section| Some((section, analysis::title(section)?));
+    analysis::sections().filter(|section| *section != "sweep").filter_map(titled).collect()
 }
 
 /// Two objects as one.

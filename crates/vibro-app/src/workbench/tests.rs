@@ -77,3 +77,25 @@ fn an_error_in_the_text_points_at_its_line() {
     let seen = json(&mut bench, &Request::Edit { text: "name = x\n".to_owned() });
     assert_eq!(seen["problems"][0]["line"], 1, "{seen}");
 }
+
+/// A table gets another kind; what this does not know is a comment, and all its keys are explained.
+#[test]
+fn a_table_becomes_one_of_another_kind() {
+    let mut bench = Workbench::default();
+    json(&mut bench, &Request::Example { name: "bench".to_owned() });
+    let seen = json(&mut bench, &Request::Propose { known: None });
+    let place = |seen: &Value, file: &str, section: &str| {
+        let all = seen["tables"].as_array().unwrap().iter();
+        all.clone().position(|table| table["files"] == file && table["section"] == section)
+    };
+    let table = place(&seen, "PULSE.CSV", "pulse").unwrap();
+    let seen = json(&mut bench, &Request::Kind { table, section: "decay".to_owned() });
+    let table = place(&seen, "PULSE.CSV", "decay").unwrap();
+    assert!(seen["text"].as_str().unwrap().contains("# mass = 0.125"), "{seen}");
+    let keys = seen["tables"][table]["keys"].as_array().unwrap();
+    let band = keys.iter().find(|row| row["key"] == "band").unwrap();
+    assert_eq!((&band["known"], &band["unit"], &band["value"]), (&json!("possible"), &json!("Hz"), &json!("")));
+    assert!(keys.iter().all(|row| row["meaning"].is_string()), "{keys:?}");
+    let unknown = Request::Kind { table, section: "bell".to_owned() };
+    assert!(bench.answer(&unknown, &()).is_err());
+}
