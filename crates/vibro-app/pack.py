@@ -5,7 +5,7 @@ import sys
 from pathlib import Path
 
 HERE = Path(__file__).parent / "page"
-SCRIPTS = ["module.js", "files.js", "list.js", "trace.js", "campaign.js", "app.js"]
+SCRIPTS = ["module.js", "files.js", "list.js", "tables.js", "trace.js", "campaign.js", "app.js"]
 
 
 def as_text(data: bytes) -> str:

@@ -8,6 +8,8 @@ pub trait Progress: Sync {
     fn step(&self);
     /// `done` of `all` steps are done.
     fn at(&self, done: usize, all: usize);
+    /// The step that follows works at `what`.
+    fn on(&self, _what: &str) {}
     /// Lets `print` write lines, which the display of progress does not overwrite.
     fn aside(&self, print: &mut dyn FnMut()) {
         print();

@@ -50,6 +50,7 @@ pub(super) fn tables_of_each<'a>(
         let (analyses, tables) = analysed((files.len(), self::share(values)), FoundTables::agrees, |k| {
             let (one, file) = (&series[files[k].0], files[k].1);
             let single = FileSeries { files: vec![file.clone()], ..one.clone() };
+            progress.on(file);
             let tables = trial(one).file(&single, one.label(file));
             progress.step();
             tables.renamed(one.label(file), [""; 3])

@@ -178,6 +178,41 @@ test("a field that is typed in while the report is made keeps its text", { skip 
   await page.locator(".card .refused").first().waitFor();
 }));
 
+test("a value is typed with its unit, its meaning is shown, and a record is measured as another kind", { skip }, () => open({}, async (page) => {
+  await page.click("[data-example=drop_test]");
+  await ran(page);
+  const before = await runs(page), height = page.locator("input[data-field$=' height']").first();
+  await height.fill("48,5 cm");
+  const row = page.locator(".row:focus-within");
+  assert.equal(await row.locator(".unit").innerText(), "m");
+  assert.equal(await row.locator(".means").innerText(), "height of the fall; left out: flight times alone");
+  await height.press("Enter");
+  await ran(page, before + 1);
+  assert.match(await page.locator("#text").inputValue(), /height = 0\.485\n/);
+  const card = page.locator(".card", { hasText: "BOUNCE.CSV" });
+  await card.locator("select").selectOption("impacts");
+  await ran(page, before + 2);
+  assert.match(await page.locator("#text").inputValue(), /\[\[impacts\]\]\nname = "lively ball"\nfile = "BOUNCE\.CSV"\n# height = 0\.57/);
+  await card.locator("summary", { hasText: "further keys" }).click();
+  await card.locator("input[data-field$=' threshold']").fill("0.4");
+  await page.keyboard.press("Enter");
+  await page.waitForFunction(() => document.getElementById("text").value.includes("threshold = 0.4"));
+  await page.click("#alone");
+  const whole = await page.locator("#report").boundingBox();
+  assert.ok(whole.width === 1200 && whole.height > 840, JSON.stringify(whole));
+  // A part of a trace that is zoomed to stands below as a key.
+  const frame = report(page).locator(".u-over").first();
+  await frame.scrollIntoViewIfNeeded();
+  const box = await frame.boundingBox();
+  await page.mouse.move(box.x + 0.25 * box.width, box.y + 20);
+  await page.mouse.down();
+  await page.mouse.move(box.x + 0.5 * box.width, box.y + 25, { steps: 4 });
+  await page.mouse.up();
+  assert.match(await report(page).locator("code", { hasText: "span" }).first().innerText(), /^span = \[[\d.]+, [\d.]+\]$/);
+  await page.keyboard.press("Escape");
+  assert.equal(await page.evaluate(() => document.body.className), "");
+}));
+
 test("the campaign is edited in place, with its error at the line", { skip }, () => open({}, async (page) => {
   await page.click("[data-example=drop_test]");
   await ran(page);

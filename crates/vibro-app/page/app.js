@@ -8,9 +8,16 @@ addEventListener("click", (event) => {
   event.preventDefault();
   parent.postMessage({ file: decodeURIComponent(link.getAttribute("href").slice(2)) }, "*");
 }, true);
+addEventListener("keydown", (event) => event.key === "Escape" && parent.postMessage({ back: true }, "*"));
 addEventListener("scroll", () => parent.postMessage({ scroll: scrollY }, "*"));
 addEventListener("load", () => setTimeout(() => scrollTo(0, SCROLL), 50));
 <\/script>`;
+
+/** The report without links to files that do not lie beside it. */
+function withoutFiles(bytes) {
+  const html = new TextDecoder().decode(bytes);
+  return new TextEncoder().encode(html.replace("</head>", () => "<style>a[href^='./'] { display: none; }</style></head>"));
+}
 
 /** The page: files, campaign, report. */
 class App {
@@ -18,10 +25,12 @@ class App {
     this.program = new Program((progress) => this.progress(progress));
     [this.files, this.name, this.example, this.text] = [[], "", null, ""];
     [this.tables, this.problems, this.results, this.scroll] = [[], [], null, 0];
-    this.recordings = new Recordings(at("recordings"), (path) => this.pictures(path));
-    const set = (id, key, value) => this.set(id, key, value);
+    const measure = (path, section) => this.editor.flush().then(() => this.edit(`${this.text.trimEnd()}\n\n[[${section}]]\nfile = ${JSON.stringify(path)}\n`));
+    this.recordings = new Recordings(at("recordings"), { pictures: (path) => this.pictures(path), measure });
+    const set = (id, key, value) => this.change(id, "state", { key, value });
+    const kind = (id, section) => this.change(id, "kind", { section }).catch((error) => this.trouble(error.message));
     const look = (id) => this.trace.open(this.tables, id).catch((error) => this.trouble(error.message));
-    this.cards = new Tables(at("tables"), { set, look, find: (line) => this.editor.find(line) });
+    this.cards = new Tables(at("tables"), { set, kind, look, find: (line) => this.editor.find(line) });
     this.editor = new Editor(at("campaign"), (text) => this.edit(text));
     // Edited: not as it was proposed. Unsaved: the edits are nowhere else.
     [this.edited, this.unsaved, this.setting, this.looking] = [false, false, Promise.resolve(), Promise.resolve()];
@@ -40,7 +49,9 @@ class App {
     }
     for (const button of document.querySelectorAll("[data-example]")) button.onclick = () => this.look({ example: button.dataset.example });
     at("anew").onclick = () => location.reload();
-    at("to-report").onclick = () => at("report").scrollIntoView();
+    at("to-report").onclick = at("alone").onclick = () => this.read(true);
+    at("back").onclick = () => this.read(false);
+    addEventListener("keydown", (event) => event.key === "Escape" && document.body.classList.contains("reading") && this.read(false));
     at("again").onclick = () => this.look({ files: this.files, name: this.name, example: this.example, known: this.edited ? this.text : null });
     at("stop").onclick = () => this.program.end("stopped");
     at("save-report").onclick = () => this.save("report.html", "text/html");
@@ -67,8 +78,15 @@ class App {
       if (source !== at("report").contentWindow) return;
       if (typeof data.scroll === "number") this.scroll = data.scroll;
       if (typeof data.file === "string") this.save(data.file);
+      if (data.back) this.read(false);
     });
     shelf.get().then((kept) => kept && this.offer(kept), () => {});
+  }
+
+  /** The report alone on the page, or below the files. */
+  read(alone) {
+    document.body.classList.toggle("reading", alone);
+    at(alone ? "report" : "to-report").focus({ preventScroll: alone });
   }
 
   /** Kept files are taken up only if the person says so. */
@@ -146,7 +164,7 @@ class App {
     if (known === null) [this.results, this.edited, this.unsaved, at("report").srcdoc] = [null, false, false, ""];
     this.recordings.show(listed.recordings);
     const found = await this.work("looking at files", () => this.program.ask("propose", { known }));
-    this.recordings.showLeft(found?.left ?? []);
+    this.recordings.showLeft(found?.left ?? [], found?.kinds ?? []);
     if (found?.none && !found.tables.length) this.trouble(found.none);
     at("unseen").hidden = found !== null;
     if (text !== null) return this.edit(text);
@@ -183,20 +201,21 @@ class App {
     this.trouble(error.message);
   }
 
-  async state({ text, tables, problems }) {
+  async state({ text, tables, problems, kinds }) {
     Object.assign(this, { text, tables, problems });
+    this.cards.kinds = kinds;
     this.cards.show(tables, problems);
     this.editor.show(text, problems);
     await this.run();
   }
 
-  /** Sets a key of a table, one after another: a value may move its table in the list. */
-  set(id, key, value) {
+  /** Changes a table, one change after another: each may move its table in the list. */
+  change(id, what, more) {
     const next = this.setting.catch(() => {}).then(async () => {
       at("troubles").replaceChildren();
       const table = this.tables.findIndex((_, k) => identity(this.tables, k) === id);
       if (table < 0) throw new Error("this table has changed meanwhile: type it again");
-      const after = await this.program.ask("state", { table, key, value });
+      const after = await this.program.ask(what, { table, ...more });
       [this.edited, this.unsaved] = [true, true];
       return after;
     });
@@ -267,7 +286,8 @@ class App {
   save(name, type) {
     return this.work("saving", async () => {
       await this.editor.flush();
-      save(name, await this.program.ask("file", { name }), type);
+      const bytes = await this.program.ask("file", { name });
+      save(name, name === "report.html" ? withoutFiles(bytes) : bytes, type);
       this.unsaved &&= name !== "campaign.toml";
     });
   }

@@ -24,7 +24,12 @@ class Editor {
       this.known = text;
     }
     this.number(problems.map(({ line }) => line));
-    this.problems.replaceChildren(...problems.map(({ text: words }) => make("li", { textContent: words })));
+    const item = ({ text: words, line }) => {
+      const row = make("li", { textContent: `${inShort(words)} ` });
+      if (line) row.append(make("button", { className: "link", textContent: `to line ${line}`, onclick: () => this.find(line) }));
+      return row;
+    };
+    this.problems.replaceChildren(...problems.map(item));
     if (problems.some(({ line }) => line)) this.fold.open = true;
   }
 

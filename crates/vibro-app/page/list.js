@@ -69,8 +69,9 @@ const FIRST_ROWS = 12;
 
 /** The list of files, each with its records and a small picture of each. */
 class Recordings {
-  constructor(host, pictures) {
-    [this.host, this.pictures] = [host, pictures];
+  /** `pictures(path)` gives those of a file; `measure(path, section)` adds a table for one that none uses. */
+  constructor(host, { pictures, measure }) {
+    Object.assign(this, { host, pictures, measure });
     this.watch = new IntersectionObserver((seen) => seen.filter((one) => one.isIntersecting).forEach(({ target }) => this.draw(target)));
   }
 
@@ -90,19 +91,28 @@ class Recordings {
     }
     this.left = make("div");
     this.host.append(this.left);
-    this.fold(this.host, `${unread.length} without records that can be read`, unread.map(({ path, problem }) => `${path}: ${inShort(problem)}`));
+    this.known = new Set(recordings.filter(({ problem }) => !problem).map(({ path }) => path));
+    this.fold(this.host, `${unread.length} without records that can be read`, unread.map(({ path, problem }) => make("li", { textContent: `${path}: ${inShort(problem)}` })));
   }
 
   /** A folded list; nothing where it is empty. */
-  fold(host, name, lines) {
-    const items = lines.map((line) => make("li", { textContent: line }));
+  fold(host, name, items) {
     if (items.length) host.append(make("details", {}, make("summary", { textContent: name }), make("ul", {}, ...items)));
   }
 
-  /** Files that no table uses, each with the reason. */
-  showLeft(left) {
+  /** Files that no table uses, each with the reason; one with records can be measured as a kind. */
+  showLeft(left, kinds) {
+    const item = ([name, why]) => {
+      const row = make("li", { textContent: `${name}: ${why} ` });
+      if (!this.known.has(name)) return row;
+      const choice = make("select", {}, make("option", { textContent: "measure it as …", value: "" }), ...kinds.map(([value, textContent]) => make("option", { value, textContent })));
+      choice.setAttribute("aria-label", `Measure ${name} as`);
+      choice.onchange = () => choice.value && this.measure(name, choice.value).then(() => row.remove());
+      row.append(choice);
+      return row;
+    };
     this.left.replaceChildren();
-    this.fold(this.left, `${left.length} not used`, left.map(([name, why]) => `${name}: ${why}`));
+    this.fold(this.left, `${left.length} not used`, left.map(item));
   }
 
   rows(file) {
@@ -124,115 +134,5 @@ class Recordings {
     const pictures = await this.pictures(canvas.dataset.path).catch(() => []);
     const picture = pictures[canvas.dataset.record];
     if (picture) thumbnail(canvas, picture);
-  }
-}
-
-/** An error without the line of the text at which it stands: that is shown in the text. */
-const inShort = (message) => message.split("\n").filter((line) => !/^\s*(\d+\s*)?\|/.test(line)).join("\n");
-
-/** A value as a person types it, in TOML. */
-function toToml(typed) {
-  // 1,000 may be a thousand: it stays text, which no number takes.
-  const text = typed.trim(), number = text.replace(/^(-?\d+),(?!\d{3}$)(\d+)$/, "$1.$2").replace(/^(-?)\./, "$10.");
-  if (text === "" || /^(true|false|["'[{].*|[-+]?\d[\d_]*(\.\d+)?([eE][-+]?\d+)?)$/s.test(number)) return number;
-  return JSON.stringify(text);
-}
-
-/** A value of TOML as a person reads it: text without its quotes. */
-function fromToml(value) {
-  try {
-    const plain = JSON.parse(value);
-    if (typeof plain === "string" && toToml(plain) === value) return plain;
-  } catch { /* A value that JSON does not have is shown as it is written. */ }
-  return value;
-}
-
-/** The value of a key of a table. */
-const valueOf = (table, key) => table.keys.find((row) => row.key === key)?.value ?? "";
-
-/** What tells a table from the others, wherever it stands in the list. */
-function identity(tables, k) {
-  const of = (table) => [table.section, table.files, valueOf(table, "channel"), valueOf(table, "name")].join("\n");
-  const own = of(tables[k]);
-  return `${own}\n${tables.slice(0, k).filter((table) => of(table) === own).length}`;
-}
-
-/** The tables of the campaign as cards with fields. */
-class Tables {
-  /** `set(identity, key, value)` states a value; `look(identity)` shows the trace; `find(line)` shows the text. */
-  constructor(host, { set, look, find }) {
-    Object.assign(this, { host, set, look, find });
-    [this.refused, this.redraws] = [[], false];
-  }
-
-  show(tables, problems) {
-    // A browser may say that a field was left when it is only drawn anew: what is half typed in it is no value.
-    this.redraws = true;
-    this.draw(tables, problems);
-    this.redraws = false;
-  }
-
-  draw(tables, problems) {
-    // A field that is being typed in stays as it is, and a fold as it was opened.
-    const { dataset, value, selectionStart, selectionEnd } = document.activeElement ?? {}, field = dataset?.field;
-    const open = new Set(Array.from(this.host.querySelectorAll("details[open]"), (fold) => fold.parentElement.dataset.table));
-    this.host.replaceChildren(...tables.map((table, k) => this.card(table, identity(tables, k), tables[k + 1]?.line, problems)));
-    for (const fold of this.host.querySelectorAll("details")) fold.open = open.has(fold.parentElement.dataset.table);
-    const none = problems.length ? "The campaign has an error, which its text below names: put right, the tables come back." : "Nothing is measured yet. A table can be written below, in the campaign.";
-    if (!tables.length) this.host.append(make("p", { textContent: none }));
-    const input = field && this.host.querySelector(`[data-field="${CSS.escape(field)}"]`);
-    if (!input) return;
-    input.value = value;
-    input.focus();
-    input.setSelectionRange(selectionStart, selectionEnd);
-  }
-
-  card(table, id, next, problems) {
-    const card = make("article", { className: "card" });
-    card.dataset.table = id;
-    card.append(make("h3", { textContent: table.files || table.section }));
-    const kind = [table.about || `[[${table.section}]]`, table.guess ? "guessed" : ""].filter(Boolean).join(", ");
-    card.append(make("p", { className: "kind", textContent: kind }));
-    if (table.refused && !table.line) card.append(make("p", { className: "refused", textContent: table.refused }));
-    const name = fromToml(valueOf(table, "name"));
-    for (const [record, why] of table.line ? this.refused : []) {
-      if (record === name || record === table.files) card.append(make("p", { className: "refused", textContent: why }));
-    }
-    const wrong = problems.filter(({ line }) => line && table.line && line >= table.line && line < (next ?? Infinity));
-    for (const { text } of wrong) card.append(make("p", { className: "refused", textContent: inShort(text) }));
-    const rows = (...known) => table.keys.filter((row) => known.includes(row.known)).map((row) => this.row(row, id));
-    card.append(...rows("missing"), ...rows("guessed"), ...rows("stated"), ...rows("found"));
-    const open = rows("open");
-    if (open.length) card.append(make("details", {}, make("summary", { textContent: `${open.length} more that would help` }), ...open));
-    const does = make("div", { className: "does" });
-    if (valueOf(table, "file")) {
-      does.append(make("button", { textContent: "see the record", onclick: () => this.look(id) }));
-    }
-    if (table.line) does.append(make("button", { textContent: "in the text", onclick: () => this.find(table.line) }));
-    card.append(does);
-    return card;
-  }
-
-  row({ key, value, known, why }, table) {
-    const id = `field-${table}-${key}`, input = make("input", { id, value: fromToml(value), autocomplete: "off", spellcheck: false });
-    // A value of several lines is changed in the text.
-    input.readOnly = value.includes("\n");
-    input.dataset.field = `${table} ${key}`;
-    const wrong = make("span", { className: "wrong" });
-    let sent = input.value;
-    input.onchange = input.onblur = async () => {
-      if (input.value === sent || input.readOnly || this.redraws) return;
-      [sent, wrong.textContent] = [input.value, ""];
-      try {
-        await this.set(table, key, toToml(input.value));
-      } catch (error) {
-        wrong.textContent = inShort(error.message);
-      }
-    };
-    const reason = known === "guessed" ? `guessed: ${why}` : known === "missing" ? `missing: ${why}` : why;
-    const row = make("div", { className: `row ${known}` }, make("label", { htmlFor: id, textContent: key }), input);
-    if (reason) row.append(make("span", { className: "why", textContent: reason }));
-    row.append(wrong);
-    return row;
   }
 }

@@ -53,6 +53,13 @@ impl Progress for OnPage {
         self.at(0, steps);
     }
 
+    fn on(&self, what: &str) {
+        if let Ok(mut held) = self.what.lock() {
+            *held = format!("{}: {what}", held.split(": ").next().unwrap_or_default());
+        }
+        self.show();
+    }
+
     fn step(&self) {
         self.done.fetch_add(1, Relaxed);
         self.show();

@@ -94,7 +94,10 @@ fn a_table_becomes_one_of_another_kind() {
     assert!(seen["text"].as_str().unwrap().contains("# mass = 0.125"), "{seen}");
     let keys = seen["tables"][table]["keys"].as_array().unwrap();
     let band = keys.iter().find(|row| row["key"] == "band").unwrap();
-    assert_eq!((&band["known"], &band["unit"], &band["value"]), (&json!("possible"), &json!("Hz"), &json!("")));
+    assert_eq!(
+        (&band["known"], &band["unit"], &band["value"]),
+        (&json!("possible"), &json!("Hz"), &json!(""))
+    );
     assert!(keys.iter().all(|row| row["meaning"].is_string()), "{keys:?}");
     let unknown = Request::Kind { table, section: "bell".to_owned() };
     assert!(bench.answer(&unknown, &()).is_err());

@@ -133,7 +133,8 @@ class Plot {
     this.tip.className = "tip";
     this.tip.setAttribute("role", "status");
     this.below = document.createElement("div");
-    host.append(this.frame, this.tip, this.below);
+    this.keys = document.createElement("code");
+    host.append(this.frame, this.tip, this.keys, this.below);
     this.build();
   }
 
@@ -293,10 +294,17 @@ class Plot {
         drawClear: [() => this.map && this.cells()],
         draw: [() => this.draw()],
         setCursor: [() => this.point()],
+        setScale: [(plot, name) => name === "x" && this.span(plot.scales.x)],
       },
     }, [[x.low, x.high], ends], this.frame);
     if (this.panel.square) this.square(x, y);
     this.plot.over.addEventListener("click", () => this.spectrum());
+  }
+
+  /** The part of a time trace that is shown, as the key by which a campaign uses this part alone. */
+  span({ min, max }) {
+    const { x } = this.panel, part = max - min < 0.999 * (x.high - x.low), places = Math.max(0, 3 - Math.floor(Math.log10(max - min)));
+    this.keys.textContent = x.title.endsWith("(s)") && part ? `span = [${min.toFixed(places)}, ${max.toFixed(places)}]` : "";
   }
 
   /** Widens the axis with room to spare, so that both have the same length a unit. */

@@ -1,0 +1,148 @@
+/** An error without the line of the text at which it stands: that is shown in the text. */
+const inShort = (message) => message.split("\n").filter((line) => !/^\s*(\d+\s*)?\|/.test(line)).join("\n");
+
+/** Parts and multiples of a unit. */
+const STEPS = { µ: 1e-6, u: 1e-6, m: 1e-3, c: 1e-2, "": 1, k: 1e3, M: 1e6 };
+
+/** A number that a person types with its unit, in the unit of the key: 57 cm as 0.57 where that is m. */
+function inUnit(text, unit) {
+  const found = text.match(/^([-+]?[\d.,]+(?:[eE][-+]?\d+)?)\s*([^\d\s].*)$/);
+  if (!found || !unit) return text;
+  const [, number, typed] = found, base = unit === "kg" ? "g" : unit;
+  const step = typed.endsWith(base) ? STEPS[typed.slice(0, -base.length)] : undefined;
+  if (step === undefined || !Number.isFinite(Number(number.replace(",", ".")))) return text;
+  return String(Number((Number(number.replace(",", ".")) * step / (unit === "kg" ? 1e3 : 1)).toPrecision(12)));
+}
+
+/** A value as a person types it, in TOML. */
+function toToml(typed, unit = "") {
+  // 1,000 may be a thousand: it stays text, which no number takes.
+  const text = inUnit(typed.trim(), unit), number = text.replace(/^(-?\d+),(?!\d{3}$)(\d+)$/, "$1.$2").replace(/^(-?)\./, "$10.");
+  if (text === "" || /^(true|false|["'[{].*|[-+]?\d[\d_]*(\.\d+)?([eE][-+]?\d+)?)$/s.test(number)) return number;
+  return JSON.stringify(text);
+}
+
+/** A value of TOML as a person reads it: text without its quotes. */
+function fromToml(value) {
+  try {
+    const plain = JSON.parse(value);
+    if (typeof plain === "string" && toToml(plain) === value) return plain;
+  } catch { /* A value that JSON does not have is shown as it is written. */ }
+  return value;
+}
+
+/** The value of a key of a table. */
+const valueOf = (table, key) => table.keys.find((row) => row.key === key)?.value ?? "";
+
+/** What tells a table from the others, wherever it stands in the list. */
+function identity(tables, k) {
+  const of = (table) => [table.section, table.files, valueOf(table, "channel"), valueOf(table, "name")].join("\n");
+  const own = of(tables[k]);
+  return `${own}\n${tables.slice(0, k).filter((table) => of(table) === own).length}`;
+}
+
+/** The tables of the campaign as cards with fields. */
+class Tables {
+  /**
+   * `set(identity, key, value)` states a value; `kind(identity, section)` makes it another kind;
+   * `look(identity)` shows the trace; `find(line)` shows the text.
+   */
+  constructor(host, { set, kind, look, find }) {
+    Object.assign(this, { host, set, kind, look, find, kinds: [] });
+    [this.refused, this.redraws] = [[], false];
+  }
+
+  show(tables, problems) {
+    // A browser may say that a field was left when it is only drawn anew: what is half typed in it is no value.
+    this.redraws = true;
+    this.draw(tables, problems);
+    this.redraws = false;
+  }
+
+  draw(tables, problems) {
+    // A field that is being typed in stays as it is, and a fold as it was opened.
+    const { dataset, value, selectionStart, selectionEnd } = document.activeElement ?? {}, field = dataset?.field;
+    const nameOf = (fold) => `${fold.parentElement.dataset.table}\n${fold.className}`;
+    const open = new Set(Array.from(this.host.querySelectorAll("details[open]"), nameOf));
+    this.host.replaceChildren(...tables.map((table, k) => this.card(table, identity(tables, k), tables[k + 1]?.line, problems)));
+    for (const fold of this.host.querySelectorAll("details")) fold.open = open.has(nameOf(fold));
+    const none = problems.length ? "The campaign has an error, which its text below names: put right, the tables come back." : "Nothing is measured yet. A table can be written below, in the campaign.";
+    if (!tables.length) this.host.append(make("p", { textContent: none }));
+    const input = field && this.host.querySelector(`[data-field="${CSS.escape(field)}"]`);
+    if (!input) return;
+    input.value = value;
+    input.focus();
+    input.setSelectionRange(selectionStart, selectionEnd);
+  }
+
+  card(table, id, next, problems) {
+    const card = make("article", { className: "card" });
+    card.dataset.table = id;
+    card.append(make("h3", { textContent: table.files || table.section }));
+    card.append(this.kindOf(table, id));
+    if (table.refused && !table.line) card.append(make("p", { className: "refused", textContent: table.refused }));
+    const name = fromToml(valueOf(table, "name"));
+    for (const [record, why] of table.line ? this.refused : []) {
+      if (record === name || record === table.files) card.append(make("p", { className: "refused", textContent: why }));
+    }
+    const wrong = problems.filter(({ line }) => line && table.line && line >= table.line && line < (next ?? Infinity));
+    for (const { text } of wrong) card.append(make("p", { className: "refused", textContent: inShort(text) }));
+    const rows = (...known) => table.keys.filter((row) => known.includes(row.known)).map((row) => this.row(row, id));
+    card.append(...rows("missing"), ...rows("guessed"), ...rows("stated"), ...rows("found"));
+    const folds = { open: (n) => `${n} more that would help`, possible: (n) => `${n} further keys` };
+    for (const [known, title] of Object.entries(folds)) {
+      const all = rows(known);
+      if (all.length) card.append(make("details", { className: known }, make("summary", { textContent: title(all.length) }), ...all));
+    }
+    const does = make("div", { className: "does" });
+    if (valueOf(table, "file")) {
+      does.append(make("button", { textContent: "see the record", onclick: () => this.look(id) }));
+    }
+    if (table.line) does.append(make("button", { textContent: "in the text", onclick: () => this.find(table.line) }));
+    card.append(does);
+    return card;
+  }
+
+  /** The kind of a table, which can be changed where it is of one file. */
+  kindOf(table, id) {
+    const about = [table.about, table.guess ? "guessed" : ""].filter(Boolean).join(", ");
+    const known = this.kinds.some(([section]) => section === table.section);
+    if (!known || !valueOf(table, "file")) return make("p", { className: "kind", textContent: about || table.section });
+    const choice = make("select", { title: "Measure it as another kind" });
+    choice.setAttribute("aria-label", `Kind of ${table.files}`);
+    this.kinds.forEach(([section, title]) => choice.append(make("option", { value: section, textContent: title, selected: section === table.section })));
+    choice.onchange = () => this.kind(id, choice.value);
+    const title = this.kinds.find(([section]) => section === table.section)[1];
+    return make("p", { className: "kind" }, choice, about && about !== title ? ` ${about}` : "");
+  }
+
+  row({ key, value, known, why, unit, meaning, left_out: without }, table) {
+    const id = `field-${table}-${key}`, input = make("input", { id, value: fromToml(value), autocomplete: "off", spellcheck: false });
+    // A value of several lines is changed in the text.
+    input.readOnly = value.includes("\n");
+    input.dataset.field = `${table} ${key}`;
+    const wrong = make("span", { className: "wrong" });
+    let sent = input.value;
+    input.onchange = input.onblur = async () => {
+      if (input.value === sent || input.readOnly || this.redraws) return;
+      [sent, wrong.textContent] = [input.value, ""];
+      try {
+        await this.set(table, key, toToml(input.value, unit));
+      } catch (error) {
+        wrong.textContent = inShort(error.message);
+      }
+    };
+    const reason = known === "guessed" ? `guessed: ${why}` : known === "missing" ? `missing: ${why}` : why;
+    const label = make("label", { htmlFor: id, textContent: key.replaceAll("_", " "), title: key });
+    const row = make("div", { className: `row ${known}` }, label, input, make("span", { className: "unit", textContent: unit ?? "" }));
+    // Shown while the field is used.
+    if (meaning) {
+      const means = `${meaning}; left out: ${without}`.replaceAll("`", "");
+      row.append(make("span", { className: "means", id: `${id}-means`, textContent: means }));
+      input.setAttribute("aria-describedby", `${id}-means`);
+    }
+    if (reason) row.append(make("span", { className: "why", textContent: reason }));
+    row.append(wrong);
+    return row;
+  }
+}

@@ -1,0 +1,47 @@
+//! Errors in the words of the page: it has kinds of records and keys where the command line has commands and
+//! options.
+
+use vibroimpact::analysis;
+use vibroimpact::error::{Error, Hint};
+use vibroimpact::report::words::Voice;
+
+/// Commands of the command line, and the section of a campaign that does the same.
+const COMMANDS: [(&str, &str); 7] = [
+    ("vibro spectrum", "spectrum"),
+    ("vibro modal", "frf"),
+    ("vibro drill", "drill"),
+    ("vibro impacts", "impacts"),
+    ("vibro restitution", "drop"),
+    ("vibro decay", "decay"),
+    ("vibro pulse", "pulse"),
+];
+
+/// An error as the page says it.
+pub fn error(error: &Error) -> String {
+    let spelt = |hint: &Hint| match hint {
+        Hint::OfFile(command) => as_kinds(&format!("`{command}`")),
+        _ => as_kinds(&hint.to_string()),
+    };
+    error.text_with(|key, value| Voice::Campaign.set(key, value), spelt)
+}
+
+/// A sentence with the kinds of records in place of commands.
+pub fn as_kinds(sentence: &str) -> String {
+    COMMANDS.iter().fold(sentence.to_owned(), |text, (command, section)| {
+        let kind = format!("the kind “{}”", analysis::title(section).unwrap_or(section));
+        text.replace(&format!("`{command}`"), &kind)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_page_names_kinds_and_keys() {
+        let rings = || Error::refused("the record rings").hint(Hint::OfFile("vibro decay"));
+        assert_eq!(error(&rings()), "the record rings\n  try: the kind “Free decays”");
+        let low = Error::refused("no pulse").hint("`vibro impacts` finds them").setting("low_pass");
+        assert_eq!(error(&low), "no pulse\n  try: the kind “Impacts” finds them (`low_pass`)");
+    }
+}
