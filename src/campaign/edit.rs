@@ -115,7 +115,9 @@ impl WrittenTable {
         let mut text = rows.fold(text.to_owned(), |text, (key, _)| self.with(&text, key, ""));
         let head: usize = text.split_inclusive('\n').take(self.line - 1).map(str::len).sum();
         let own = text[head..].find(self.section.as_str()).map(|at| head + at);
-        own.into_iter().for_each(|at| text.replace_range(at..at + self.section.len(), section));
+        if let Some(at) = own {
+            text.replace_range(at..at + self.section.len(), section);
+        }
         text
     }
 }
