@@ -36,7 +36,7 @@ mod reading;
 mod tables;
 mod value;
 
-pub use edit::WrittenTable;
+pub use edit::{WrittenKey, WrittenTable};
 pub use meaning::KeyMeaning;
 pub use tables::{Compute, Drive, FitEntry, Follows, ModelEntry};
 

@@ -50,7 +50,9 @@ impl From<&Impacts> for Evidence {
 
 impl From<&PulseResult> for Evidence {
     fn from(found: &PulseResult) -> Evidence {
-        Evidence::Pulse { duration: found.duration.value }
+        // Where no model has a duration, the pulse still lasts longer than this.
+        let duration = found.duration.value;
+        Evidence::Pulse { duration: if duration.is_finite() { duration } else { found.width } }
     }
 }
 

@@ -17,14 +17,23 @@ pub struct WrittenTable {
     pub number: usize,
     /// Its first line, from 1.
     pub line: usize,
-    /// Keys with their values as TOML.
-    pub keys: Vec<(String, String)>,
-    #[serde(skip)]
-    rows: Rows,
+    /// Its keys.
+    pub keys: Vec<WrittenKey>,
 }
 
-/// Bytes of keys with their values.
-type Rows = Vec<(String, Range<usize>)>;
+/// A key of a table as it is written.
+#[derive(Debug, Clone, PartialEq, Eq, serde::Serialize)]
+pub struct WrittenKey {
+    /// Its name.
+    pub key: String,
+    /// Its value as TOML.
+    pub value: String,
+    /// Its line, from 1.
+    pub line: usize,
+    /// Bytes of the key with its value.
+    #[serde(skip)]
+    row: Range<usize>,
+}
 
 impl WrittenTable {
     /// The tables of records of a text, in its order.
@@ -46,50 +55,38 @@ impl WrittenTable {
     }
 
     fn of(text: &str, section: &str, number: usize, begins: usize, keys: &DeTable<'_>) -> WrittenTable {
-        let mut all: Vec<(&str, Range<usize>, Range<usize>)> = Vec::new();
+        let line = |at: usize| 1 + text[..at].matches('\n').count();
+        let mut all = Vec::new();
         for (key, value) in keys {
-            all.push((key.get_ref(), key.span().start..value.span().end, Spanned::span(value)));
+            let row = key.span().start..value.span().end;
+            let (key, value) = (key.get_ref().to_string(), text[Spanned::span(value)].to_owned());
+            all.push(WrittenKey { key, value, line: line(row.start), row });
         }
-        all.sort_by_key(|(_, row, _)| row.start);
-        WrittenTable {
-            section: section.to_owned(),
-            number,
-            line: 1 + text[..begins].matches('\n').count(),
-            keys: all
-                .iter()
-                .map(|(key, _, value)| ((*key).to_owned(), text[value.clone()].to_owned()))
-                .collect(),
-            rows: all.into_iter().map(|(key, row, _)| (key.to_owned(), row)).collect(),
-        }
+        all.sort_by_key(|one| one.row.start);
+        WrittenTable { section: section.to_owned(), number, line: line(begins), keys: all }
     }
 
     /// The value of a key as TOML.
     pub fn value(&self, key: &str) -> Option<&str> {
-        self.keys.iter().find(|(name, _)| name == key).map(|(_, value)| value.as_str())
+        self.keys.iter().find(|one| one.key == key).map(|one| one.value.as_str())
     }
 
-    /// The text with a key of the table set to a value in TOML; without a value the line of the key becomes a
-    /// comment. A comment `# KEY =` without a value in the table makes room for its key.
+    /// The text with a key of the table set to a value in TOML; without a value it becomes the comment
+    /// `# KEY =`. Such a comment in the table makes room for its key.
     fn with(&self, text: &str, key: &str, value: &str) -> String {
         let line = format!("{key} = {value}");
-        let begins = |at: usize| text[..at].rfind('\n').map_or(0, |at| at + 1);
         let ends = |at: usize| text[at..].find('\n').map_or(text.len(), |n| at + n + 1);
         let replaced =
             |range: Range<usize>, by: &str| format!("{}{by}{}", &text[..range.start], &text[range.end..]);
-        if let Some((_, row)) = self.rows.iter().find(|(name, _)| name == key) {
-            let as_comment = |range: Range<usize>| {
-                let rows = text[range.clone()].split_inclusive('\n');
-                let rows: Vec<&str> = rows.flat_map(|row| ["# ", row]).collect();
-                replaced(range, &rows.concat())
-            };
-            let whole = begins(row.start)..ends(row.end);
-            return if value.is_empty() { as_comment(whole) } else { replaced(row.clone(), &line) };
+        if let Some(WrittenKey { row, .. }) = self.keys.iter().find(|one| one.key == key) {
+            let emptied = || replaced(row.clone(), &format!("# {key} ="));
+            return if value.is_empty() { emptied() } else { replaced(row.clone(), &line) };
         }
         if value.is_empty() {
             return text.to_owned();
         }
         let head = ends(text.split_inclusive('\n').take(self.line - 1).map(str::len).sum());
-        let last = self.rows.iter().map(|(_, row)| ends(row.end)).max().unwrap_or(head);
+        let last = self.keys.iter().map(|one| ends(one.row.end)).max().unwrap_or(head);
         // Its comments: from the head to the first blank line or table behind the last key.
         let mut at = head;
         for row in text[head..].split_inclusive('\n') {
@@ -99,8 +96,12 @@ impl WrittenTable {
             }
             let comment = row.strip_prefix('#').and_then(|row| row.trim_start().strip_prefix(key));
             let rest = comment.and_then(|rest| rest.trim_start().strip_prefix('='));
-            if rest.is_some_and(|rest| rest.trim().is_empty() || rest.trim_start().starts_with('#')) {
-                return replaced(at..at + row.len(), &(line + "\n"));
+            if let Some(note) = rest.map(str::trim).filter(|rest| rest.is_empty() || rest.starts_with('#')) {
+                // What a proposal says of a key without a value holds no longer.
+                let own =
+                    !note.is_empty() && !["# missing", "# open"].iter().any(|own| note.starts_with(own));
+                let note = if own { format!("  {note}") } else { String::new() };
+                return replaced(at..at + row.len(), &format!("{line}{note}\n"));
             }
             at += row.len();
         }
@@ -111,8 +112,12 @@ impl WrittenTable {
     /// The text with the table in another section. Keys that this does not know become comments.
     fn moved(&self, text: &str, section: &str) -> String {
         let foreign = |key: &str| KeyMeaning::of(section).all(|known| known.key != key);
-        let rows = self.rows.iter().rev().filter(|(key, _)| foreign(key));
-        let mut text = rows.fold(text.to_owned(), |text, (key, _)| self.with(&text, key, ""));
+        let mut text = text.to_owned();
+        for WrittenKey { row, .. } in self.keys.iter().rev().filter(|one| foreign(&one.key)) {
+            let begins = text[..row.start].rfind('\n').map_or(0, |at| at + 1);
+            let commented = text[begins..row.end].replace('\n', "\n# ");
+            text.replace_range(begins..row.end, &format!("# {commented}"));
+        }
         let head: usize = text.split_inclusive('\n').take(self.line - 1).map(str::len).sum();
         let own = text[head..].find(self.section.as_str()).map(|at| head + at);
         if let Some(at) = own {
@@ -124,7 +129,7 @@ impl WrittenTable {
 
 impl Campaign {
     /// The text of a campaign with a key of one table of records set to a value in TOML. An empty value
-    /// makes the key a comment. All else stays as it is written.
+    /// leaves the key as a comment without a value. All else stays as it is written.
     ///
     /// ```
     /// use vibroimpact::campaign::Campaign;
@@ -219,7 +224,12 @@ mod tests {
     fn a_key_is_set_in_its_table_and_nothing_else_changes() {
         let set = |number, key, value| Campaign::text_with(TEXT, ("drop", number), key, value);
         assert_eq!(set(1, "height", "0.5").unwrap(), TEXT.replace("height = 1", "height = 0.5"));
-        assert_eq!(set(1, "height", "").unwrap(), TEXT.replace("height = 1\n", "# height = 1\n"));
+        assert_eq!(set(1, "height", "").unwrap(), TEXT.replace("height = 1\n", "# height =\n"));
+        let noted = "[[drop]]\nfile = \"a\"  # first\nintervals = [1,\n 2]  # both\n";
+        let emptied = Campaign::text_with(noted, ("drop", 1), "intervals", "").unwrap();
+        assert_eq!(emptied, "[[drop]]\nfile = \"a\"  # first\n# intervals =  # both\n");
+        let filled = Campaign::text_with(&emptied, ("drop", 1), "intervals", "[3]").unwrap();
+        assert_eq!(filled, "[[drop]]\nfile = \"a\"  # first\nintervals = [3]  # both\n");
         assert_eq!(set(2, "height", "0.5").unwrap(), format!("{TEXT}\nheight = 0.5\n"));
         assert_eq!(
             set(1, "contact_time", "1e-3").unwrap(),

@@ -17,8 +17,8 @@ pub struct KeyMeaning {
 }
 
 impl KeyMeaning {
-    /// The keys of the tables of a section, in the order of `docs/campaign.md`: its tables stand below
-    /// headings that name their sections.
+    /// The keys of the tables of a section. In `docs/campaign.md` they stand below headings that name their
+    /// sections. Those of one section come first, those of all kinds of records last.
     ///
     /// ```
     /// use vibroimpact::campaign::KeyMeaning;
@@ -26,13 +26,16 @@ impl KeyMeaning {
     /// assert_eq!((height.unit, height.meaning), ("m", "height of the fall"));
     /// ```
     pub fn of(section: &str) -> impl Iterator<Item = KeyMeaning> {
-        let (named, mut within) = (format!("[[{section}]]"), false);
-        include_str!("../../docs/campaign.md").lines().filter_map(move |line| {
+        let (named, mut sections) = (format!("[[{section}]]"), 0);
+        let mut all: Vec<(usize, KeyMeaning)> = Vec::new();
+        for line in include_str!("../../docs/campaign.md").lines() {
             if line.starts_with("## ") {
-                within = line.contains(&named);
+                sections = if line.contains(&named) { line.matches("[[").count() } else { 0 };
             }
-            KeyMeaning::in_row(line).filter(|_| within)
-        })
+            all.extend(KeyMeaning::in_row(line).filter(|_| sections > 0).map(|key| (sections, key)));
+        }
+        all.sort_by_key(|(sections, _)| *sections);
+        all.into_iter().map(|(_, key)| key)
     }
 
     /// The key of a row `` | `key` | unit | meaning | left out | ``.

@@ -33,6 +33,7 @@ pub(super) fn tables_of_each<'a>(
     let trial = |one: &'a FileSeries| Trial { folder, reading: &one.reading, kept };
     let as_a_whole = |one: &'a FileSeries| {
         let (trial, probe) = (trial(one), one.part(spread(one.files.len(), PROBE_FILES)));
+        probe.files.first().into_iter().for_each(|file| progress.on(file));
         let found = trial.sweep(one, &probe).or_else(|| trial.drops(one, &probe))?;
         one.files.iter().for_each(|_| progress.step());
         Some(found)

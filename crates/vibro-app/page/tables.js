@@ -8,16 +8,24 @@ const STEPS = { µ: 1e-6, u: 1e-6, m: 1e-3, c: 1e-2, "": 1, k: 1e3, M: 1e6 };
 function inUnit(text, unit) {
   const found = text.match(/^([-+]?[\d.,]+(?:[eE][-+]?\d+)?)\s*([^\d\s].*)$/);
   if (!found || !unit) return text;
-  const [, number, typed] = found, base = unit === "kg" ? "g" : unit;
+  const [, number, behind] = found, value = Number(number.replace(",", "."));
+  if (!Number.isFinite(value)) return text;
+  const typed = behind.replaceAll("^2", "²").replaceAll(/[\s·*]/g, ""), base = unit === "kg" ? "g" : unit;
   const step = typed.endsWith(base) ? STEPS[typed.slice(0, -base.length)] : undefined;
-  if (step === undefined || !Number.isFinite(Number(number.replace(",", ".")))) return text;
-  return String(Number((Number(number.replace(",", ".")) * step / (unit === "kg" ? 1e3 : 1)).toPrecision(12)));
+  if (step === undefined) throw new Error(`${text}: this is in ${unit}. Type the number alone, or with ${unit}`);
+  return String(Number((value * step / (unit === "kg" ? 1e3 : 1)).toPrecision(12)));
+}
+
+/** Two or more numbers that a person types without brackets, such as 0.5; 3, as a list. */
+function asList(text) {
+  const parts = text.replace(/^\[|\]$/g, "").split(/;|\s+|,\s+/).map((part) => part.trim()).filter(Boolean).map((part) => part.replace(/^(-?\d+),(\d+)$/, "$1.$2"));
+  return parts.length > 1 && parts.every((part) => Number.isFinite(Number(part))) ? `[${parts.join(", ")}]` : text;
 }
 
 /** A value as a person types it, in TOML. */
 function toToml(typed, unit = "") {
   // 1,000 may be a thousand: it stays text, which no number takes.
-  const text = inUnit(typed.trim(), unit), number = text.replace(/^(-?\d+),(?!\d{3}$)(\d+)$/, "$1.$2").replace(/^(-?)\./, "$10.");
+  const text = unit ? inUnit(asList(typed.trim()), unit) : typed.trim(), number = text.replace(/^(-?\d+),(?!\d{3}$)(\d+)$/, "$1.$2").replace(/^(-?)\./, "$10.");
   if (text === "" || /^(true|false|["'[{].*|[-+]?\d[\d_]*(\.\d+)?([eE][-+]?\d+)?)$/s.test(number)) return number;
   return JSON.stringify(text);
 }
@@ -88,7 +96,8 @@ class Tables {
     const wrong = problems.filter(({ line }) => line && table.line && line >= table.line && line < (next ?? Infinity));
     for (const { text } of wrong) card.append(make("p", { className: "refused", textContent: inShort(text) }));
     const rows = (...known) => table.keys.filter((row) => known.includes(row.known)).map((row) => this.row(row, id));
-    card.append(...rows("missing"), ...rows("guessed"), ...rows("stated"), ...rows("found"));
+    card.append(...rows("missing"), ...rows("guessed", "stated", "found"));
+    for (const { line } of wrong) card.querySelector(`[data-line="${line}"]`)?.setAttribute("aria-invalid", "true");
     const folds = { open: (n) => `${n} more that would help`, possible: (n) => `${n} further keys` };
     for (const [known, title] of Object.entries(folds)) {
       const all = rows(known);
@@ -116,23 +125,25 @@ class Tables {
     return make("p", { className: "kind" }, choice, about && about !== title ? ` ${about}` : "");
   }
 
-  row({ key, value, known, why, unit, meaning, left_out: without }, table) {
+  row({ key, value, known, why, line, unit, meaning, left_out: without }, table) {
     const id = `field-${table}-${key}`, input = make("input", { id, value: fromToml(value), autocomplete: "off", spellcheck: false });
     // A value of several lines is changed in the text.
     input.readOnly = value.includes("\n");
-    input.dataset.field = `${table} ${key}`;
+    [input.dataset.field, input.dataset.line] = [`${table} ${key}`, line ?? ""];
     const wrong = make("span", { className: "wrong" });
     let sent = input.value;
     input.onchange = input.onblur = async () => {
       if (input.value === sent || input.readOnly || this.redraws) return;
       [sent, wrong.textContent] = [input.value, ""];
+      input.removeAttribute("aria-invalid");
       try {
         await this.set(table, key, toToml(input.value, unit));
       } catch (error) {
         wrong.textContent = inShort(error.message);
+        input.setAttribute("aria-invalid", "true");
       }
     };
-    const reason = known === "guessed" ? `guessed: ${why}` : known === "missing" ? `missing: ${why}` : why;
+    const reason = known === "guessed" ? `guessed: ${why}` : known === "missing" ? `missing: ${why || meaning}` : why;
     const label = make("label", { htmlFor: id, textContent: key.replaceAll("_", " "), title: key });
     const row = make("div", { className: `row ${known}` }, label, input, make("span", { className: "unit", textContent: unit ?? "" }));
     // Shown while the field is used.

@@ -1,6 +1,6 @@
 /** Keys that the mouse drags in the trace of a kind of record, with what each does. */
 const PICKS = {
-  threshold: { of: ["impacts", "drop"], about: "smallest impact counted, as a part of the median height" },
+  threshold: { of: ["impacts", "drop"], about: "smallest impact counted, as a part of the median height of the impacts" },
   refractory: { of: ["impacts", "drop"], about: "dead time behind an impact, in s" },
   span: { of: ["impacts", "drop", "decay", "pulse", "spectrum"], about: "the part that is used, from and to in s" },
   band: { of: ["impacts", "decay"], about: "band in Hz, dragged in the spectrum" },
@@ -207,7 +207,7 @@ class TraceView {
     }
     if (can.includes("refractory")) {
       const begins = this.times.find((t) => t >= picture.from) ?? this.times[0] ?? this.largest(), dead = Number(this.value("refractory")) || 0;
-      all.push({ name: "dead time", place: begins + (dead || 0.02 * this.wide()), key: "refractory", to: (x) => rounded(Math.max(this.at(x) - begins, 1e-6), this.pixel()) });
+      all.push({ name: "refractory (dead time)", place: begins + (dead || 0.02 * this.wide()), key: "refractory", to: (x) => rounded(Math.max(this.at(x) - begins, 1e-6), this.pixel()) });
     }
     if (can.includes("span")) {
       const [from, to] = pairOf(this.value("span")) ?? [first, last], [low, high] = this.value("span").match(/[-+\d.eE]+/g) ?? [String(first), String(last)];

@@ -2,7 +2,7 @@
 
 use crate::words;
 use serde::Serialize;
-use vibroimpact::campaign::{KeyMeaning, WrittenTable};
+use vibroimpact::campaign::{KeyMeaning, WrittenKey, WrittenTable};
 use vibroimpact::proposal::{KeyStatus, Proposal, Table, TableKey};
 
 /// A table of records.
@@ -25,9 +25,9 @@ pub struct SeenTable {
     /// Its number in its section, from 1, while it is no comment.
     #[serde(skip)]
     pub number: Option<usize>,
-    /// Its number in the proposal.
+    /// Number of its proposal, and its number there.
     #[serde(skip)]
-    pub proposed: Option<usize>,
+    pub proposed: Option<(usize, usize)>,
 }
 
 /// A key of a table.
@@ -41,6 +41,8 @@ pub struct SeenKey {
     pub known: &'static str,
     /// Reason of a guess, or what to state.
     pub why: String,
+    /// Its line in the text, from 1.
+    pub line: Option<usize>,
     /// What it means.
     #[serde(flatten)]
     pub meaning: Option<KeyMeaning>,
@@ -49,7 +51,7 @@ pub struct SeenKey {
 impl SeenKey {
     fn stated(key: &str, value: &str) -> SeenKey {
         let (key, value) = (key.to_owned(), value.to_owned());
-        SeenKey { key, value, known: "stated", why: String::new(), meaning: None }
+        SeenKey { key, value, known: "stated", why: String::new(), line: None, meaning: None }
     }
 }
 
@@ -65,26 +67,25 @@ fn key_of(row: &TableKey) -> SeenKey {
         KeyStatus::Missing(_) => ("missing", String::new()),
     };
     let why = row.known.why().unwrap_or_default().to_owned();
-    SeenKey { key: row.key.to_owned(), value, known, why, meaning: None }
+    SeenKey { key: row.key.to_owned(), value, known, why, line: None, meaning: None }
 }
 
 impl SeenTable {
-    /// The tables of a text, then those of the proposal that are comments in it.
-    pub fn all(text: &str, written: &[WrittenTable], proposal: Option<&Proposal>) -> Vec<SeenTable> {
-        let proposed = proposal.map_or(&[][..], |proposal| &proposal.tables);
-        let mut taken = vec![false; proposed.len()];
+    /// The tables of a text, then those of the proposals that are comments in it.
+    pub fn all(text: &str, written: &[WrittenTable], proposals: &[Proposal]) -> Vec<SeenTable> {
+        let of_one = |(i, proposal): (usize, &'_ Proposal)| -> Vec<((usize, usize), Table)> {
+            let tables = proposal.tables.iter().enumerate();
+            tables.map(|(k, table)| ((i, k), table.clone())).collect()
+        };
+        let mut open: Vec<((usize, usize), Table)> = proposals.iter().enumerate().flat_map(of_one).collect();
         let mut all: Vec<SeenTable> = Vec::new();
         for table in written {
-            let is_same = |(k, one): &(usize, &Table)| !taken[*k] && is_of(one, table);
-            let known = proposed.iter().enumerate().find(is_same);
-            if let Some((k, _)) = known {
-                taken[k] = true;
-            }
-            all.push(SeenTable::written(table, known));
+            let known = open.iter().position(|(_, one)| is_of(one, table)).map(|k| open.remove(k));
+            all.push(SeenTable::written(table, known.as_ref().map(|(place, table)| (*place, table))));
         }
-        for (k, table) in proposed.iter().enumerate().filter(|(k, _)| !taken[*k]) {
-            if table.lacks() && proposal.is_some_and(|proposal| text.contains(&proposal.block(k))) {
-                all.push(SeenTable::proposed(k, table));
+        for ((i, k), table) in open {
+            if table.lacks() && text.contains(&proposals[i].block(k)) {
+                all.push(SeenTable::proposed((i, k), &table));
             }
         }
         all.iter_mut().for_each(SeenTable::explain);
@@ -96,16 +97,16 @@ impl SeenTable {
         for meaning in KeyMeaning::of(&self.section) {
             match self.keys.iter_mut().find(|row| row.key == meaning.key) {
                 Some(row) => row.meaning = Some(meaning),
-                None => self.keys.push(SeenKey {
-                    known: "possible",
-                    meaning: Some(meaning),
-                    ..SeenKey::stated(meaning.key, "")
-                }),
+                None => {
+                    let known = if meaning.left_out == "required" { "missing" } else { "possible" };
+                    let key = SeenKey::stated(meaning.key, "");
+                    self.keys.push(SeenKey { known, meaning: Some(meaning), ..key });
+                }
             }
         }
     }
 
-    fn proposed(k: usize, table: &Table) -> SeenTable {
+    fn proposed(place: (usize, usize), table: &Table) -> SeenTable {
         SeenTable {
             section: table.section.to_owned(),
             files: table.files.clone(),
@@ -115,15 +116,15 @@ impl SeenTable {
             refused: table.refused.as_ref().map(|why| words::as_kinds(&why.in_words())),
             keys: table.rows.iter().map(key_of).collect(),
             number: None,
-            proposed: Some(k),
+            proposed: Some(place),
         }
     }
 
-    fn written(table: &WrittenTable, known: Option<(usize, &Table)>) -> SeenTable {
-        let stated = |(key, value): &(String, String)| {
+    fn written(table: &WrittenTable, known: Option<((usize, usize), &Table)>) -> SeenTable {
+        let stated = |WrittenKey { key, value, line, .. }: &WrittenKey| {
             let row = known.and_then(|(_, known)| known.rows.iter().find(|row| row.key == key));
             let same = row.map(key_of).filter(|row| row.value == *value);
-            same.unwrap_or_else(|| SeenKey::stated(key, value))
+            SeenKey { line: Some(*line), ..same.unwrap_or_else(|| SeenKey::stated(key, value)) }
         };
         let mut keys: Vec<SeenKey> = table.keys.iter().map(stated).collect();
         let open = known.into_iter().flat_map(|(_, known)| &known.rows).map(key_of);
@@ -141,7 +142,7 @@ impl SeenTable {
             number: None,
             proposed: None,
         };
-        let base = known.map_or(of_text, |(k, known)| SeenTable::proposed(k, known));
+        let base = known.map_or(of_text, |(place, known)| SeenTable::proposed(place, known));
         SeenTable { line: Some(table.line), number: Some(table.number), keys, ..base }
     }
 }

@@ -8,7 +8,7 @@ use vibroimpact::analysis::{self, AnswerCache, Progress};
 use vibroimpact::campaign::{Campaign, Reading, WrittenTable};
 use vibroimpact::error::{Error, Result};
 use vibroimpact::proposal::Proposal;
-use vibroimpact::read::{Folder, Owner, Reader};
+use vibroimpact::read::{Folder, Manifest, Owner, Reader};
 use vibroimpact::report::Output;
 use vibroimpact::report::words::{Voice, sentence};
 
@@ -16,8 +16,8 @@ use vibroimpact::report::words::{Voice, sentence};
 #[derive(Debug)]
 pub struct Workbench {
     folder: Folder,
-    /// The proposal, where the files came without a campaign.
-    proposal: Option<Proposal>,
+    /// What was proposed for files that came without a campaign, and for those that were added.
+    proposals: Vec<Proposal>,
     text: String,
     /// Folder and names of the results.
     results: (PathBuf, Vec<String>),
@@ -30,6 +30,9 @@ impl Default for Workbench {
         Workbench::named("")
     }
 }
+
+/// Levels of folders that an archive has at most.
+const DEEPEST: usize = 64;
 
 /// Columns of the small picture of a record.
 const COLUMNS: usize = 160;
@@ -49,7 +52,7 @@ impl Workbench {
     pub fn named(name: &str) -> Workbench {
         let folder = Folder::memory(name, <[(&str, Vec<u8>); 0]>::default());
         let (text, results, left) = (String::new(), (PathBuf::new(), Vec::new()), Vec::new());
-        Workbench { folder, proposal: None, text, results, left }
+        Workbench { folder, proposals: Vec::new(), text, results, left }
     }
 
     /// Adds a file by its name in the folder, in place of one of the same name.
@@ -143,7 +146,9 @@ impl Workbench {
         let own = || self.folder.own_file(Proposal::FILE);
         let empty = analysis::recordings(&self.folder)?.files.is_empty();
         let mut none = None;
-        self.proposal = None;
+        if known.is_none() {
+            self.proposals.clear();
+        }
         if let (None, Some(bytes)) = (known, own()) {
             self.text = String::from_utf8(bytes).map_err(|_| {
                 Error::usage("campaign.toml is not UTF-8", "text in UTF-8")
@@ -153,14 +158,17 @@ impl Workbench {
             none = Some("no recording among these files".to_owned());
         } else {
             match self.proposed(known, progress) {
-                Ok((text, proposal)) => (self.text, self.proposal) = (text, Some(proposal)),
+                Ok((text, proposal)) => {
+                    self.text = text;
+                    self.proposals.push(proposal);
+                }
                 Err(error) => {
                     known.unwrap_or_default().clone_into(&mut self.text);
                     none = Some(words::error(&error));
                 }
             }
         }
-        let of_proposal = self.proposal.iter().flat_map(|proposal| &proposal.left);
+        let of_proposal = self.proposals.last().into_iter().flat_map(|one| &one.left);
         let left: Vec<_> = self.left.iter().chain(of_proposal).collect();
         Ok(joined(json!({ "left": left, "none": none }), self.state()))
     }
@@ -181,7 +189,7 @@ impl Workbench {
     /// The text of the campaign, its tables, and its errors.
     fn state(&self) -> Value {
         let tables = match WrittenTable::all(&self.text) {
-            Ok(written) => SeenTable::all(&self.text, &written, self.proposal.as_ref()),
+            Ok(written) => SeenTable::all(&self.text, &written, &self.proposals),
             Err(_) => Vec::new(),
         };
         let problems: Vec<Value> = match self.campaign() {
@@ -193,7 +201,7 @@ impl Workbench {
 
     /// The table of this number in the list, from 0.
     fn table(&self, table: usize) -> Result<SeenTable> {
-        let all = SeenTable::all(&self.text, &WrittenTable::all(&self.text)?, self.proposal.as_ref());
+        let all = SeenTable::all(&self.text, &WrittenTable::all(&self.text)?, &self.proposals);
         all.into_iter().nth(table).ok_or_else(no_table)
     }
 
@@ -204,11 +212,11 @@ impl Workbench {
         if let Some(number) = seen.number {
             return Ok((self.text.clone(), seen.section, number));
         }
-        let (proposal, k) = self.proposal.as_ref().zip(seen.proposed).ok_or_else(no_table)?;
-        let text = self.text.replacen(&proposal.block(k), &proposal.opened(k), 1);
+        let (i, k) = seen.proposed.ok_or_else(no_table)?;
+        let text = self.text.replacen(&self.proposals[i].block(k), &self.proposals[i].opened(k), 1);
         let written = WrittenTable::all(&text)?;
-        let all = SeenTable::all(&text, &written, Some(proposal));
-        let number = all.iter().find(|one| one.proposed == Some(k)).and_then(|one| one.number);
+        let all = SeenTable::all(&text, &written, &self.proposals);
+        let number = all.iter().find(|one| one.proposed == Some((i, k))).and_then(|one| one.number);
         Ok((text, seen.section, number.ok_or_else(no_table)?))
     }
 
@@ -283,10 +291,19 @@ impl Workbench {
         self.folder.read(&self.results.0.join(name))
     }
 
+    /// The folder as it is: what was given, the campaign, and the results in their folder, with the list by
+    /// which they are known as results.
     fn archive(&self) -> Result<Vec<u8>> {
-        let names = std::iter::once(Proposal::FILE).chain(self.results.1.iter().map(String::as_str));
-        let files: Result<Vec<(&str, Vec<u8>)>> = names.map(|name| Ok((name, self.file(name)?))).collect();
-        packed(files?)
+        let given = self.folder.walk(self.folder.root(), DEEPEST)?.files;
+        let given = given.into_iter().filter(|path| *path != self.path());
+        let names = self.results.1.iter().map(String::as_str).chain([Manifest::FILE]);
+        let results = names.map(|name| self.results.0.join(name)).filter(|path| self.folder.is_file(path));
+        let mut files = vec![(Proposal::FILE.to_owned(), self.text.clone().into_bytes())];
+        for path in given.chain(results) {
+            let name = path.strip_prefix(self.folder.root()).unwrap_or(&path);
+            files.push((name.to_string_lossy().into_owned(), self.folder.read(&path)?));
+        }
+        packed(files.iter().map(|(name, bytes)| (name.as_str(), bytes.as_slice())))
     }
 }
 

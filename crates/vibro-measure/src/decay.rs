@@ -164,14 +164,14 @@ impl Sines {
     /// Error for a record whose strongest line does not decay.
     fn steady(&self, group: &SineGroup, m: usize) -> Error {
         let Damped { periods, decay, .. } = group.sines[m];
-        let lost = -(-decay).exp_m1();
+        let (lost, std) = (-(-decay).exp_m1(), group.std(m, [0.0, 1.0, 0.0, 0.0]));
         let why = format!(
             "the motion does not decay: its strongest line, {:.5} Hz, loses {:.2} ± {:.2} % within {:.4} s; a mode must lose more than {:.1} %",
             periods * self.rate / self.n as f64,
             100.0 * lost,
-            100.0 * group.std(m, [0.0, 1.0, 0.0, 0.0]) * (-decay).exp(),
+            100.0 * std * (-decay).exp(),
             self.n as f64 / self.rate,
-            100.0 * SURE * STEADY
+            -100.0 * (-SURE * std.hypot(STEADY)).exp_m1()
         );
         Error::refused(why)
             .hint("read what follows the release or the blow, or choose the band of the mode")

@@ -178,6 +178,7 @@ pub fn pulse(trace: &Trace, options: &PulseOptions) -> Result<PulseResult> {
     result = result.by_clock(trace.meta.clock);
     result.findings = found;
     result.picture = Some(scale.picture(&samples, &fits));
+    result.width = seen / rate;
     Ok(result)
 }
 

@@ -102,3 +102,49 @@ fn a_table_becomes_one_of_another_kind() {
     let unknown = Request::Kind { table, section: "bell".to_owned() };
     assert!(bench.answer(&unknown, &()).is_err());
 }
+
+/// Everything that is saved comes back: recordings, campaign, and results that are taken for no recordings.
+#[test]
+fn an_archive_of_all_is_the_same_folder() {
+    let mut bench = Workbench::default();
+    json(&mut bench, &Request::Example { name: "bench".to_owned() });
+    let before = json(&mut bench, &Request::Look);
+    json(&mut bench, &Request::Propose { known: None });
+    json(&mut bench, &Request::Run);
+    let Reply::Bytes(saved) = bench.answer(&Request::Archive, &()).unwrap() else { panic!("no bytes") };
+    let mut again = Workbench::named("bench");
+    again.add("bench.zip", saved).unwrap();
+    json(&mut again, &Request::Unpack { path: "bench.zip".to_owned() });
+    assert_eq!(json(&mut again, &Request::Look), before);
+    json(&mut again, &Request::Propose { known: None });
+    assert_eq!(json(&mut again, &Request::Run)["answered"], true);
+    let file = |bench: &mut Workbench| bench.answer(&Request::File { name: "results.json".to_owned() }, &());
+    assert_eq!(file(&mut again).unwrap(), file(&mut bench).unwrap());
+}
+
+/// A table that waits for a value is there after files were added to a campaign that was changed.
+#[test]
+fn what_waits_for_a_value_outlives_further_files() {
+    let mut bench = Workbench::named("lab");
+    let mut fall = "time [s],sound [Pa]\n".to_owned();
+    for k in 0..4000_u32 {
+        let t = f64::from(k) * 2.5e-4;
+        let ring = |at: f64| if t < at { 0.0 } else { (-(t - at) / 2e-3).exp() * (3000.0 * (t - at)).sin() };
+        let value = ring(0.2) + 0.6 * ring(0.5) + 1e-5 * f64::from(k * 7919 % 101);
+        writeln!(fall, "{t},{value}").unwrap();
+    }
+    bench.add("fall.csv", fall.into_bytes()).unwrap();
+    let first = json(&mut bench, &Request::Propose { known: None });
+    let waits = |seen: &Value| {
+        let all = seen["tables"].as_array().unwrap().clone();
+        all.into_iter()
+            .filter(|table| table["line"].is_null())
+            .map(|table| table["files"].clone())
+            .collect::<Vec<_>>()
+    };
+    assert_eq!(waits(&first), [json!("fall.csv")], "{first}");
+    let text = format!("# mine\n{}", first["text"].as_str().unwrap());
+    bench.add("let_go.csv", b"t [s],x [mm]\n0,1\n0.001,0.9\n0.002,0.7\n".to_vec()).unwrap();
+    let second = json(&mut bench, &Request::Propose { known: Some(text) });
+    assert_eq!(waits(&second), [json!("fall.csv")], "{second}");
+}

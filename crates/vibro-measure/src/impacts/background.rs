@@ -14,21 +14,37 @@ const STEP: f64 = 1.25;
 const SAME: f64 = 0.02;
 
 /// Bursts of samples farther than `reach` from 0, one for each impact. With `pause`, stretches that follow
-/// within `pause` samples are joined. Without it, a burst lasts until the signal rises above the envelope of
+/// within `pause` samples are joined, but for an impact after an echo ([`paused`]). Without it, a burst lasts until the signal rises above the envelope of
 /// its ringing. The second value is then the factor by which the assumed decay of the ringing may change
 /// without changing the number of bursts.
 pub fn bursts(values: &[f64], reach: f64, pause: Option<usize>) -> (Vec<Range<usize>>, Option<f64>) {
     let runs = runs(values, reach);
     let (firsts, stable) = match pause {
-        Some(pause) => {
-            let apart = |j: &usize| *j == 0 || runs[*j].start + 1 - runs[j - 1].end >= pause;
-            ((0..runs.len()).filter(apart).collect(), None)
-        }
+        Some(pause) => (paused(values, &runs, pause), None),
         None => most_stable(values, &runs),
     };
     let ends = firsts.iter().skip(1).copied().chain([runs.len()]);
     let whole = |(first, next): (&usize, usize)| runs[*first].start..runs[next - 1].end;
     (firsts.iter().zip(ends).map(whole).collect(), stable)
+}
+
+/// Indices of the runs that begin an impact where no impact follows another within `pause` samples. A run
+/// does so behind a pause without runs. It also does so where it begins later than `pause` after the impact
+/// before, and rises above [`RISE`] times all runs within `pause` before it: those are an echo.
+fn paused(values: &[f64], runs: &[Range<usize>], pause: usize) -> Vec<usize> {
+    let height = |run: &Range<usize>| values[run.clone()].iter().fold(0.0, |h: f64, v| h.max(v.abs()));
+    let heights: Vec<f64> = runs.iter().map(height).collect();
+    let mut found: Vec<usize> = Vec::new();
+    for (j, run) in runs.iter().enumerate() {
+        let is_near = |k: &usize| run.start + 1 - runs[*k].end < pause;
+        let later = || found.last().is_none_or(|first| run.start - runs[*first].start >= pause);
+        let rises = || (0..j).rev().take_while(is_near).all(|k| heights[j] > RISE * heights[k]);
+        let alone = j == 0 || !is_near(&(j - 1));
+        if alone || later() && rises() {
+            found.push(j);
+        }
+    }
+    found
 }
 
 /// Stretches of samples beyond the noise limit `reach`. An envelope may ring until the next impact: a
@@ -207,6 +223,22 @@ mod tests {
         assert_eq!(bursts(&values, 0.5, Some(5)).0, [10..14, 20..22, 60..61]);
         assert_eq!(bursts(&values, 0.5, Some(20)).0, [10..22, 60..61]);
         assert!(bursts(&values, 2.0, None).0.is_empty());
+    }
+
+    /// Echoes 30 samples behind impacts that are 50 apart: a pause of 40 is longer than the rest between an
+    /// echo and the next impact. Ringing, which falls, begins no impact.
+    #[test]
+    fn an_impact_behind_an_echo_is_one() {
+        let mut values = vec![0.0; 400];
+        for k in 0..5 {
+            values[20 + 50 * k] = 1.0;
+            values[50 + 50 * k] = 0.3;
+        }
+        assert_eq!(bursts(&values, 0.1, Some(40)).0.len(), 5);
+        for (i, value) in values[300..400].iter_mut().enumerate() {
+            *value = if i % 4 == 0 { 1.0 - 0.008 * i as f64 } else { 0.0 };
+        }
+        assert_eq!(bursts(&values, 0.1, Some(40)).0.len(), 6);
     }
 }
 

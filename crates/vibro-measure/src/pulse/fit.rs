@@ -301,7 +301,10 @@ impl Samples<'_> {
         let (inside, before) = (of(&|t| t >= onset && t <= end), of(&|t| t < onset - AROUND));
         // The parameters absorb noise within the contact: they take its degrees of freedom.
         let free = inside.1 - fit.parameters.len() as f64;
-        let chance = SURE * fitted.whiteness.inflation * (2.0 / free.max(1.0) + 2.0 / before.1).sqrt();
+        // Coloured noise scatters more. Its colour shows before the contact; within, a misfit has its own.
+        let quiet = self.times.partition_point(|t| *t < onset - AROUND);
+        let colour = Whiteness::of(&[&fit.residuals[..quiet]]).inflation;
+        let chance = SURE * colour * (2.0 / free.max(1.0) + 2.0 / before.1).sqrt();
         let shown = before.0 / before.1;
         let noise = shown + self.noise().1.powi(2) + concealed(shown.sqrt(), before.1, self.quantum).powi(2);
         free >= 1.0 && before.1 >= 8.0 && inside.0 / free > (1.0 + chance) * noise

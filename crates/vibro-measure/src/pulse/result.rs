@@ -92,6 +92,9 @@ pub struct PulseResult {
     /// Curves for a figure.
     #[serde(skip)]
     pub picture: Option<PulsePicture>,
+    /// Time above half the height in s, whatever the model.
+    #[serde(skip)]
+    pub width: f64,
 }
 
 impl Uncertain for PulseFit {
@@ -307,6 +310,7 @@ pub(super) fn contact_estimates(
         unfitted: Vec::new(),
         findings: Vec::new(),
         picture: None,
+        width: f64::NAN,
     })
 }
 
