@@ -189,9 +189,17 @@ test("a value is typed with its unit, its meaning is shown, and a record is meas
   await height.press("Enter");
   await ran(page, before + 1);
   assert.match(await page.locator("#text").inputValue(), /height = 0\.485\n/);
+  // What is no height is refused at its field, and changes nothing.
+  await height.fill("57 kg");
+  await height.press("Enter");
+  await page.locator(".wrong", { hasText: "57 kg: this is in m" }).waitFor();
+  assert.equal(await height.getAttribute("aria-invalid"), "true");
+  await height.fill("0.485");
+  await height.press("Enter");
+  await ran(page, before + 2);
   const card = page.locator(".card", { hasText: "BOUNCE.CSV" });
   await card.locator("select").selectOption("impacts");
-  await ran(page, before + 2);
+  await ran(page, before + 3);
   assert.match(await page.locator("#text").inputValue(), /\[\[impacts\]\]\nname = "lively ball"\nfile = "BOUNCE\.CSV"\n# height = 0\.57/);
   await card.locator("summary", { hasText: "further keys" }).click();
   await card.locator("input[data-field$=' threshold']").fill("0.4");

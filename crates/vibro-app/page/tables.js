@@ -6,7 +6,7 @@ const STEPS = { µ: 1e-6, u: 1e-6, m: 1e-3, c: 1e-2, "": 1, k: 1e3, M: 1e6 };
 
 /** A number that a person types with its unit, in the unit of the key: 57 cm as 0.57 where that is m. */
 function inUnit(text, unit) {
-  const found = text.match(/^([-+]?[\d.,]+(?:[eE][-+]?\d+)?)\s*([^\d\s].*)$/);
+  const found = text.match(/^([-+]?[\d.,]+(?:[eE][-+]?\d+)?)\s*([^-+\d\s.,].*)$/);
   if (!found || !unit) return text;
   const [, number, behind] = found, value = Number(number.replace(",", "."));
   if (!Number.isFinite(value)) return text;
