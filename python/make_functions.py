@@ -56,6 +56,17 @@ SEVERAL = {"spectrum", "restitution", "response", "waterfall", "excitation"}
 OPTIONAL = {"pulse", "restitution"}
 FILES_ONLY = {"response": "sweep", "waterfall": "sweep", "excitation": "sweep", "compare": "campaign"}
 
+# What the answer of a function holds, and a call.
+ANSWERS = {
+    "spectrum": "``frequency``, ``value`` and ``level`` are lists; with ``tones`` each of ``tones`` has ``frequency``, ``amplitude`` and ``phase`` (of the sine at the first sample, rad). ``spectrum(\"a.csv\", segment=4096).frequency``.",
+    "impacts": "``n``, ``times`` (s) and ``heights`` of the impacts, ``interval`` (mean, s), ``frequency`` (Hz), with an excitation ``per_cycle``. ``impacts(\"a.csv\", excitation=11.2).interval.interval()``.",
+    "restitution": "``restitution``, the methods one by one in ``by``, and ``agree``: whether they agree; ``intervals`` and ``times`` (s) of each drop. ``restitution(\"a.csv\", height=0.57, height_std=0.001).restitution.std``.",
+    "pulse": "``xi`` (damping ratio of the contact), ``frequency`` (undamped, Hz), ``restitution``, ``duration`` (s), ``stiffness`` and ``damping`` with a mass, ``initial_velocity`` (m/s), every model in ``fits``. ``pulse(\"a.csv\", mass=0.125, low_pass=\"none\").duration``.",
+    "decay": "Each of ``modes`` has ``frequency`` (undamped, Hz), ``zeta``, ``amplitude`` and ``phase`` (of the cosine at ``start``, rad); ``decrement`` is ζ of the strongest mode from the fall of its amplitude; ``start`` and ``end`` (s) of the part that was used. ``decay(\"a.csv\").modes[0].zeta``.",
+    "modal": "Each of ``modes`` has ``frequency`` (undamped, Hz), ``zeta``, ``modal_constant``, ``phase`` (°), with a mass ``stiffness``. Of a time record: ``modal(\"a.csv\", reference=\"force\", channel=\"velocity\", segment=1024, mass=0.125).modes[0].frequency``; of hammer blows with ``hammer=True``.",
+    "drill": "``speed`` (Hz), ``before`` and ``after`` (mean velocities at first contact, m/s), ``phase`` (turns), ``energy``, ``energy_given`` (J), ``restitution``; each blow in ``impacts``, the mean turn in ``average``.",
+}
+
 HEAD = '"""{about}\n\nWritten by make_functions.py from the options of the commands.\n"""\n\n'
 
 
@@ -144,6 +155,9 @@ def function(question: dict[str, Any], name: str, place: str, command: list[str]
     if not method and FILES_ONLY.get(called) == "sweep":
         lines += ["``sweep`` is a list file, campaign.toml#name, a folder, or the files of its steps.", ""]
     lines += ["Numbers are in SI units. Raises ``Refused`` where the data allow no answer, and ``BadInput`` where a", "file or an argument is not what it should be.", ""]
+    if not method and called in ANSWERS:
+        held = f"The answer: {ANSWERS[called]} A number has ``.value``, ``.std``, ``.unit`` and ``.interval()``; ``tables`` are printed, ``tables[0].to_pandas()`` is a frame."
+        lines += [*textwrap.wrap(held, WIDTH - 6, break_long_words=False), ""]
     for heading, group in groups:
         if group:
             lines += [f"{heading}:", *(described(o, mark(o)) for o in group), ""]

@@ -3,6 +3,7 @@
 import _thread
 import math
 import multiprocessing
+import re
 import signal
 import threading
 import time
@@ -220,3 +221,30 @@ def test_a_forked_process_measures_too():
     with multiprocessing.get_context("fork").Pool(2) as pool:
         found = pool.map_async(mode_of, range(4)).get(timeout=30)
     assert found == pytest.approx([40.0, 41.0, 42.0, 43.0], abs=0.05)
+
+
+def names_in(answer):
+    """All names in an answer, at any depth."""
+    if isinstance(answer, dict):
+        return set(answer) | {name for value in answer.values() for name in names_in(value)}
+    if isinstance(answer, list):
+        return {name for value in answer for name in names_in(value)}
+    return set()
+
+
+def test_answers_hold_what_their_help_says(tmp_path):
+    for name in ("bench", "drop_test"):
+        vi.demo(name, tmp_path / name)
+    bench, drops = tmp_path / "bench", tmp_path / "drop_test"
+    answers = {
+        vi.spectrum: vi.spectrum(bench / "BENCH.CSV", channel="velocity", tones=1),
+        vi.impacts: vi.impacts(drops / "CONTACT.DAT", base_band=50, unit="V", excitation=11.2),
+        vi.restitution: vi.restitution(drops / "BOUNCE.CSV", height=0.57),
+        vi.pulse: vi.pulse(bench / "PULSE.CSV", mass=0.125, low_pass="none"),
+        vi.decay: vi.decay(bench / "DECAY.CSV"),
+        vi.modal: vi.modal(bench / "BENCH.CSV", reference="force", channel="velocity", segment=1024, mass=0.125),
+    }
+    for function, answer in answers.items():
+        told = re.search(r"The answer: (.*?) A number", " ".join(function.__doc__.split()))
+        names = set(re.findall(r"``([a-z_]+)``", told[1]))
+        assert len(names) > 3 and names <= names_in(answer), function.__name__

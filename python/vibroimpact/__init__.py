@@ -7,7 +7,10 @@
 
 Functions on records, files and arrays: ``spectrum``, ``frf``, ``impacts``, ``restitution``, ``pulse``, ``decay``,
 ``modal``, ``drill``; on sweeps: ``response``, ``waterfall``, ``excitation``; on a model: ``Rig``; on a folder:
-``Campaign``. ``help`` of each tells its arguments with units.
+``Campaign``. ``help`` of each tells its arguments with units, and what its answer holds.
+
+A number of an answer is an ``Estimate``: ``.value``, ``.std``, ``.unit``, ``.interval()`` (95 %). ``answer.tables``
+are what is printed, each with ``.to_pandas()``; ``answer.findings`` is what must be known before it is trusted.
 """
 
 from __future__ import annotations

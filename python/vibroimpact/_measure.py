@@ -55,6 +55,11 @@ def spectrum(
     Numbers are in SI units. Raises ``Refused`` where the data allow no answer, and ``BadInput`` where a
     file or an argument is not what it should be.
 
+    The answer: ``frequency``, ``value`` and ``level`` are lists; with ``tones`` each of ``tones`` has
+    ``frequency``, ``amplitude`` and ``phase`` (of the sine at the first sample, rad). ``spectrum("a.csv",
+    segment=4096).frequency``. A number has ``.value``, ``.std``, ``.unit`` and ``.interval()``; ``tables``
+    are printed, ``tables[0].to_pandas()`` is a frame.
+
     Arguments:
         method: One transform of the whole record, fft, or the average over segments, welch [default:
             welch; fft with tones].
@@ -138,6 +143,11 @@ def impacts(
     Numbers are in SI units. Raises ``Refused`` where the data allow no answer, and ``BadInput`` where a
     file or an argument is not what it should be.
 
+    The answer: ``n``, ``times`` (s) and ``heights`` of the impacts, ``interval`` (mean, s), ``frequency``
+    (Hz), with an excitation ``per_cycle``. ``impacts("a.csv", excitation=11.2).interval.interval()``. A
+    number has ``.value``, ``.std``, ``.unit`` and ``.interval()``; ``tables`` are printed,
+    ``tables[0].to_pandas()`` is a frame.
+
     Arguments:
         legacy: Repeat the thesis' script timeav with its mistakes.
         excitation: Frequency of the excitation in Hz.
@@ -216,6 +226,11 @@ def restitution(
     Numbers are in SI units. Raises ``Refused`` where the data allow no answer, and ``BadInput`` where a
     file or an argument is not what it should be.
 
+    The answer: ``restitution``, the methods one by one in ``by``, and ``agree``: whether they agree;
+    ``intervals`` and ``times`` (s) of each drop. ``restitution("a.csv", height=0.57,
+    height_std=0.001).restitution.std``. A number has ``.value``, ``.std``, ``.unit`` and ``.interval()``;
+    ``tables`` are printed, ``tables[0].to_pandas()`` is a frame.
+
     Arguments:
         height: Drop height in m; not needed for a train of bounces.
         height_std: Its standard uncertainty in m.
@@ -291,6 +306,11 @@ def pulse(
     Numbers are in SI units. Raises ``Refused`` where the data allow no answer, and ``BadInput`` where a
     file or an argument is not what it should be.
 
+    The answer: ``xi`` (damping ratio of the contact), ``frequency`` (undamped, Hz), ``restitution``,
+    ``duration`` (s), ``stiffness`` and ``damping`` with a mass, ``initial_velocity`` (m/s), every model in
+    ``fits``. ``pulse("a.csv", mass=0.125, low_pass="none").duration``. A number has ``.value``, ``.std``,
+    ``.unit`` and ``.interval()``; ``tables`` are printed, ``tables[0].to_pandas()`` is a frame.
+
     Arguments:
         time_to_peak: Time from the onset to the largest force in s, instead of a file.
         duration: Time from the onset to the end of the contact, in s.
@@ -348,6 +368,12 @@ def decay(
 
     Numbers are in SI units. Raises ``Refused`` where the data allow no answer, and ``BadInput`` where a
     file or an argument is not what it should be.
+
+    The answer: Each of ``modes`` has ``frequency`` (undamped, Hz), ``zeta``, ``amplitude`` and ``phase``
+    (of the cosine at ``start``, rad); ``decrement`` is ζ of the strongest mode from the fall of its
+    amplitude; ``start`` and ``end`` (s) of the part that was used. ``decay("a.csv").modes[0].zeta``. A
+    number has ``.value``, ``.std``, ``.unit`` and ``.interval()``; ``tables`` are printed,
+    ``tables[0].to_pandas()`` is a frame.
 
     Arguments:
         band: Band in Hz in which modes are looked for [default: all lines]. ``(lo, hi)``.
@@ -415,6 +441,12 @@ def modal(
 
     Numbers are in SI units. Raises ``Refused`` where the data allow no answer, and ``BadInput`` where a
     file or an argument is not what it should be.
+
+    The answer: Each of ``modes`` has ``frequency`` (undamped, Hz), ``zeta``, ``modal_constant``, ``phase``
+    (°), with a mass ``stiffness``. Of a time record: ``modal("a.csv", reference="force",
+    channel="velocity", segment=1024, mass=0.125).modes[0].frequency``; of hammer blows with
+    ``hammer=True``. A number has ``.value``, ``.std``, ``.unit`` and ``.interval()``; ``tables`` are
+    printed, ``tables[0].to_pandas()`` is a frame.
 
     Arguments:
         band: Band in Hz whose peaks are fitted together [default: a band around each peak]. ``(lo, hi)``.
@@ -506,6 +538,11 @@ def drill(
 
     Numbers are in SI units. Raises ``Refused`` where the data allow no answer, and ``BadInput`` where a
     file or an argument is not what it should be.
+
+    The answer: ``speed`` (Hz), ``before`` and ``after`` (mean velocities at first contact, m/s), ``phase``
+    (turns), ``energy``, ``energy_given`` (J), ``restitution``; each blow in ``impacts``, the mean turn in
+    ``average``. A number has ``.value``, ``.std``, ``.unit`` and ``.interval()``; ``tables`` are printed,
+    ``tables[0].to_pandas()`` is a frame.
 
     Arguments:
         velocity: Velocity channel, by name or by number from 1.
