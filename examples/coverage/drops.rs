@@ -116,8 +116,13 @@ fn draw(mix: &mut Mix, train_of: TrainOf, stated: bool) -> Record {
     let drop = Drop { height: stated_height, height_std: Some(height_std), ..Drop::default() };
     let drop = drop.beginning(&trains);
     let trains = trains.into_iter().filter(|t| t.intervals.len() > 1).collect();
-    let measured =
-        Measured { drop: Some(drop), trains, velocities: None, contact_time: stated.then_some(contact) };
+    let measured = Measured {
+        drop: Some(drop),
+        trains,
+        velocities: None,
+        contact_time: stated.then_some(contact),
+        ..Measured::default()
+    };
     answers(r, restitution(&measured).ok().as_ref())
 }
 
@@ -144,7 +149,8 @@ fn sound_in_room(mix: &mut Mix, room: Room) -> Record {
     let train = |values| Train::of(&trace("V", RATE, values), &options, drop.full_flight()).ok();
     let trains: Vec<Train> = records.filter_map(train).map(|(train, _)| train).collect();
     let drop = Some(drop.beginning(&trains)).filter(|_| !trains.is_empty());
-    let measured = Measured { drop, trains, velocities: None, contact_time: drops.contact };
+    let measured =
+        Measured { drop, trains, velocities: None, contact_time: drops.contact, ..Measured::default() };
     answers(drops.restitution, restitution(&measured).ok().as_ref())
 }
 

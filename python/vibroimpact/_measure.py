@@ -194,6 +194,7 @@ def restitution(
     interval_std: float | None = None,
     intervals: str | Sequence[str | float] | None = None,
     contact_time: float | None = None,
+    contact_time_std: float | None = None,
     gravity: float | None = None,
     gravity_std: float | None = None,
     threshold: float | None = None,
@@ -239,6 +240,7 @@ def restitution(
         intervals: Times between successive impacts of one train of bounces, in s. ``(a, b, c)``.
         contact_time: How long an impact lasts, in s: taken off each interval, which runs from beginning
             to beginning [default: as a force shows it, else 0].
+        contact_time_std: Standard uncertainty of the contact time in s.
         gravity: Acceleration of free fall in m/s² [default: 9.80665].
         gravity_std: Its standard uncertainty in m/s².
         threshold: Smallest impact counted, as a fraction of the median height [default: 0.02].
@@ -272,7 +274,7 @@ def restitution(
         stretch: Stretch between lost samples that is used, by its number from 1.
         resample: Rate in Hz at which samples of uneven times are interpolated.
     """
-    return ask(["restitution"], list(record), {"height": height, "height_std": height_std, "interval": interval, "interval_std": interval_std, "intervals": Joined(",", intervals), "contact_time": contact_time, "gravity": gravity, "gravity_std": gravity_std, "threshold": threshold, "refractory": refractory, "keep_hum": keep_hum, "masses": masses, "before": before, "after": Joined(",", after), "after2": after2, "velocity_std": velocity_std, "channel": channel, "calibration": calibration, "format": format, "allow_missing": allow_missing, "rate": rate, "base_band": base_band, "unit": unit, "decimal": decimal, "complex": complex, "wrapped": wrapped, "columns": columns, "span": Joined(":", span), "stretch": stretch, "resample": resample})
+    return ask(["restitution"], list(record), {"height": height, "height_std": height_std, "interval": interval, "interval_std": interval_std, "intervals": Joined(",", intervals), "contact_time": contact_time, "contact_time_std": contact_time_std, "gravity": gravity, "gravity_std": gravity_std, "threshold": threshold, "refractory": refractory, "keep_hum": keep_hum, "masses": masses, "before": before, "after": Joined(",", after), "after2": after2, "velocity_std": velocity_std, "channel": channel, "calibration": calibration, "format": format, "allow_missing": allow_missing, "rate": rate, "base_band": base_band, "unit": unit, "decimal": decimal, "complex": complex, "wrapped": wrapped, "columns": columns, "span": Joined(":", span), "stretch": stretch, "resample": resample})
 
 
 def pulse(

@@ -41,6 +41,8 @@ pub struct Keys {
     /// How long an impact lasts, in s: taken off each interval, which runs from beginning to beginning
     /// [default: as a force shows it, else 0]
     pub contact_time: Option<f64>,
+    /// Standard uncertainty of the contact time in s
+    pub contact_time_std: Option<f64>,
     /// Acceleration of free fall in m/s² [default: 9.80665]
     pub gravity: Option<f64>,
     /// Its standard uncertainty in m/s²
@@ -140,6 +142,7 @@ impl Keys {
             ("height_std", self.height_std == other.height_std),
             ("interval_std", self.interval_std == other.interval_std),
             ("contact_time", self.contact_time == other.contact_time),
+            ("contact_time_std", self.contact_time_std == other.contact_time_std),
             ("gravity", self.gravity == other.gravity),
             ("gravity_std", self.gravity_std == other.gravity_std),
             ("threshold", self.threshold == other.threshold),
@@ -158,6 +161,7 @@ pub struct Series {
     trains: Vec<Train>,
     velocities: Option<Velocities>,
     contact_time: Option<f64>,
+    contact_time_std: Option<f64>,
     /// File and trace of each drop with a record.
     records: Vec<(String, Plot)>,
     /// Times in s of the impacts of each of these drops.
@@ -184,6 +188,7 @@ impl Series {
             drop,
             velocities: None,
             contact_time: keys.contact_time,
+            contact_time_std: keys.contact_time_std,
             trains: Vec::new(),
             records: Vec::new(),
             times: Vec::new(),
@@ -267,8 +272,13 @@ impl Series {
         let drop = self.drop.beginning(&self.trains);
         let has_fall = drop.height.is_finite() && !drop.intervals.is_empty();
         let drop = has_fall.then_some(drop);
-        let (trains, velocities, contact_time) = (self.trains, self.velocities, self.contact_time);
-        let mut found = restitution(&Measured { drop, trains, velocities, contact_time })?;
+        let mut found = restitution(&Measured {
+            drop,
+            trains: self.trains,
+            velocities: self.velocities,
+            contact_time: self.contact_time,
+            contact_time_std: self.contact_time_std,
+        })?;
         let doubts = self.doubts.into_iter().map(|(file, doubt)| (file, doubt.of(&mut found)));
         self.findings.extend(doubts);
         doubt_with_record(self.findings.iter().map(|(_, found)| found), &mut found);
@@ -335,7 +345,7 @@ impl Analysis for Keys {
     const FILES: Names = Names::Numbered(&["drop", "restitution"]);
     const RANGES: &'static [KeyRange] = &[
         KeyRange::above_zero("s", &["interval", "intervals"]).times(),
-        KeyRange::from_zero("s", &["interval_std", "contact_time"]).times(),
+        KeyRange::from_zero("s", &["interval_std", "contact_time", "contact_time_std"]).times(),
         KeyRange::above_zero("kg", &["masses"]),
         KeyRange::above_zero("", &["height", "gravity"]),
         KeyRange::from_zero("", &["height_std", "gravity_std", "velocity_std"]),

@@ -70,6 +70,8 @@ pub struct Measured {
     /// `None`, it is read from the records where all trains show it. Otherwise nothing is subtracted, and
     /// the uncertainties allow for up to 1 ms, longer than steel and most plastics touch.
     pub contact_time: Option<f64>,
+    /// Standard uncertainty of a stated contact time in s; `None`: it is exact.
+    pub contact_time_std: Option<f64>,
 }
 
 /// Restitution by every method that `measured` allows.
@@ -87,6 +89,12 @@ pub struct Measured {
 /// allows, masses that do not approach.
 pub fn restitution(measured: &Measured) -> Result<Restitution> {
     not_negative("a contact time", measured.contact_time)?;
+    not_negative("an uncertainty of the contact time", measured.contact_time_std)?;
+    if measured.contact_time_std.is_some() && measured.contact_time.is_none() {
+        return Err(
+            Error::usage("an uncertainty of no contact time", "both or neither").setting("contact_time")
+        );
+    }
     let (mut by, mut findings) = (Vec::new(), Vec::new());
     let mut intervals: Vec<Vec<f64>> = measured.trains.iter().map(|t| t.intervals.clone()).collect();
     let (contact, contact_std) = contact(measured);
@@ -95,13 +103,12 @@ pub fn restitution(measured: &Measured) -> Result<Restitution> {
     let mut bootstrap_std = measured.drop.as_ref().and_then(Drop::bootstrap);
     // Relative change of R by 1 ms of contact time, one value a method.
     let mut bias = Vec::new();
-    let trains: Vec<Train> =
-        measured.trains.iter().map(|t| Train { intervals: flights(&t.intervals), ..t.clone() }).collect();
+    let trains: Vec<Train> = measured.trains.iter().map(|t| t.shorter_by(contact)).collect();
     let drop =
         measured.drop.as_ref().map(|drop| Drop { intervals: flights(&drop.intervals), ..drop.clone() });
     let mut of_trains = Vec::new();
-    let by_flights =
-        flights::answer(&trains, drop.as_ref().is_some_and(|d| d.begins(&trains)), &mut of_trains);
+    let begins = drop.as_ref().is_some_and(|d| d.begins(&trains));
+    let by_flights = flights::answer(&trains, begins, &mut of_trains);
     if let Some(drop) = &drop {
         let noise = by_flights.as_ref().ok().and_then(|(_, noise)| *noise);
         by.push(drop.answer(noise, &mut findings)?);
@@ -113,14 +120,15 @@ pub fn restitution(measured: &Measured) -> Result<Restitution> {
     findings.extend(of_trains);
     match by_flights {
         Ok((way, _)) => {
-            // ln R is (ln Δt_n − ln Δt₁)/(n − 1), and a contact c adds c/Δt to each logarithm.
-            let of = |t: &Train| match t.intervals[..] {
-                [first, .., last] => Some(1e-3 * (1.0 / last - 1.0 / first) / (t.intervals.len() - 1) as f64),
-                _ => None,
+            // What the fit itself makes of a contact that is a little longer.
+            let longer: Vec<Train> = trains.iter().map(|t| t.shorter_by(STEP)).collect();
+            let moved = flights::answer(&longer, begins, &mut Vec::new()).ok().and_then(|(way, _)| way);
+            let part = |way: &MethodAnswer, moved: &MethodAnswer| {
+                1e-3 / STEP * (1.0 - moved.restitution.value / way.restitution.value)
             };
             // Without an answer by flight times no bias is added, so that `bias` and `by` have the same
             // length.
-            bias.extend(way.iter().map(|_| average(&trains.iter().filter_map(of).collect::<Vec<f64>>())));
+            bias.extend(way.iter().map(|way| moved.as_ref().map_or(0.0, |moved| part(way, moved))));
             by.extend(way);
         }
         // The impacts after a drop may be no train of bounces; the drop still answers.
@@ -132,7 +140,13 @@ pub fn restitution(measured: &Measured) -> Result<Restitution> {
         Err(error) => return Err(error),
     }
     if contact_std > 0.0 {
-        widen_by_contact(&mut by, &bias, (contact, contact_std), &mut findings);
+        let moved = moved_by_contact(&by, &bias, contact_std);
+        if measured.contact_time.is_none() {
+            findings.extend(contact_not_stated(&by, &bias, (contact, contact_std), &moved));
+        }
+        for (way, moved) in by.iter_mut().zip(moved) {
+            way.restitution.std = way.restitution.std.map(|std| std.hypot(moved));
+        }
     }
     if let Some(velocities) = &measured.velocities {
         by.extend(velocities.answers()?);
@@ -155,29 +169,29 @@ pub fn restitution(measured: &Measured) -> Result<Restitution> {
     Ok(found)
 }
 
-/// Adds the uncertainty of the contact time in s to that of each method. `bias` is the relative change of R
-/// by 1 ms of contact.
-fn widen_by_contact(
-    by: &mut [MethodAnswer],
+/// What one standard uncertainty of the contact time in s moves each method by. `bias` is the relative change
+/// of R by 1 ms of contact.
+fn moved_by_contact(by: &[MethodAnswer], bias: &[f64], contact_std: f64) -> Vec<f64> {
+    by.iter().zip(bias).map(|(way, part)| 1e3 * contact_std * part * way.restitution.value).collect()
+}
+
+/// What is to be said of a contact time that is not stated: where the records show it, or where it matters.
+fn contact_not_stated(
+    by: &[MethodAnswer],
     bias: &[f64],
     (contact, contact_std): (f64, f64),
-    findings: &mut Vec<Finding>,
-) {
-    let by_contact = |(way, part): (&MethodAnswer, &f64)| 1e3 * contact_std * part * way.restitution.value;
-    let matters =
-        |at: (&MethodAnswer, &f64)| at.0.restitution.std.is_some_and(|s| LONG_CONTACT * by_contact(at) > s);
-    let moved: Vec<f64> = by.iter().zip(bias).map(by_contact).collect();
+    moved: &[f64],
+) -> Option<Finding> {
     if contact > 0.0 {
         let seen = Finding::note("contact-time-seen").number("duration", contact);
-        findings.push(seen.number("std", contact_std));
-    } else if by.iter().zip(bias).any(matters) {
-        let methods: Vec<&str> = by.iter().map(|way| way.method).collect();
-        let found = Finding::caution("contact-time-unsaid").numbers("parts", bias.to_vec());
-        findings.push(found.name("methods", methods.join(", ")));
+        return Some(seen.number("std", contact_std));
     }
-    for (way, moved) in by.iter_mut().zip(moved) {
-        way.restitution.std = way.restitution.std.map(|std| std.hypot(moved));
-    }
+    let matters = |(way, moved): (&MethodAnswer, &f64)| {
+        way.restitution.std.is_some_and(|std| LONG_CONTACT * moved > std)
+    };
+    let methods: Vec<&str> = by.iter().map(|way| way.method).collect();
+    let found = Finding::caution("contact-time-unsaid").numbers("parts", bias.to_vec());
+    by.iter().zip(moved).any(matters).then(|| found.name("methods", methods.join(", ")))
 }
 
 /// Error for measurements from which no restitution follows.
@@ -191,6 +205,9 @@ fn without_answer(measured: &Measured) -> Error {
     let hint = "state two flight times or more, a height and an interval, or velocities before and after";
     settings.into_iter().fold(none.hint(hint), Error::setting)
 }
+
+/// Step of a contact time in s, far below every flight and far above its rounding.
+const STEP: f64 = 1e-7;
 
 /// Longest contact in s that the uncertainties allow for if no contact time is stated or measured: longer
 /// than steel and most plastics touch.
@@ -207,7 +224,7 @@ fn grown(trains: &[Train]) -> Option<Doubt> {
 /// uncertainty, a finding asks for the contact time.
 const LONG_CONTACT: f64 = 5.0;
 
-/// Contact time of an impact and its standard uncertainty in s: as stated, else the mean over the records
+/// Contact time of an impact and its standard uncertainty in s: both as stated, else the mean over the records
 /// where all show it. Else 0, with the uncertainty of a time anywhere from 0 to [`LONGEST`] with equal
 /// chance.
 fn contact(measured: &Measured) -> (f64, f64) {
@@ -216,7 +233,7 @@ fn contact(measured: &Measured) -> (f64, f64) {
         average(&seen.iter().map(|contact| of(contact)).collect::<Vec<f64>>())
     };
     match (measured.contact_time, seen.filter(|seen| !seen.is_empty())) {
-        (Some(stated), _) => (stated, 0.0),
+        (Some(stated), _) => (stated, measured.contact_time_std.unwrap_or(0.0)),
         (None, Some(seen)) => (mean(&seen, &|c| c.value), mean(&seen, &|c| c.std.unwrap_or(c.value))),
         (None, None) => (0.0, LONGEST / 3f64.sqrt()),
     }

@@ -19,7 +19,8 @@ fn answer(drops: &Drops) -> Option<Restitution> {
     };
     let trains: Vec<Train> = drops.records.iter().filter_map(train).collect();
     let drop = Some(drop.beginning(&trains)).filter(|_| !trains.is_empty());
-    let measured = Measured { drop, trains, velocities: None, contact_time: drops.contact };
+    let measured =
+        Measured { drop, trains, velocities: None, contact_time: drops.contact, ..Measured::default() };
     let sure = |found: &Restitution| found.findings.iter().all(|f| !f.is_doubt());
     restitution(&measured).ok().filter(sure)
 }

@@ -40,6 +40,31 @@ fn the_thesis_drop_and_its_uncertainty() {
     assert!((found.restitution.std.unwrap() / expected - 1.0).abs() < 1e-5, "{found:?}");
 }
 
+/// A contact time that is off by its uncertainty moves R by as much as that adds to the uncertainty of R.
+#[test]
+fn the_uncertainty_of_the_contact_time_is_in_that_of_r() {
+    let (r, fall) = (0.8f64, (2.0 * 0.3 / GRAVITY).sqrt());
+    let intervals: Vec<f64> = (1..9).map(|k| 2.0 * fall * r.powi(k) + 1e-3).collect();
+    let fell = Drop { height_std: Some(1e-3), interval_std: Some(1e-4), ..drop(0.3, intervals[0]) };
+    let train = Train { intervals, onset_std: Some(1e-4), ..Train::default() };
+    let with = |contact: f64, std: Option<f64>| {
+        let trains = vec![train.clone()];
+        let (contact_time, contact_time_std) = (Some(contact), std);
+        of(&Measured { drop: Some(fell.clone()), trains, contact_time, contact_time_std, velocities: None })
+    };
+    let (exact, uncertain, off) = (with(1e-3, None), with(1e-3, Some(1e-4)), with(1.1e-3, None));
+    assert!(uncertain.by.len() == 2 && uncertain.findings == exact.findings, "{uncertain:?}");
+    for ((exact, uncertain), off) in exact.by.iter().zip(&uncertain.by).zip(&off.by) {
+        let std = |way: &MethodAnswer| way.restitution.std.unwrap();
+        let added = (std(uncertain).powi(2) - std(exact).powi(2)).sqrt();
+        let moved = (off.restitution.value - exact.restitution.value).abs();
+        // Differences of the next order are as large as 0.1 ms over the shortest flight of 83 ms.
+        assert!((added / moved - 1.0).abs() < 2e-3, "{added} {moved}");
+    }
+    let alone = Measured { trains: vec![train.clone()], contact_time_std: Some(1e-4), ..Measured::default() };
+    assert!(restitution(&alone).is_err());
+}
+
 /// An interval between the onsets of impacts includes the contact time: 1 ms of 144 ms is 0.7 % of R.
 #[test]
 fn the_contact_time_is_taken_off() {

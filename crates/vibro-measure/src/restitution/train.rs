@@ -23,6 +23,11 @@ pub struct Train {
 }
 
 impl Train {
+    /// The train with intervals that are shorter by a time in s.
+    pub(super) fn shorter_by(&self, time: f64) -> Train {
+        Train { intervals: self.intervals.iter().map(|interval| interval - time).collect(), ..self.clone() }
+    }
+
     /// Least height of a bounce that counts, over the median height of the sounds.
     pub const THRESHOLD: f64 = 0.02;
 
