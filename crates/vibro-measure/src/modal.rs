@@ -99,6 +99,7 @@ fn damped(measured: &Measured, options: &ModalOptions) -> Result<ModalResult> {
         let others = poles_beside(&lines, &fits, at);
         let (group, fit) = &mut fits[at];
         let sound = complete(&lines, group, fit, &others);
+        fit.cover_hidden(&lines, group.lines.clone(), &others);
         for (m, sound) in sound.into_iter().enumerate() {
             let candidate = Candidate { measured: &lines, options, group, fit, m, unsaid };
             modes.extend(candidate.mode(sound, &mut findings));

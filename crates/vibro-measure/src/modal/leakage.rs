@@ -153,6 +153,29 @@ mod tests {
         }
     }
 
+    /// Samples Δt apart of a mode after two impulses √v before and after its time 0, summed one by one from the
+    /// end of a record on: 1/s lacks these.
+    #[test]
+    fn the_end_of_a_record_is_a_sum_over_samples_of_what_an_extended_force_leaves() {
+        let (pole, sample, n, half) = (Complex64::new(-0.02, 1.0), 0.2, 50, 0.1f64);
+        let blows =
+            BlowRecords { after: f64::from(n) * sample, variance: half * half, sample, ..Default::default() };
+        for omega in [0.9, 0.98, 1.0, 1.1] {
+            let at = Complex64::new(0.0, omega);
+            let force = |s: Complex64| 0.5 * ((s * half).exp() + (-s * half).exp());
+            // After 1500 time units the mode has decayed to exp(−30).
+            let behind = (n..7500).map(|k| sample * ((pole - at) * (sample * f64::from(k))).exp());
+            let left = behind.sum::<Complex64>() * force(pole) / force(at);
+            let expected = 1.0 / (at - pole) - left;
+            let found = Leakage::of_blows(&blows, 1.0).inverse(at, pole);
+            // The fourth cumulant of the force changes the part left by 2(0.1)⁴/12 = 2e-5, the next term of the
+            // sum over samples by (0.02)⁴/720; the part left is below 1/0.02.
+            assert!((found - expected).norm() < 3e-5 * left.norm(), "{omega}: {found} {expected}");
+            let plain = Leakage::of_blows(&BlowRecords { variance: 0.0, sample: 0.0, ..blows }, 1.0);
+            assert!((plain.inverse(at, pole) - expected).norm() > 1e-3 * left.norm(), "neither matters");
+        }
+    }
+
     /// Long segments leave a mode as it is: r falls from 1 by κτ² with κ = 2π²/3T² for a Hann window.
     #[test]
     fn long_segments_leave_a_mode_alone() {

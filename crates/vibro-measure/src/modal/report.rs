@@ -1,7 +1,7 @@
 //! Results of fitted modes with their uncertainties, beside those of the classical methods.
 
 use super::classical::{CIRCLE, circle, half_power};
-use super::rational::Rational;
+use super::rational::{MATTERS, Rational};
 use super::selection::PeakGroup;
 use super::{ByMethod, Measured, ModalOptions, Mode, Pole};
 use crate::Estimate;
@@ -81,12 +81,14 @@ impl Candidate<'_> {
         let phase = own.constant.arg().to_degrees();
         let no_sign = !measured.magnitude_only && (IN_STEP..180.0 - IN_STEP).contains(&phase.abs());
         find(no_sign, Finding::caution("modal-constant-no-sign").number("phase", phase));
+        // An error φ of the phase takes |A|φ²/2 from the part along a real modal constant: the mean square is
+        // ¾|A|²u⁴ (second order, JCGM 100:2008, 5.1.2). An unknown phase leaves the sign open, too.
+        std[2] = std[2].hypot(0.75f64.sqrt() * pole.constant.norm() * std[3].powi(2));
         // Removing the window's decay keeps the uncertainty of ζωᵣ, and changes that of the constant by the
         // same factor as the constant.
         std[1] *= pole.frequency / own.frequency;
         std[2] *= own.constant.norm() / pole.constant.norm();
-        // A further mode matters within two bandwidths on either side.
-        let around = |other: f64| (other - pole.frequency).abs() < 4.0 * pole.zeta * pole.frequency;
+        let around = |other: f64| (other - pole.frequency).abs() < MATTERS * pole.zeta * pole.frequency;
         let ahead = group.ahead.filter(|(_, other)| around(*other)).map(|(ahead, _)| ahead);
         let two = ahead.map(|ahead| Finding::doubt("modal-two-modes").number("ahead", ahead));
         let more = group.pattern.map(|ahead| Finding::doubt("modal-more-modes").number("ahead", ahead));
@@ -122,7 +124,8 @@ impl Candidate<'_> {
             1 => String::new(),
             many => format!(", {many} modes together"),
         };
-        let method = format!("rational fit{together}, {}", fit.noise);
+        let hidden = if fit.covers_hidden { ", one hidden mode allowed for" } else { "" };
+        let method = format!("rational fit{together}, {}{hidden}", fit.noise);
         let phases = !measured.magnitude_only;
         let estimate = |value, std, unit| Estimate::new(value, Some(std), unit, n, method.clone());
         let frequency = estimate(own.frequency, std[0], "Hz").with_relative(options.clock);
