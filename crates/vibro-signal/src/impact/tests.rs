@@ -527,7 +527,9 @@ fn a_blow_below_its_level_is_not_double() {
 fn the_force_counts_for_ten_contact_times_where_no_window_is_stated() {
     let with = |contacts: &[(usize, usize)]| {
         let mut force = vec![0.5; 4096];
-        contacts.iter().for_each(|(at, long)| force[*at..at + long].fill(20.0));
+        for (at, long) in contacts {
+            force[*at..at + long].fill(20.0);
+        }
         force_window(&trace("N", force)).unwrap() * RATE
     };
     assert_eq!([with(&[(500, 3), (2000, 30)]), with(&[(500, 3), (2000, 6)])], [300.0, 64.0]);

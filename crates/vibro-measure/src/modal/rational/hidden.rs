@@ -5,10 +5,11 @@
 //! are equally likely before the lines are seen: no further mode, or one of [`Hidden`].
 //!
 //! A further mode of height a adds Ca to the lines, whitened as the residuals r with the Jacobian J. Near the
-//! minimum the other parameters follow it by δ = (JᵀJ)⁻¹JᵀC a, which leaves D = CᵀC − CᵀJ(JᵀJ)⁻¹JᵀC of CᵀC.
-//! With a normal prior of variance τ² for each of the two components of a, G = D/s² + 1/τ² and b = Cᵀr/s², a
-//! has the mean G⁻¹b and the covariance G⁻¹. The evidence over that of no further mode is exp(½bᵀG⁻¹b)/√|τ²G|
-//! (D. MacKay, Information Theory, Inference, and Learning Algorithms, 2003, chapter 28).
+//! minimum the other parameters follow it by `(JᵀJ)⁻¹JᵀC` a, which leaves `D = CᵀC − CᵀJ(JᵀJ)⁻¹JᵀC` of its
+//! power. With a normal prior of variance τ² for each of the two components of a, G = D/s² + 1/τ² and b =
+//! Cᵀr/s², a has the mean G⁻¹b and the covariance G⁻¹. The evidence over that of no further mode is
+//! exp(½bᵀG⁻¹b)/√|τ²G| (Laplace's method: `MacKay`, Information Theory, Inference, and Learning Algorithms,
+//! 2003, chapter 28).
 
 use super::{Rational, Scaled};
 use crate::mean::mixture;
