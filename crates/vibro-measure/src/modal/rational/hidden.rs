@@ -1,8 +1,8 @@
 //! A further mode that the noise may hide beside the modes of a fit.
 //!
 //! Lines that do not show a mode do not exclude it: where modes overlap, a weak one between them changes the
-//! parameters of the others and leaves almost no residual. So the uncertainty is a mean over both cases, which
-//! are equally likely before the lines are seen: no further mode, or one of [`Hidden`].
+//! parameters of the others and leaves almost no residual. So the uncertainty is a mean over both cases,
+//! equally likely before the lines are seen: no further mode, or one of [`Hidden`].
 //!
 //! A further mode of height a adds Ca to the lines, whitened as the residuals r with the Jacobian J. Near the
 //! minimum the other parameters follow it by `(JᵀJ)⁻¹JᵀC` a, which leaves `D = CᵀC − CᵀJ(JᵀJ)⁻¹JᵀC` of its
@@ -30,8 +30,8 @@ const DISTANCES: [f64; 7] = [0.2, 0.2 * SQRT_2, 0.4, 0.4 * SQRT_2, 0.8, 0.8 * SQ
 /// Damping ratios over that of the nearest mode: modes of one structure are damped alike.
 const DAMPINGS: [f64; 3] = [FRAC_1_SQRT_2, 1.0, SQRT_2];
 
-/// Heights over that of the highest mode, root mean square: any order of magnitude is as likely. What is lower
-/// is left to the residual terms.
+/// Heights over that of the highest mode, root mean square: any order of magnitude is as likely. What is
+/// lower is left to the residual terms.
 const HEIGHTS: [f64; 3] = [0.1, 0.3, 1.0];
 
 /// One further mode: what it does to quantities of the fit.
