@@ -168,8 +168,8 @@ mod tests {
             let left = behind.sum::<Complex64>() * force(pole) / force(at);
             let expected = 1.0 / (at - pole) - left;
             let found = Leakage::of_blows(&blows, 1.0).inverse(at, pole);
-            // The fourth cumulant of the force changes the part left by 2(0.1)⁴/12 = 2e-5, the next term of the
-            // sum over samples by (0.02)⁴/720; the part left is below 1/0.02.
+            // The fourth cumulant of the force changes the part left by 2(0.1)⁴/12 = 2e-5, the next term of
+            // the sum over samples by (0.02)⁴/720.
             assert!((found - expected).norm() < 3e-5 * left.norm(), "{omega}: {found} {expected}");
             let plain = Leakage::of_blows(&BlowRecords { variance: 0.0, sample: 0.0, ..blows }, 1.0);
             assert!((plain.inverse(at, pole) - expected).norm() > 1e-3 * left.norm(), "neither matters");

@@ -70,8 +70,8 @@ mod tests {
             10.0,
         );
         let truth = duration * duration * (0.25 - 2.0 / (PI * PI));
-        // The fourth cumulant, −0.81 v², changes ln |F|² by 0.81 vω²/12 of vω² itself: by 1.5 % where the power
-        // has fallen to 0.8.
+        // The fourth cumulant, −0.81 v², changes ln |F|² by 0.81 vω²/12 of vω² itself: by 1.5 % where the
+        // power has fallen to 0.8.
         assert!((found / truth - 1.0).abs() < 0.02, "{found} {truth}");
     }
 }
