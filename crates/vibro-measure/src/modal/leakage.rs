@@ -153,8 +153,8 @@ mod tests {
         }
     }
 
-    /// Samples Δt apart of a mode after two impulses √v before and after its time 0, summed one by one from the
-    /// end of a record on: 1/s lacks these.
+    /// Samples Δt apart of a mode after two impulses √v before and after its time 0, summed one by one from
+    /// the end of a record on: 1/s lacks these.
     #[test]
     fn the_end_of_a_record_is_a_sum_over_samples_of_what_an_extended_force_leaves() {
         let (pole, sample, n, half) = (Complex64::new(-0.02, 1.0), 0.2, 50, 0.1f64);

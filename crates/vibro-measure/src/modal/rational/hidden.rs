@@ -76,8 +76,8 @@ impl Hidden {
 
 impl Rational {
     /// Widens the uncertainties to cover a further mode that the noise may hide, where modes lie within two
-    /// bandwidths of each other; `others` are subtracted from the lines `part` first. A mode on its own shows no
-    /// sign that modes are close.
+    /// bandwidths of each other; `others` are subtracted from the lines `part` first. A mode on its own shows
+    /// no sign that modes are close.
     pub fn cover_hidden(&mut self, measured: &Measured, part: Range<usize>, others: &[Pole]) {
         let half = |mode: &Pole| mode.zeta * mode.frequency;
         let near = |w: &[Pole]| w[1].frequency - w[0].frequency < MATTERS * half(&w[0]).max(half(&w[1]));
