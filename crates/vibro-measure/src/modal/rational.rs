@@ -1,5 +1,6 @@
 //! Modes and residual terms fitted to a part of a frequency response function in the complex plane.
 
+mod blow_before;
 mod hidden;
 mod rivals;
 

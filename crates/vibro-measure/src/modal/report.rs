@@ -67,16 +67,12 @@ impl Candidate<'_> {
         }
         find(measured.window.is_some() && leaks, of(Finding::note("modal-leakage-fitted")));
         if let Some(blows) = measured.blows {
-            // The response left by the blow before, e^(sT) of its own, has the same pole, and any phase: it
-            // changes A by a factor, half of whose mean square is along A. Its mean over blows of independent
-            // phases is smaller by √n; a coherence needs two. No exponential window adds to its decay.
             let left = (-TAU * own.frequency * own.zeta * blows.apart.unwrap_or(blows.after)).exp();
             let cut_off = Finding::caution(code::MODAL_BLOW_CUT_OFF).number("part", left);
             find(left * pole.constant.norm() > std[2], cut_off);
-            let left = left / (2.0 * blows.count.unwrap_or(2.0)).sqrt();
             // Noise within a short force window is alike on neighbouring lines: it scales the whole mode.
-            let left = left.hypot(blows.scatter);
-            (std[2], std[3]) = (std[2].hypot(left * pole.constant.norm()), std[3].hypot(left));
+            (std[2], std[3]) =
+                (std[2].hypot(blows.scatter * pole.constant.norm()), std[3].hypot(blows.scatter));
         }
         let phase = own.constant.arg().to_degrees();
         let no_sign = !measured.magnitude_only && (IN_STEP..180.0 - IN_STEP).contains(&phase.abs());

@@ -11,7 +11,7 @@
 //! exp(½bᵀG⁻¹b)/√|τ²G| (Laplace's method: `MacKay`, Information Theory, Inference, and Learning Algorithms,
 //! 2003, chapter 28).
 
-use super::{Rational, Scaled};
+use super::{LineNoise, Rational, Scaled};
 use crate::mean::mixture;
 use crate::modal::{Measured, Pole};
 use nalgebra::{DMatrix, DVector, Matrix2};
@@ -85,13 +85,9 @@ impl Rational {
         if measured.magnitude_only || !close {
             return;
         }
-        let starts: Vec<(f64, f64)> = self.modes.iter().map(|mode| (mode.frequency, mode.zeta)).collect();
+        let starts = self.starts();
         let scaled = Scaled::of(measured, part, &starts, others);
-        let mut p = vec![0.0; 4 * starts.len() + 4];
-        (0..starts.len()).for_each(|m| p[4 * m + 1] = 1.0);
-        let fitted =
-            scaled.linear(&mut p, &self.weights.each).and_then(|_| scaled.fit(&p, &self.weights).ok());
-        let Some(fit) = fitted else { return };
+        let Some(fit) = scaled.again(&self.weights) else { return };
         let hidden = self.hidden(&scaled, &fit);
         let each = (1.0 / hidden.len() as f64).ln();
         for (q, std) in self.std.iter_mut().flatten().enumerate() {
@@ -102,6 +98,11 @@ impl Rational {
             *std = variance.sqrt().hypot(mean);
         }
         self.covers_hidden = true;
+    }
+
+    /// Frequency in Hz and damping ratio of each mode.
+    pub(super) fn starts(&self) -> Vec<(f64, f64)> {
+        self.modes.iter().map(|mode| (mode.frequency, mode.zeta)).collect()
     }
 
     /// The further modes that the fit may lack, each as likely.
@@ -128,10 +129,7 @@ impl Rational {
                     let lines: Vec<Complex64> =
                         (0..n).map(|i| scaled.shaped(i, (at, zeta)) / peak((at, zeta))).collect();
                     let component = |turn: Complex64| {
-                        let of = |part: fn(Complex64) -> f64| lines.iter().map(move |v| part(v * turn));
-                        let mut column: Vec<f64> = of(|v| v.re).chain(of(|v| v.im)).collect();
-                        self.weights.whiten(&mut column);
-                        column
+                        self.weights.column(&lines.iter().map(|v| v * turn).collect::<Vec<_>>())
                     };
                     let columns = [component(Complex64::ONE), component(Complex64::i())].concat();
                     let columns = DMatrix::from_vec(2 * n, 2, columns);
@@ -142,6 +140,25 @@ impl Rational {
             }
         }
         all
+    }
+}
+
+impl Scaled<'_> {
+    /// The fit from its own minimum as first guess.
+    pub(super) fn again(&self, noise: &LineNoise) -> Option<Fit> {
+        let mut p = vec![0.0; 4 * self.starts.len() + 4];
+        (0..self.starts.len()).for_each(|m| p[4 * m + 1] = 1.0);
+        self.linear(&mut p, &noise.each)?;
+        self.fit(&p, noise).ok()
+    }
+}
+
+impl LineNoise {
+    /// Whitened real and imaginary parts of lines.
+    pub(super) fn column(&self, lines: &[Complex64]) -> Vec<f64> {
+        let mut column: Vec<f64> = lines.iter().map(|v| v.re).chain(lines.iter().map(|v| v.im)).collect();
+        self.whiten(&mut column);
+        column
     }
 }
 
