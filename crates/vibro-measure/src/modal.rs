@@ -99,6 +99,8 @@ fn damped(measured: &Measured, options: &ModalOptions) -> Result<ModalResult> {
         let others = poles_beside(&lines, &fits, at);
         let (group, fit) = &mut fits[at];
         let sound = complete(&lines, group, fit, &others);
+        fit.cover_hidden(&lines, group.lines.clone(), &others);
+        fit.cover_blow_before(&lines, group.lines.clone(), &others, options.decay.unwrap_or(0.0));
         for (m, sound) in sound.into_iter().enumerate() {
             let candidate = Candidate { measured: &lines, options, group, fit, m, unsaid };
             modes.extend(candidate.mode(sound, &mut findings));

@@ -8,6 +8,8 @@ use vibro_record::Frf;
 pub struct BlowRecords {
     /// Time in s from the centre of the force to the end of the record.
     pub after: f64,
+    /// Time in s from the first sample of the record to the centre of the force; 0 where it is not known.
+    pub before: f64,
     /// Variance in s² of the force over time.
     pub variance: f64,
     /// Time in s between samples; 0 where it is not known.
@@ -27,8 +29,11 @@ impl BlowRecords {
         let lines = frf.axis.values();
         let spacing = lines.windows(2).map(|pair| pair[1] - pair[0]).reduce(f64::min);
         let record = spacing.filter(|_| frf.meta.from_blows()).map(|step| (1.0 - 1.0 / BEFORE as f64) / step);
+        let after = of("after").or(record)?;
+        let whole = of("length").zip(of("sample")).map(|(length, sample)| length * sample);
         Some(BlowRecords {
-            after: of("after").or(record)?,
+            after,
+            before: whole.map_or(0.0, |whole| (whole - after).max(0.0)),
             variance: of("variance").unwrap_or(0.0),
             sample: of("sample").unwrap_or(0.0),
             scatter: of("scatter").unwrap_or(0.0),

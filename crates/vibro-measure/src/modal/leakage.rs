@@ -65,6 +65,7 @@ impl Leakage {
     pub fn of_blows(blows: &BlowRecords, unit: f64) -> Leakage {
         Leakage::Blows(BlowRecords {
             after: unit * blows.after,
+            before: unit * blows.before,
             variance: unit * unit * blows.variance,
             sample: unit * blows.sample,
             ..*blows
@@ -96,6 +97,21 @@ impl Leakage {
             square * l + b * e
         });
         length * sum.sum::<Complex64>()
+    }
+
+    /// As [`Leakage::mode`], of what the blow before left, whose size and phase is that of the mode times
+    /// `phase`: it begins with the record, and ends as the mode does. 0 for segments.
+    pub fn blow_before(&self, x: f64, (own, zeta): (f64, f64), power: i32, phase: Complex64) -> Complex64 {
+        let Leakage::Blows(BlowRecords { after, before, variance, .. }) = self else {
+            return Complex64::ZERO;
+        };
+        let pole = own * Complex64::new(-zeta, (1.0 - zeta * zeta).max(0.0).sqrt());
+        let part = |pole: Complex64| {
+            let s = Complex64::new(0.0, x) - pole;
+            let force = (0.5 * (variance * pole * pole + (variance * x * x).min(FALL))).exp();
+            pole.powi(power) * force * ((s * *before).exp() - (-s * *after).exp()) / s
+        };
+        (phase * part(pole) - phase.conj() * part(pole.conj())) / Complex64::new(0.0, 2.0 * pole.im)
     }
 
     /// Response at the angular frequency `x` of a mode with natural angular frequency `own`, damping ratio
@@ -150,6 +166,50 @@ mod tests {
                     "{window:?} {s}: {found} {expected}"
                 );
             }
+        }
+    }
+
+    /// Samples Δt apart of a mode after two impulses √v before and after its time 0, summed one by one from
+    /// the end of a record on: 1/s lacks these.
+    #[test]
+    fn the_end_of_a_record_is_a_sum_over_samples_of_what_an_extended_force_leaves() {
+        let (pole, sample, n, half) = (Complex64::new(-0.02, 1.0), 0.2, 50, 0.1f64);
+        let blows =
+            BlowRecords { after: f64::from(n) * sample, variance: half * half, sample, ..Default::default() };
+        for omega in [0.9, 0.98, 1.0, 1.1] {
+            let at = Complex64::new(0.0, omega);
+            let force = |s: Complex64| 0.5 * ((s * half).exp() + (-s * half).exp());
+            // After 1500 time units the mode has decayed to exp(−30).
+            let behind = (n..7500).map(|k| sample * ((pole - at) * (sample * f64::from(k))).exp());
+            let left = behind.sum::<Complex64>() * force(pole) / force(at);
+            let expected = 1.0 / (at - pole) - left;
+            let found = Leakage::of_blows(&blows, 1.0).inverse(at, pole);
+            // The fourth cumulant of the force changes the part left by 2(0.1)⁴/12 = 2e-5, the next term of
+            // the sum over samples by (0.02)⁴/720.
+            assert!((found - expected).norm() < 3e-5 * left.norm(), "{omega}: {found} {expected}");
+            let plain = Leakage::of_blows(&BlowRecords { variance: 0.0, sample: 0.0, ..blows }, 1.0);
+            assert!((plain.inverse(at, pole) - expected).norm() > 1e-3 * left.norm(), "neither matters");
+        }
+    }
+
+    /// What a mode leaves that two impulses √v apart from a former time drove, integrated over the record.
+    #[test]
+    fn what_the_blow_before_left_begins_with_the_record() {
+        let (own, zeta, after, before, half) = (1.0, 0.02, 10.0, 1.5, 0.1f64);
+        let pole = own * Complex64::new(-zeta, f64::sqrt(1.0 - zeta * zeta));
+        let blows = BlowRecords { after, before, variance: half * half, ..Default::default() };
+        let phase = Complex64::cis(0.7);
+        for x in [0.8, 1.0, 1.1] {
+            let at = Complex64::new(0.0, x);
+            let force = |s: Complex64| 0.5 * ((s * half).exp() + (-s * half).exp());
+            let (n, step) = (4000, (after + before) / 4000.0);
+            let response = |t: f64| (phase * force(pole) * (pole * t).exp()).im / pole.im;
+            let time = |k: i32| (f64::from(k) + 0.5) * step - before;
+            let sum: Complex64 = (0..n).map(|k| response(time(k)) * (-at * time(k)).exp() * step).sum();
+            let expected = sum / force(at);
+            let found = Leakage::of_blows(&blows, 1.0).blow_before(x, (own, zeta), 0, phase);
+            // The fourth cumulant of the force is 2e-5 of each pole, the midpoint rule errs by step²/24.
+            assert!((found - expected).norm() < 1e-4 * expected.norm(), "{x}: {found} {expected}");
         }
     }
 

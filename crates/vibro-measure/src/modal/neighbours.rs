@@ -24,9 +24,8 @@ fn pair(seed: u64) -> (Measured, [Pole; 2]) {
 }
 
 /// Pairs of modes half to five bandwidths apart, 30 to 60 dB above the noise (amplitudes). With the search
-/// for modes without a peak 94 % of the modes are found, and 91 % of their values lie within 1.96 standard
-/// uncertainties; the others are mostly two modes within a bandwidth that are found as one. Without the
-/// search 76 % of the values lie within 1.96 standard uncertainties.
+/// for modes without a peak 99 % of the modes are found, and 95 % of their values lie within 1.96 standard
+/// uncertainties. Without the search 76 % of the values lie within 1.96 standard uncertainties.
 #[test]
 #[ignore = "Monte Carlo: cargo test --release -- --ignored"]
 fn modes_beside_higher_ones_are_found_and_covered() {
@@ -50,10 +49,10 @@ fn modes_beside_higher_ones_are_found_and_covered() {
         }
     }
     println!("{held} of {known}, {matched} of {all}");
-    // Limits: three binomial standard deviations below the shares above, 3.7 % for 550 values at 91 % and
-    // 4.1 % for 300 modes at 94 %.
-    assert!(f64::from(held) > 0.873 * f64::from(known), "{held} of {known}");
-    assert!(matched > 0.899 * all, "{matched} of {all}");
+    // Limits: three binomial standard deviations below the shares above, 2.7 % for 600 values at 95 % and
+    // 1.7 % for 300 modes at 99 %.
+    assert!(f64::from(held) > 0.923 * f64::from(known), "{held} of {known}");
+    assert!(matched > 0.973 * all, "{matched} of {all}");
 }
 
 #[test]
@@ -89,4 +88,60 @@ fn two_modes_of_a_band(draws: u64) {
             assert!(off < 5.0 * mode.frequency.std.unwrap(), "{seed}: {:?}", mode.frequency);
         }
     }
+}
+
+#[test]
+fn a_weak_mode_between_two_is_covered() {
+    let (_, worst) = weak_between(6);
+    assert!(worst < 5.0, "{worst}");
+}
+
+/// Of the numbers of 200 records 98 % were within 1.96 standard uncertainties, the worst was 2.9 off.
+#[test]
+#[ignore = "Monte Carlo: cargo test --release -- --ignored"]
+fn a_weak_mode_between_two_is_covered_in_60_draws() {
+    let (part, worst) = weak_between(60);
+    println!("{part} %, {worst}");
+    // Three binomial standard deviations of 360 numbers below 95 %.
+    assert!(part > 91.5 && worst < 5.0, "{part} {worst}");
+}
+
+/// Share in % of the numbers of the outer two of three modes that are within 1.96 standard uncertainties, and
+/// the largest error in standard uncertainties. The noise hides the middle one half.
+fn weak_between(draws: u64) -> (f64, f64) {
+    let (mut held, mut all, mut worst) = (0.0, 0.0, 0.0f64);
+    for seed in 0..draws {
+        let mut noise = Noise::new(seed);
+        let (near, far, height) =
+            (noise.between(0.4, 0.8), noise.between(1.2, 1.6), noise.between(0.1, 0.25));
+        let pole = |bandwidths: f64, constant: f64| Pole {
+            frequency: 100.0 + 2.0 * bandwidths,
+            zeta: 0.01,
+            constant: constant.into(),
+        };
+        let modes = [pole(0.0, 1.0), pole(near, height), pole(far, 0.5)];
+        let frequency: Vec<f64> = (0..150).map(|k| 86.0 + 0.2 * f64::from(k)).collect();
+        let clean: Vec<Complex64> =
+            frequency.iter().map(|f| modes.iter().map(|m| m.at(*f, 0)).sum()).collect();
+        let sigma = 0.005 * clean.iter().map(|v| v.norm()).fold(0.0, f64::max);
+        let values =
+            clean.iter().map(|v| v + sigma * Complex64::new(noise.normal(), noise.normal())).collect();
+        let found = modal(&Measured::new(frequency, values, Quantity::Receptance), &ModalOptions::default());
+        let Ok(found) = found else { continue };
+        for truth in [modes[0], modes[2]] {
+            let off = |m: &&Mode| (m.frequency.value - truth.frequency).abs();
+            let Some(mode) = found.modes.iter().min_by(|a, b| off(a).total_cmp(&off(b))) else { continue };
+            let pairs = [
+                (&mode.frequency, truth.frequency),
+                (&mode.zeta, truth.zeta),
+                (&mode.modal_constant, truth.constant.re),
+            ];
+            for (estimate, truth) in pairs {
+                let Some(std) = estimate.std else { continue };
+                let off = (estimate.value - truth).abs() / std;
+                (worst, all, held) = (worst.max(off), all + 1.0, held + f64::from(u8::from(off < 1.96)));
+            }
+        }
+    }
+    (100.0 * held / all, worst)
 }

@@ -1,13 +1,20 @@
 //! Modes and residual terms fitted to a part of a frequency response function in the complex plane.
 
+mod blow_before;
+mod hidden;
+mod rivals;
+
+pub(super) use hidden::MATTERS;
+
 use super::leakage::Leakage;
-use super::noise::{LineNoise, MARGIN, STEPS, of_both, of_segments};
+use super::noise::{LineNoise, MARGIN, STEPS, of_segments};
 use super::peak::Peak;
 use super::{Measured, Pole};
 use crate::mean::average;
 use crate::residuals::{Whiteness, aicc, student};
 use nalgebra::{DMatrix, DVector};
 use num_complex::Complex64;
+use rivals::rivals;
 use std::cell::RefCell;
 use std::f64::consts::TAU;
 use vibro_math::{Fit, minimise};
@@ -28,6 +35,9 @@ pub(super) struct Rational {
     pub aicc: f64,
     /// How the noise of the lines was weighted.
     pub noise: &'static str,
+    /// Whether the uncertainties cover a further mode that the noise may hide.
+    pub covers_hidden: bool,
+    weights: LineNoise,
 }
 
 /// Lines in scaled units: frequency over `unit` in Hz, values over `height`.
@@ -392,45 +402,6 @@ pub(super) fn rational(
     Err(failed)
 }
 
-/// Alternatives for the noise of the lines, each with a name; `at` are parameters near the best fit.
-fn rivals(
-    measured: &Measured,
-    part: std::ops::Range<usize>,
-    scaled: &Scaled<'_>,
-    at: &[f64],
-) -> Vec<(LineNoise, &'static str)> {
-    let lines = part.len();
-    let height = |i: usize| scaled.at(at, i).norm();
-    match (&measured.std, &measured.coherence) {
-        (Some(std), _) => {
-            let weight = std[part].iter().map(|s| s / scaled.height).collect();
-            vec![(LineNoise::independent(weight), "noise as stated")]
-        }
-        (None, None) => {
-            let relative = LineNoise::independent((0..lines).map(|i| height(i).max(1e-2)).collect());
-            let equal = LineNoise::independent(vec![1.0; lines]);
-            vec![(equal, "equal noise on all lines"), (relative, "noise proportional to the response")]
-        }
-        (None, Some(coherence)) => {
-            // Variance of a line: |H|²(1 − γ²)/(2γ²) over the averages (Bendat & Piersol 2010, 9.90), whose
-            // number is left to the fit. With few averages the variance of a single line is poorly known,
-            // and one that is small by chance would attract the fit.
-            let share: Vec<f64> = coherence[part].iter().map(|c| (1.0 - c).max(1e-5) / c).collect();
-            let level: Vec<f64> =
-                share.iter().zip(&scaled.values).map(|(s, v)| s * v.norm_sqr().max(1e-12)).collect();
-            let segments = |(window, spacing)| scaled.of_segments(window, spacing, at, &level);
-            if let Some(noise) = measured.window.map(|window| (window, measured.spacing())).and_then(segments)
-            {
-                vec![(noise, "noise by the coherence and the window")]
-            } else {
-                let power: Vec<f64> = (0..lines).map(|i| height(i).powi(2)).collect();
-                let each = of_both(&level, &power, &scaled.x).into_iter().map(f64::sqrt).collect();
-                vec![(LineNoise::independent(each), "noise by the coherence")]
-            }
-        }
-    }
-}
-
 /// Largest standard uncertainty of a damping ratio, over the ratio, of a mode that is determined; beyond it
 /// the fit does not determine the mode.
 const KNOWN: f64 = 0.5;
@@ -465,38 +436,44 @@ impl Scaled<'_> {
         p
     }
 
+    /// Factor from a scaled to a modal constant.
+    fn to_constant(&self) -> f64 {
+        self.height * (TAU * self.unit).powi(2 - self.power)
+    }
+
+    /// Derivatives of frequency, damping ratio, magnitude and phase of the modal constant, of each mode in
+    /// turn (rows), with respect to the free parameters (columns).
+    fn slopes(&self, p: &[f64]) -> DMatrix<f64> {
+        let mut all = DMatrix::zeros(4 * self.starts.len(), p.len());
+        for (m, (f, zeta)) in self.starts.iter().enumerate() {
+            let (at, a) = (4 * m, Complex64::new(p[4 * m + 2], p[4 * m + 3]));
+            let (cos, sin) = (a.re / a.norm(), a.im / a.norm());
+            (all[(at, at)], all[(at + 1, at + 1)]) = (f * zeta, *zeta);
+            let magnitude = [cos, sin].map(|part| part * self.to_constant());
+            let phase = [-sin, cos].map(|part| part / a.norm());
+            for (k, (magnitude, phase)) in magnitude.into_iter().zip(phase).enumerate() {
+                (all[(at + 2, at + 2 + k)], all[(at + 3, at + 2 + k)]) = (magnitude, phase);
+            }
+        }
+        all.select_columns(&self.free())
+    }
+
     fn result(&self, fit: &Fit, noise: &'static str, weight: &LineNoise) -> Rational {
         let n = self.x.len();
         let whiteness = Whiteness::of_fit(fit, n);
-        let free = self.free();
-        let place = |i: usize| free.iter().position(|f| *f == i);
-        let covariance =
-            |i: usize, j: usize| place(i).zip(place(j)).map_or(0.0, |(i, j)| fit.covariance(i, j));
         let p = &fit.parameters;
-        let to_constant = self.height * (TAU * self.unit).powi(2 - self.power);
+        let to_constant = self.to_constant();
         // Fits of fewer than three degrees of freedom were refused.
         let widened = whiteness.inflation * student(fit.degrees_of_freedom()).unwrap_or(f64::NAN);
-        let mode = |(m, (f, zeta)): (usize, &(f64, f64))| {
+        let slopes = self.slopes(p);
+        let covariance = &slopes * &fit.cofactor * slopes.transpose() * fit.variance();
+        let mode = |m: usize| {
             let (own, damping) = self.shape(p, m);
             let a = Complex64::new(p[4 * m + 2], p[4 * m + 3]);
             let pole = Pole { frequency: own * self.unit, zeta: damping, constant: a * to_constant };
-            let (re, im) = (4 * m + 2, 4 * m + 3);
-            let along = |re_part: f64, im_part: f64| {
-                let own = re_part * re_part * covariance(re, re) + im_part * im_part * covariance(im, im);
-                (own + 2.0 * re_part * im_part * covariance(re, im)).sqrt()
-            };
-            // Derivatives with respect to the real and the imaginary part of a: for |a| they are cos and sin
-            // of its phase, for the phase times |a| they are −sin and cos.
-            let (cos, sin) = (a.re / a.norm(), a.im / a.norm());
-            let std = [
-                f * zeta * covariance(4 * m, 4 * m).sqrt(),
-                zeta * covariance(4 * m + 1, 4 * m + 1).sqrt(),
-                to_constant * along(cos, sin),
-                along(-sin, cos) / a.norm(),
-            ];
-            (pole, std.map(|s| s * widened))
+            (pole, [0, 1, 2, 3].map(|q| covariance[(4 * m + q, 4 * m + q)].sqrt() * widened))
         };
-        let mut found: Vec<(Pole, [f64; 4])> = self.starts.iter().enumerate().map(mode).collect();
+        let mut found: Vec<(Pole, [f64; 4])> = (0..self.starts.len()).map(mode).collect();
         sort_by_number(&mut found, |a| a.0.frequency);
         let (modes, std) = found.into_iter().unzip();
         // Without weights, so that fits with different weights can be compared.
@@ -505,11 +482,13 @@ impl Scaled<'_> {
             unexplained: (sum / n as f64).sqrt(),
             modes,
             std,
-            aicc: aicc(fit.sum_of_squares(), fit.residuals.len(), free.len() as f64)
+            aicc: aicc(fit.sum_of_squares(), fit.residuals.len(), slopes.ncols() as f64)
                 + weight.spread(fit.residuals.len()),
             fitted: (0..n).map(|i| self.at(p, i) * self.height).collect(),
             whiteness,
             noise,
+            covers_hidden: false,
+            weights: weight.clone(),
         }
     }
 }

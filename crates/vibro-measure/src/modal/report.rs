@@ -1,7 +1,7 @@
 //! Results of fitted modes with their uncertainties, beside those of the classical methods.
 
 use super::classical::{CIRCLE, circle, half_power};
-use super::rational::Rational;
+use super::rational::{MATTERS, Rational};
 use super::selection::PeakGroup;
 use super::{ByMethod, Measured, ModalOptions, Mode, Pole};
 use crate::Estimate;
@@ -67,26 +67,24 @@ impl Candidate<'_> {
         }
         find(measured.window.is_some() && leaks, of(Finding::note("modal-leakage-fitted")));
         if let Some(blows) = measured.blows {
-            // The response left by the blow before, e^(sT) of its own, has the same pole, and any phase: it
-            // changes A by a factor, half of whose mean square is along A. Its mean over blows of independent
-            // phases is smaller by √n; a coherence needs two. No exponential window adds to its decay.
             let left = (-TAU * own.frequency * own.zeta * blows.apart.unwrap_or(blows.after)).exp();
             let cut_off = Finding::caution(code::MODAL_BLOW_CUT_OFF).number("part", left);
             find(left * pole.constant.norm() > std[2], cut_off);
-            let left = left / (2.0 * blows.count.unwrap_or(2.0)).sqrt();
             // Noise within a short force window is alike on neighbouring lines: it scales the whole mode.
-            let left = left.hypot(blows.scatter);
-            (std[2], std[3]) = (std[2].hypot(left * pole.constant.norm()), std[3].hypot(left));
+            (std[2], std[3]) =
+                (std[2].hypot(blows.scatter * pole.constant.norm()), std[3].hypot(blows.scatter));
         }
         let phase = own.constant.arg().to_degrees();
         let no_sign = !measured.magnitude_only && (IN_STEP..180.0 - IN_STEP).contains(&phase.abs());
         find(no_sign, Finding::caution("modal-constant-no-sign").number("phase", phase));
+        // An error φ of the phase takes |A|φ²/2 from the part along a real modal constant: the mean square is
+        // ¾|A|²u⁴ (second order, JCGM 100:2008, 5.1.2). An unknown phase leaves the sign open, too.
+        std[2] = std[2].hypot(0.75f64.sqrt() * pole.constant.norm() * std[3].powi(2));
         // Removing the window's decay keeps the uncertainty of ζωᵣ, and changes that of the constant by the
         // same factor as the constant.
         std[1] *= pole.frequency / own.frequency;
         std[2] *= own.constant.norm() / pole.constant.norm();
-        // A further mode matters within two bandwidths on either side.
-        let around = |other: f64| (other - pole.frequency).abs() < 4.0 * pole.zeta * pole.frequency;
+        let around = |other: f64| (other - pole.frequency).abs() < MATTERS * pole.zeta * pole.frequency;
         let ahead = group.ahead.filter(|(_, other)| around(*other)).map(|(ahead, _)| ahead);
         let two = ahead.map(|ahead| Finding::doubt("modal-two-modes").number("ahead", ahead));
         let more = group.pattern.map(|ahead| Finding::doubt("modal-more-modes").number("ahead", ahead));
@@ -122,7 +120,8 @@ impl Candidate<'_> {
             1 => String::new(),
             many => format!(", {many} modes together"),
         };
-        let method = format!("rational fit{together}, {}", fit.noise);
+        let hidden = if fit.covers_hidden { ", one hidden mode allowed for" } else { "" };
+        let method = format!("rational fit{together}, {}{hidden}", fit.noise);
         let phases = !measured.magnitude_only;
         let estimate = |value, std, unit| Estimate::new(value, Some(std), unit, n, method.clone());
         let frequency = estimate(own.frequency, std[0], "Hz").with_relative(options.clock);

@@ -521,3 +521,16 @@ fn a_blow_below_its_level_is_not_double() {
     assert!(!second(&values, 4, 1.0, 1e-3));
     assert!(!second(&[f64::NAN; 8], 4, 1.0, 1e-3));
 }
+
+/// Ten contact times of the longest blow, and 64 samples where that is less.
+#[test]
+fn the_force_counts_for_ten_contact_times_where_no_window_is_stated() {
+    let with = |contacts: &[(usize, usize)]| {
+        let mut force = vec![0.5; 4096];
+        for (at, long) in contacts {
+            force[*at..at + long].fill(20.0);
+        }
+        force_window(&trace("N", force)).unwrap() * RATE
+    };
+    assert_eq!([with(&[(500, 3), (2000, 30)]), with(&[(500, 3), (2000, 6)])], [300.0, 64.0]);
+}
