@@ -21,6 +21,7 @@ mod body;
 mod chirp;
 pub mod contact;
 pub mod continuation;
+pub mod drill;
 mod drive;
 mod duffing;
 mod excitation;

@@ -1,0 +1,442 @@
+//! Motion of the impact unit from event to event.
+
+use super::chain::{Chain, ROWS, STUCK};
+use super::machine::{Interface, Machine};
+use super::plant::{
+    CONTACT_LOSS, GAS, PISTON_WORK, PRESSURE, Plant, SEAL_LOSS, SIZE, STRIKER_WORK, Stage, StrikerDrive,
+    Vector, Watch, halves,
+};
+use super::run::Start;
+use super::rungs::Rung;
+use super::turn::{Book, Impact, Sample, Turn};
+use std::f64::consts::TAU;
+use vibro_math::border;
+use vibro_math::runge_kutta::{Dop853, Integrator, Step, Tolerance};
+use vibro_record::units::notation::significant;
+use vibro_record::{Error, Result};
+
+/// Gap in m that counts as touching: some hundred roundings of a position.
+const TOUCH: f64 = 1e-14;
+/// Relative velocity in m/s that counts as none: a thousand roundings of a velocity.
+pub(super) const NO_SPEED: f64 = 1e-12;
+/// Way in m that completed chatters may leave out. Rebounds from a separation at w against an acceleration a
+/// last 2w/(a(1 − R)) in total, and lift the bodies by w²/2a; their product with w bounds the way left out.
+const CHATTER_WAY: f64 = 1e-13;
+/// Overlap in m that is no contact, after bodies have parted from rest.
+const PARTING: f64 = 1e-13;
+/// Most events in a turn, and most impacts in one instant.
+const MOST_EVENTS: usize = 100_000;
+const MOST_SWEEPS: usize = 2_000;
+/// Nodes and weights on 0 to 1 of the quadrature of Gauss with four nodes, exact for a step's polynomial.
+const GAUSS: [(f64, f64); 4] = [
+    (0.069_431_844_202_973_71, 0.173_927_422_568_726_93),
+    (0.330_009_478_207_571_87, 0.326_072_577_431_273_07),
+    (0.669_990_521_792_428_1, 0.326_072_577_431_273_07),
+    (0.930_568_155_797_026_3, 0.173_927_422_568_726_93),
+];
+
+/// The machine in motion.
+#[derive(Debug, Clone)]
+pub(super) struct Motion {
+    plant: Plant,
+    y: Vector,
+    /// Turns so far, and the time in s since the present one began.
+    turns: usize,
+    time: f64,
+    next_step: f64,
+    tolerance: Tolerance<SIZE>,
+    /// First touch of each compliant contact: time since the start, and velocities.
+    touched: [(f64, [f64; 2]); 4],
+    /// Accepted steps so far.
+    pub steps: usize,
+    turn: Turn,
+}
+
+impl Motion {
+    pub fn new(machine: &Machine, rung: Rung, start: &Start, relative: f64) -> Result<Motion> {
+        machine.check()?;
+        let mut plant = Plant::new(machine, rung);
+        let mut y = [0.0; SIZE];
+        y[..3].copy_from_slice(&start.positions);
+        y[3..6].copy_from_slice(&start.velocities);
+        let m = &plant.machine;
+        let speed = TAU * m.crank.frequency * m.crank.radius;
+        let energy = m.striker.mass * speed * speed;
+        if rung == Rung::Prescribed {
+            (y[0], y[3]) = (0.0, 0.0);
+        }
+        for (k, interface) in Interface::ALL.into_iter().enumerate() {
+            let gap = plant.chain.gap(k, &halves(&y)[0]);
+            if gap < -TOUCH && plant.laws[k].is_none() {
+                let found = format!("{interface:?}: bodies overlap by {} m at the start", significant(-gap, 3));
+                return Err(Error::usage(found, "positions without overlap of rigid bodies"));
+            }
+        }
+        let volume = plant.volume(0.0, &y);
+        if volume.is_nan() || volume <= 0.0 {
+            return Err(Error::usage("a striker behind the piston", "a start in front of the piston"));
+        }
+        // A sealed cushion keeps the air that it has at its origin.
+        let sealed = m.flow.is_sealed() && rung != Rung::Prescribed;
+        y[PRESSURE] = if sealed { m.cushion.sealed_pressure(volume) } else { m.cushion.ambient };
+        y[GAS] = m.cushion.gas(m.cushion.ambient, if sealed { m.cushion.rest_volume() } else { volume });
+        let (way, work) = (2.0 * m.crank.radius, energy);
+        let floor = [
+            way, way, way, speed, speed, speed, m.cushion.ambient, y[GAS], work, work, work, work,
+        ];
+        plant.stretch = m.flow.stretch(y[0]);
+        plant.flow = m.flow.regime(y[PRESSURE], m.cushion.ambient);
+        let mut motion = Motion {
+            next_step: 1e-3 * m.crank.period(),
+            plant,
+            y,
+            turns: 0,
+            time: 0.0,
+            tolerance: Tolerance { relative, floor },
+            touched: [(0.0, [0.0; 2]); 4],
+            steps: 0,
+            turn: Turn::default(),
+        };
+        motion.collide()?;
+        Ok(motion)
+    }
+
+    /// Time in s since the start.
+    fn now(&self) -> f64 {
+        self.turns as f64 * self.plant.machine.crank.period() + self.time
+    }
+
+    /// Follows a whole turn; `samples` states at even angles are kept.
+    pub fn turn(&mut self, samples: usize) -> Result<Turn> {
+        let crank = self.plant.machine.crank;
+        let (period, fastest) = (crank.period(), crank.fastest());
+        self.y[STRIKER_WORK..].fill(0.0);
+        let (before, gas) = (self.energies(), self.stored_air());
+        self.turn.samples.reserve(samples);
+        if self.plant.drive != StrikerDrive::Forces {
+            // The prescribed striker is back on the piston.
+            (self.y[0], self.y[3]) = (0.0, 0.0);
+            self.plant.drive = StrikerDrive::Carried;
+            self.plant.stages[0] = Stage::Apart;
+            self.settle(None)?;
+            self.fly(fastest, samples)?;
+            if self.plant.drive == StrikerDrive::Carried {
+                self.plant.drive = StrikerDrive::Thrown;
+                self.settle(None)?;
+            }
+        }
+        self.fly(period, samples)?;
+        let (after, gas_after) = (self.energies(), self.stored_air());
+        let change: [f64; 3] = std::array::from_fn(|i| after[i] - before[i]);
+        let mut turn = std::mem::take(&mut self.turn);
+        if self.plant.drive == StrikerDrive::Forces {
+            let [piston, striker] = [self.y[PISTON_WORK], self.y[STRIKER_WORK]];
+            let [kinetic, potential, elastic] = change;
+            let air = gas_after - gas;
+            let (seal, contacts) = (self.y[SEAL_LOSS], self.y[CONTACT_LOSS]);
+            let impacts = turn.book.impacts;
+            let residual = striker - kinetic - potential - elastic - impacts - contacts - seal;
+            let flow = piston - striker - air;
+            turn.book = Book { piston, kinetic, potential, elastic, air, impacts, contacts, seal, flow, residual };
+        } else {
+            turn.book = Book::default();
+        }
+        let m = &self.plant.machine;
+        turn.find_blow(0.5 * crank.at(fastest)[1], m.striker.mass, m.bit.mass);
+        let velocities = &halves(&self.y)[1];
+        turn.momentum = velocities.iter().zip(&self.plant.chain.masses).map(|(v, mass)| v * mass).sum();
+        self.turns += 1;
+        self.time = 0.0;
+        Ok(turn)
+    }
+
+    /// Kinetic, potential and elastic energy in J.
+    fn energies(&self) -> [f64; 3] {
+        let [x, v] = halves(&self.y);
+        let chain = &self.plant.chain;
+        let weighted: f64 = x.iter().zip(&chain.masses).map(|(x, mass)| x * mass).sum();
+        [chain.kinetic(&v), -self.plant.machine.gravity * weighted, self.plant.elastic(&self.y)]
+    }
+
+    fn stored_air(&self) -> f64 {
+        self.plant.machine.cushion.stored(self.y[PRESSURE], self.plant.volume(self.time, &self.y))
+    }
+
+    /// Integrates to a time (s) of the turn, from event to event.
+    fn fly(&mut self, until: f64, samples: usize) -> Result<()> {
+        let mut events = 0;
+        'event: while self.time < until {
+            let (time, y, step) = (self.time, self.y, self.next_step);
+            let plant = &self.plant;
+            let rate = |t: f64, y: &Vector| plant.rate(t, y);
+            let mut integrator = Integrator::<Dop853, SIZE>::new(rate, time, y, step, self.tolerance);
+            loop {
+                let step = integrator.step(|t, y| self.plant.rate(t, y), until)?;
+                self.steps += 1;
+                self.next_step = integrator.next_step();
+                let event = self.first_event(&step);
+                let duration = event.map_or(step.duration, |(t, _)| t);
+                self.record(&step, duration, samples);
+                self.y = step.at(duration);
+                self.time = if event.is_none() { integrator.time() } else { step.start + duration };
+                let volume = self.plant.volume(self.time, &self.y);
+                if volume <= self.plant.machine.cushion.dead_volume && self.plant.drive == StrikerDrive::Forces {
+                    return Err(Error::refused(format!(
+                        "at {} s the striker strikes the driving piston",
+                        significant(self.now(), 6)
+                    ))
+                    .hint("check leakage and vents: the air cushion must keep them apart"));
+                }
+                if let Some((_, watch)) = event {
+                    self.apply(watch)?;
+                    events += 1;
+                    if events > MOST_EVENTS {
+                        return Err(too_many("events in a turn", MOST_EVENTS, self.now()));
+                    }
+                    continue 'event;
+                }
+                if self.time >= until {
+                    break 'event;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// First event in a step, with its time in s since the start of the step.
+    fn first_event(&self, step: &Step<SIZE>) -> Option<(f64, Watch)> {
+        let mut first: Option<(f64, Watch)> = None;
+        for (watch, line) in &self.plant.watches {
+            let time = if self.plant.is_curved(*watch) {
+                self.curved_fall(*watch, step)
+            } else {
+                let mut weights = [0.0; SIZE];
+                weights[..line.weights.len()].copy_from_slice(&line.weights);
+                step.first_fall(&weights, line.offset)
+            };
+            if let Some(t) = time.filter(|t| first.is_none_or(|(sooner, _)| *t < sooner)) {
+                first = Some((t, *watch));
+            }
+        }
+        first
+    }
+
+    /// Fall of a holding force that depends on a curved contact: it is found where it is below zero at the
+    /// end of the step.
+    fn curved_fall(&self, watch: Watch, step: &Step<SIZE>) -> Option<f64> {
+        let reserve = |t: f64| match watch {
+            Watch::Slips(direction) => {
+                self.plant.machine.striker.friction + direction * self.plant.hold(STUCK, &step.at(t))
+            }
+            Watch::Pulls(k) => self.plant.hold(k, &step.at(t)),
+            _ => 0.0,
+        };
+        (reserve(step.duration) < 0.0).then(|| border(0.0, step.duration, |t| reserve(t) >= 0.0))
+    }
+
+    /// Adds impulses and samples of a step up to `duration` (s).
+    fn record(&mut self, step: &Step<SIZE>, duration: f64, samples: usize) {
+        for (node, weight) in GAUSS {
+            let y = step.at(node * duration);
+            self.turn.handle += weight * duration * self.plant.handle_force(&y);
+            self.turn.damper += weight * duration * self.plant.contact_force(Interface::Damper as usize, &y);
+        }
+        let period = self.plant.machine.crank.period();
+        while self.turn.samples.len() < samples {
+            let part = self.turn.samples.len() as f64 / samples as f64;
+            let at = part * period - step.start;
+            if at > duration {
+                break;
+            }
+            let y = step.at(at.max(0.0));
+            let [positions, velocities] = halves(&y);
+            self.turn.samples.push(Sample {
+                angle: TAU * part,
+                piston: self.plant.machine.crank.at(part * period)[0],
+                positions,
+                velocities,
+                pressure: y[PRESSURE],
+                gas: y[GAS],
+                handle: self.plant.handle_force(&y),
+                damper: self.plant.contact_force(Interface::Damper as usize, &y),
+            });
+        }
+    }
+
+    /// Applies an event to the state and the equations.
+    fn apply(&mut self, watch: Watch) -> Result<()> {
+        let both = |k: usize, y: &Vector| Chain::both(k, &halves(y)[1]);
+        match watch {
+            Watch::Meets(k) if self.plant.laws[k].is_none() => return self.collide(),
+            Watch::Meets(k) => {
+                self.touched[k] = (self.now(), both(k, &self.y));
+                self.plant.stages[k] = Stage::Pushing;
+            }
+            Watch::Separates(k) => {
+                self.plant.stages[k] = Stage::Apart;
+                let ((time, before), after) = (self.touched[k], both(k, &self.y));
+                let square = |v: &[f64; 2]| (v[0] - v[1]).powi(2);
+                let lost = 0.5 * (square(&before) - square(&after)) / self.plant.chain.compliance(k);
+                let duration = self.now() - time;
+                let interface = Interface::ALL[k];
+                self.turn.impacts.push(Impact { time, duration, interface, before, after, lost });
+                self.blown(k);
+            }
+            Watch::ForceEnds(k) => self.plant.stages[k] = Stage::Released,
+            Watch::ForceReturns(k) => self.plant.stages[k] = Stage::Pushing,
+            Watch::Pulls(k) => return self.settle(Some(k)),
+            Watch::Stops => {
+                self.y[3] = 0.0;
+                return self.settle(None);
+            }
+            Watch::Slips(direction) => {
+                self.plant.slip = direction;
+                return self.settle(Some(STUCK));
+            }
+            Watch::Flows(regime) => self.plant.flow = regime,
+            Watch::Vents(stretch) => self.plant.stretch = stretch,
+        }
+        self.settle(None)
+    }
+
+    /// A prescribed striker has no more contacts after its blow.
+    fn blown(&mut self, k: usize) {
+        if k == 0 && self.plant.drive != StrikerDrive::Forces {
+            self.plant.stages[0] = Stage::Absent;
+        }
+    }
+
+    fn touches(&self, k: usize) -> bool {
+        let gap = self.plant.chain.gap(k, &halves(&self.y)[0]);
+        match self.plant.stages[k] {
+            Stage::Held => true,
+            Stage::Apart => self.plant.laws[k].is_none() && gap <= TOUCH + 2.0 * self.plant.slack[k],
+            _ => false,
+        }
+    }
+
+    /// Rigid impacts of all touching bodies, one after another, until none approach.
+    fn collide(&mut self) -> Result<()> {
+        let [_, mut v] = halves(&self.y);
+        for sweep in 0.. {
+            let mut any = false;
+            for (k, interface) in Interface::ALL.into_iter().enumerate() {
+                if !self.touches(k) || Chain::approach(k, &v) <= NO_SPEED {
+                    continue;
+                }
+                any = true;
+                let before = Chain::both(k, &v);
+                let impulse = -Chain::approach(k, &v) / self.plant.chain.compliance(k);
+                let restitution = self.plant.machine.contacts[k].restitution;
+                let lost = self.plant.chain.strike(k, restitution, &mut v);
+                let after = Chain::both(k, &v);
+                let impulse = -impulse * (1.0 + restitution);
+                match interface {
+                    Interface::Damper => self.turn.damper += impulse,
+                    Interface::Buffer => self.turn.handle -= impulse,
+                    _ => {}
+                }
+                self.turn.book.impacts += lost;
+                let (time, duration) = (self.now(), 0.0);
+                self.turn.impacts.push(Impact { time, duration, interface, before, after, lost });
+                self.plant.slack[k] = 0.0;
+                self.blown(k);
+            }
+            if !any {
+                break;
+            }
+            if sweep > MOST_SWEEPS {
+                return Err(too_many("impacts in one instant", MOST_SWEEPS, self.now()));
+            }
+        }
+        self.y[3..6].copy_from_slice(&v);
+        self.settle(None)
+    }
+
+    /// Decides by the balance of forces which touching bodies stay together and whether the striker sticks,
+    /// and makes the equations anew. `released` is a constraint that has just given way.
+    fn settle(&mut self, released: Option<usize>) -> Result<()> {
+        let [_, v] = halves(&self.y);
+        let friction = self.plant.machine.striker.friction;
+        let separation: [f64; 4] = std::array::from_fn(|k| -Chain::approach(k, &v));
+        let held = self.plant.kept();
+        for k in 0..4 {
+            // Faster rebounds are followed; a chatter ends far below.
+            let slow = separation[k] >= -NO_SPEED && separation[k] < 1e-3;
+            if self.plant.laws[k].is_none() && self.plant.stages[k] != Stage::Absent {
+                let stays = slow && self.touches(k) && released != Some(k);
+                self.plant.stages[k] = if stays { Stage::Held } else { Stage::Apart };
+            }
+        }
+        self.plant.stuck = false;
+        if friction == 0.0 {
+            self.plant.slip = 0.0;
+        } else if v[0].abs() > NO_SPEED {
+            self.plant.slip = v[0].signum();
+        } else if released != Some(STUCK) {
+            (self.plant.stuck, self.plant.slip) = (true, 0.0);
+        }
+        loop {
+            if !self.plant.assemble() {
+                // The striker stands on bodies that cannot move, or the chain is wedged.
+                if !std::mem::take(&mut self.plant.stuck) {
+                    self.plant.stages[Interface::Buffer as usize] = Stage::Apart;
+                }
+                continue;
+            }
+            // The constraint that is furthest from holding gives way.
+            let mut worst: (f64, Option<usize>) = (0.0, None);
+            for k in (0..4).filter(|k| self.plant.stages[*k] == Stage::Held) {
+                let force = self.plant.hold(k, &self.y);
+                let pressing = force * self.plant.chain.compliance(k);
+                let loss = 1.0 - self.plant.machine.contacts[k].restitution;
+                let lift = separation[k].max(0.0).powi(2) - CHATTER_WAY * loss * pressing;
+                // Rebounds count from their speed, forces from their sign.
+                let excess = if separation[k] > NO_SPEED { lift } else { -pressing };
+                if excess > worst.0 {
+                    worst = (excess, Some(k));
+                }
+            }
+            if let Some(k) = worst.1 {
+                self.plant.stages[k] = Stage::Apart;
+                continue;
+            }
+            if self.plant.stuck {
+                let force = self.plant.hold(STUCK, &self.y);
+                if force.abs() > friction {
+                    (self.plant.stuck, self.plant.slip) = (false, -force.signum());
+                    continue;
+                }
+            }
+            break;
+        }
+        let after = self.plant.projected(&v);
+        self.turn.book.impacts += self.plant.chain.kinetic(&v) - self.plant.chain.kinetic(&after);
+        let kept = self.plant.kept();
+        for k in 0..4 {
+            self.turn.chatters += usize::from(kept[k] && !held[k]);
+            if held[k] && !kept[k] && separation[k] <= NO_SPEED {
+                self.plant.slack[k] = PARTING;
+            }
+        }
+        // Impulses of the completed chatters on damper and buffer: what the momentum of the bodies lost.
+        let change: [f64; 3] = std::array::from_fn(|j| self.plant.chain.masses[j] * (after[j] - v[j]));
+        if kept[Interface::Damper as usize] {
+            self.turn.damper -= change.iter().sum::<f64>();
+        } else if kept[Interface::Buffer as usize] {
+            self.turn.handle -= ROWS[3][1] * change.iter().sum::<f64>();
+        }
+        self.y[3..6].copy_from_slice(&after);
+        if self.plant.stuck {
+            self.y[3] = 0.0;
+        }
+        // Slack changes the borders.
+        self.plant.assemble();
+        Ok(())
+    }
+}
+
+fn too_many(what: &str, most: usize, time: f64) -> Error {
+    Error::refused(format!("more than {most} {what}, at {} s", significant(time, 6)))
+        .hint("give the impacts some loss: restitution below 1")
+}
