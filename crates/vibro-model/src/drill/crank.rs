@@ -3,6 +3,7 @@
 use crate::least::{NumberRange, number};
 use std::f64::consts::TAU;
 use vibro_math::border;
+use vibro_math::cis::sin_cos;
 use vibro_record::{Error, Result};
 
 /// Crank and rod that drive the piston at a constant speed.
@@ -23,13 +24,15 @@ impl Crank {
     #[inline]
     pub fn at(&self, t: f64) -> [f64; 3] {
         let omega = TAU * self.frequency;
-        let (sin, cos) = (omega * t).sin_cos();
+        let (sin, cos) = sin_cos(omega * t);
         let (s, c) = (self.radius * sin, self.radius * cos);
         let rod = (self.rod * self.rod - s * s).sqrt();
         // l − √(l² − s²) without cancellation; an infinite rod adds nothing.
         let lift = s * s / (self.rod + rod);
-        let bend = (c * c - s * s) / rod + (s * c / rod).powi(2) / rod;
-        [self.radius - c + lift, omega * (s + s * c / rod), omega * omega * (c + bend)]
+        let per_rod = 1.0 / rod;
+        let tilt = s * c * per_rod;
+        let bend = (c * c - s * s + tilt * tilt) * per_rod;
+        [self.radius - c + lift, omega * (s + tilt), omega * omega * (c + bend)]
     }
 
     /// Time of a turn in s.

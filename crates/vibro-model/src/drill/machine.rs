@@ -2,7 +2,7 @@
 
 use super::crank::Crank;
 use super::cushion::Cushion;
-use super::flow::Flow;
+use super::flow::{Flow, Vent};
 use crate::law::Law;
 use crate::least::{NumberRange, number};
 use vibro_record::{Error, Result};
@@ -120,31 +120,36 @@ impl Machine {
     /// # Ok::<(), vibro_record::Error>(())
     /// ```
     pub fn example() -> Machine {
-        let contact = |stiffness| {
-            // R = 0.9 at 7.5 m/s.
-            Contact { restitution: 0.9, law: Some(Law::curved(stiffness, 1.5, 0.02)) }
-        };
+        // Hunt–Crossley: with α = 0.035 s/m, R is 0.86 at 7.5 m/s.
+        let contact = Contact { restitution: 0.8, law: Some(Law::curved(2e10, 1.5, 0.035)) };
         Machine {
-            crank: Crank { radius: 0.013, rod: 0.07, frequency: 45.0 },
+            crank: Crank { radius: 0.0113, rod: 0.065, frequency: 45.0 },
             cushion: Cushion {
-                area: 7.1e-4,
-                length: 0.03,
-                dead_volume: 0.0,
+                area: 7.9e-4,
+                length: 0.0215,
+                dead_volume: 1.2e-7,
                 exponent: 1.3,
                 ambient: 101_325.0,
                 temperature: 293.15,
             },
-            flow: Flow { leakage: 5e-10, critical_ratio: 0.5, vents: Vec::new() },
-            striker: Striker { mass: 0.14, friction: 3.0, damping: 0.5 },
+            flow: Flow {
+                leakage: 8.7e-10,
+                critical_ratio: 0.5,
+                vents: vec![
+                    Vent { position: 0.009, area: 0.0 },
+                    Vent { position: 0.013, area: 1.6e-6 },
+                ],
+            },
+            striker: Striker { mass: 0.14, friction: 2.0, damping: 0.55 },
             intermediate: 0.28,
             bit: Bit { mass: 0.43, length: 0.3 },
-            strike: 0.03,
-            travel: 0.008,
+            strike: 0.0202,
+            travel: 0.0055,
             clearance: 0.0,
             contacts: [
-                contact(2e10),
-                contact(2e10),
-                Contact { restitution: 0.3, law: Some(Law::spring(1e6, 400.0)) },
+                contact,
+                contact,
+                Contact { restitution: 0.3, law: Some(Law::spring(2.4e5, 1060.0)) },
                 Contact::rigid(0.4),
             ],
             gravity: 9.81,

@@ -142,7 +142,9 @@ impl Motion {
             turn.book = Book::default();
         }
         let m = &self.plant.machine;
-        turn.find_blow(0.5 * crank.at(fastest)[1], m.striker.mass, m.bit.mass);
+        let thrown = self.plant.drive != StrikerDrive::Forces;
+        let least = if thrown { 0.0 } else { crank.at(fastest)[1] };
+        turn.find_blow(least, m.striker.mass, m.bit.mass);
         let velocities = &halves(&self.y)[1];
         turn.momentum = velocities.iter().zip(&self.plant.chain.masses).map(|(v, mass)| v * mass).sum();
         self.turns += 1;

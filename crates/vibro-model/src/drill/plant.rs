@@ -125,7 +125,8 @@ pub(super) struct Plant {
     pub stretch: usize,
     pub watches: Vec<(Watch, Line)>,
     forces: [Line; 3],
-    accelerations: [Line; 3],
+    /// Accelerations per component of the state that forces depend on, and with all of them 0.
+    accelerations: [[f64; 3]; LINEAR + 1],
     holds: [Line; CONSTRAINTS],
     restraint: Restraint,
     conductance: [f64; 2],
@@ -160,7 +161,7 @@ impl Plant {
             stretch: 0,
             watches: Vec::new(),
             forces: [Line::default(); 3],
-            accelerations: [Line::default(); 3],
+            accelerations: [[0.0; 3]; LINEAR + 1],
             holds: [Line::default(); CONSTRAINTS],
             restraint: Restraint { response: [[0.0; 3]; 3], forces: [[0.0; 3]; CONSTRAINTS] },
             conductance: [0.0; 2],
@@ -204,7 +205,10 @@ impl Plant {
             weights.iter().zip(&self.forces).for_each(|(w, force)| sum.add(*w, force));
             sum
         };
-        self.accelerations = restraint.response.map(|row| combined(&row));
+        let lines = restraint.response.map(|row| combined(&row));
+        self.accelerations = std::array::from_fn(|i| {
+            lines.map(|line| line.weights.get(i).copied().unwrap_or(line.offset))
+        });
         self.holds = restraint.forces.map(|row| combined(&row));
         self.restraint = restraint;
         self.conductance = self.machine.flow.conductance(self.stretch);
@@ -291,10 +295,19 @@ impl Plant {
         [-self.chain.gap(k, &x), Chain::approach(k, &v)]
     }
 
-    /// Force in N of the law of a contact that pushes.
+    /// Force in N of the law of a contact that pushes, and its elastic part. It is smooth beyond the ends of
+    /// the stage: there it may pull.
+    #[inline]
+    fn law_forces(&self, k: usize, [depth, rate]: [f64; 2]) -> [f64; 2] {
+        let force = |law: &Law, rate: f64| (law.form.force)(law, depth, rate);
+        match &self.laws[k] {
+            Some(law) if law.is_linear() || depth > 0.0 => [force(law, rate), force(law, 0.0)],
+            _ => [0.0; 2],
+        }
+    }
+
     fn law_force(&self, k: usize, y: &Vector) -> f64 {
-        let [depth, rate] = self.indentation(k, y);
-        self.laws[k].map_or(0.0, |law| law.force(depth, rate))
+        self.law_forces(k, self.indentation(k, y))[0]
     }
 
     /// Forces in N on the bodies by contacts that are not linear.
@@ -371,9 +384,11 @@ impl Plant {
         let [piston, piston_velocity, piston_acceleration] = m.crank.at(t);
         let mut rate = [0.0; SIZE];
         rate[..3].copy_from_slice(&y[3..6]);
-        for (rate, line) in rate[3..6].iter_mut().zip(&self.accelerations) {
-            *rate = line.value(y);
+        let mut accelerations = self.accelerations[LINEAR];
+        for (column, y) in self.accelerations.iter().zip(&y[..LINEAR]) {
+            accelerations.iter_mut().zip(column).for_each(|(sum, weight)| *sum += weight * y);
         }
+        rate[3..6].copy_from_slice(&accelerations);
         if self.curved {
             let extra = self.curved_forces(y);
             for (rate, row) in rate[3..6].iter_mut().zip(&self.restraint.response) {
@@ -381,10 +396,11 @@ impl Plant {
             }
         }
         for k in 0..4 {
-            if let (Stage::Pushing | Stage::Released, Some(law)) = (self.stages[k], &self.laws[k]) {
+            if let Stage::Pushing | Stage::Released = self.stages[k] {
                 let [depth, approach] = self.indentation(k, y);
-                let force = if self.stages[k] == Stage::Pushing { law.force(depth, approach) } else { 0.0 };
-                rate[CONTACT_LOSS] += (force - law.force(depth, 0.0)) * approach;
+                let [force, elastic] = self.law_forces(k, [depth, approach]);
+                let force = if self.stages[k] == Stage::Pushing { force } else { 0.0 };
+                rate[CONTACT_LOSS] += (force - elastic) * approach;
             }
         }
         if self.drive != StrikerDrive::Forces {

@@ -94,8 +94,8 @@ pub struct Turn {
     pub impacts: Vec<Impact>,
     /// Chatters that were completed: rebounds too small to follow, summed as a geometric series.
     pub chatters: usize,
-    /// Blow of the turn: the impact of the fastest striker, if it is faster than half of the piston's largest
-    /// speed.
+    /// Blow of the turn: the impact of the fastest striker, if it is faster than the driving piston ever is.
+    /// A slower one is a landing of a striker that follows the piston.
     pub blow: Option<Blow>,
     /// Energies; all 0 for a prescribed striker.
     pub book: Book,
