@@ -27,8 +27,7 @@ impl Crank {
         let (sin, cos) = sin_cos(omega * t);
         let (s, c) = (self.radius * sin, self.radius * cos);
         let rod = (self.rod * self.rod - s * s).sqrt();
-        // l − √(l² − s²) without cancellation; an infinite rod adds nothing.
-        let lift = s * s / (self.rod + rod);
+        let lift = if self.rod == f64::INFINITY { 0.0 } else { self.rod - rod };
         let per_rod = 1.0 / rod;
         let tilt = s * c * per_rod;
         let bend = (c * c - s * s + tilt * tilt) * per_rod;

@@ -1,7 +1,7 @@
 //! Flow between the cushion and the ambient air, by ISO 6358-1:2013.
 //!
 //! From p₁ to p₂ < p₁ flows ṁ = Cρ₀p₁√(T₀/T₁)ψ, with ψ = 1 for p₂/p₁ ≤ b and
-//! ψ² = 1 − ((p₂/p₁ − b)/(1 − b))² above. The standard's slope is infinite at equal pressures. Within 0.1 % of
+//! ψ² = 1 − ((p₂/p₁ − b)/(1 − b))² above. The standard's slope is infinite at equal pressures. Within 0.5 % of
 //! them the flow is linear in the pressure difference, and the temperature goes over from one side's to the
 //! other's.
 
@@ -15,7 +15,7 @@ const REFERENCE_DENSITY: f64 = 1.185;
 /// Temperature T₀ in K of the standard reference atmosphere.
 const REFERENCE_TEMPERATURE: f64 = 293.15;
 /// Ratio of the pressures above which the flow is linear.
-const LINEAR_RATIO: f64 = 0.999;
+const LINEAR_RATIO: f64 = 0.995;
 /// Choked mass flow of an ideal nozzle of air, over A p₁/√(RT₁): √κ (2/(κ + 1))^{(κ+1)/(2κ−2)}, κ = 1.4.
 const NOZZLE: f64 = 0.684_731_456;
 

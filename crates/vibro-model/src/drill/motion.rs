@@ -189,7 +189,11 @@ impl Motion {
                     ))
                     .hint("check leakage and vents: the air cushion must keep them apart"));
                 }
-                if let Some((_, watch)) = event {
+                if let Some((duration, watch)) = event {
+                    if let Watch::Flows(_) = watch {
+                        // The slope of the flow is steep where it begins.
+                        self.next_step = self.next_step.min(20.0 * duration.max(1e-6 * until));
+                    }
                     self.apply(watch)?;
                     events += 1;
                     if events > MOST_EVENTS {
@@ -273,6 +277,7 @@ impl Motion {
             Watch::Meets(k) => {
                 self.touched[k] = (self.now(), both(k, &self.y));
                 self.plant.stages[k] = Stage::Pushing;
+                self.next_step = self.next_step.min(0.05 * self.plant.contact_time(k, &self.y));
             }
             Watch::Separates(k) => {
                 self.plant.stages[k] = Stage::Apart;

@@ -306,6 +306,14 @@ impl Plant {
         }
     }
 
+    /// Time scale T in s of a contact that begins: with the approach speed V, V² = k(VT)^{n+1}/M.
+    pub fn contact_time(&self, k: usize, y: &Vector) -> f64 {
+        let Some(law) = self.laws[k] else { return f64::INFINITY };
+        let speed = self.indentation(k, y)[1].max(NO_SPEED);
+        let rise = law.exponent + 1.0;
+        (self.chain.compliance(k) * law.stiffness).powf(-1.0 / rise) * speed.powf((2.0 - rise) / rise)
+    }
+
     fn law_force(&self, k: usize, y: &Vector) -> f64 {
         self.law_forces(k, self.indentation(k, y))[0]
     }
