@@ -37,3 +37,8 @@ pub use machine::{Bit, Contact, Interface, Machine, SOUND_SPEED, Striker};
 pub use run::{Course, Regime, Run, Start, WaveLimit, run};
 pub use rungs::{Ladder, Rung, Step, climb};
 pub use turn::{Blow, Book, Impact, Sample, Turn};
+
+#[cfg(test)]
+mod reference_tests;
+#[cfg(test)]
+mod tests;

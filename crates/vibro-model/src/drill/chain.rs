@@ -42,8 +42,7 @@ fn dot(a: &[f64; 3], b: &[f64; 3]) -> f64 {
 impl Chain {
     pub fn new(machine: &Machine) -> Chain {
         let masses = [machine.striker.mass, machine.intermediate, machine.bit.mass];
-        let offsets =
-            [0.0, 0.0, machine.strike + machine.clearance, machine.travel - machine.strike];
+        let offsets = [0.0, 0.0, machine.strike + machine.clearance, machine.travel - machine.strike];
         Chain { masses, offsets }
     }
 
@@ -82,10 +81,11 @@ impl Chain {
         0.5 * velocities.iter().zip(&self.masses).map(|(v, m)| m * v * v).sum::<f64>()
     }
 
-    /// Velocities with the relative velocities of the constraints taken away: plastic impacts.
-    pub fn projected(&self, restraint: &Restraint, velocities: &[f64; 3]) -> [f64; 3] {
+    /// Velocities with the relative velocities of the constraints taken away by plastic impacts, and the
+    /// impulse of each constraint in N s.
+    pub fn projected(&self, restraint: &Restraint, velocities: &[f64; 3]) -> ([f64; 3], [f64; CONSTRAINTS]) {
         let momenta = std::array::from_fn(|j| self.masses[j] * velocities[j]);
-        restraint.response.map(|row| dot(&row, &momenta))
+        (restraint.response.map(|row| dot(&row, &momenta)), restraint.forces.map(|row| dot(&row, &momenta)))
     }
 
     /// Response with the constraints `kept`; `None` where they depend on each other.

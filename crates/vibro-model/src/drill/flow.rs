@@ -17,7 +17,7 @@ const REFERENCE_TEMPERATURE: f64 = 293.15;
 /// Ratio of the pressures above which the flow is linear.
 const LINEAR_RATIO: f64 = 0.995;
 /// Choked mass flow of an ideal nozzle of air, over A p₁/√(RT₁): √κ (2/(κ + 1))^{(κ+1)/(2κ−2)}, κ = 1.4.
-const NOZZLE: f64 = 0.684_731_456;
+const NOZZLE: f64 = 0.684_731_456_377_270_5;
 
 /// Vent area at a position of the striker.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -102,11 +102,10 @@ impl Flow {
             FlowRegime::ChokedOut => (-pressure, temperature),
             FlowRegime::Out => (-pressure * psi(outside / pressure), temperature),
             FlowRegime::Even => {
-                let near = 1.0 - LINEAR_RATIO;
-                let excess = (pressure - outside) / (near * outside);
-                let middle = f64::midpoint(temperature, temperature_outside);
-                let inner = 0.5 * (temperature - temperature_outside);
-                (-outside * excess * psi(LINEAR_RATIO), middle + inner * excess)
+                let [low, high] = [LINEAR_RATIO * outside, outside / LINEAR_RATIO];
+                let part = (pressure - low) / (high - low);
+                let at = temperature_outside + part * (temperature - temperature_outside);
+                ((outside - pressure) / (1.0 - LINEAR_RATIO) * psi(LINEAR_RATIO), at)
             }
             FlowRegime::In => (outside * psi(pressure / outside), temperature_outside),
             FlowRegime::ChokedIn => (outside, temperature_outside),
@@ -155,5 +154,52 @@ impl Flow {
             return Ok(());
         }
         Err(Error::usage("vent positions that do not rise", "rows in the order of the striker's position"))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_flow_is_that_of_the_standard_and_continuous() {
+        let flow = Flow { leakage: 1e-9, critical_ratio: 0.4, vents: Vec::new() };
+        let ambient = 1e5;
+        let rate = |p: f64| flow.rate(flow.regime(p, ambient), 1e-9, [p, ambient], [350.0, 293.15])[0];
+        // Choked outwards: Cρ₀p√(T₀/T); inwards at T₀.
+        assert!((rate(4e5) / (-1e-9 * 1.185 * 4e5 * (293.15_f64 / 350.0).sqrt()) - 1.0).abs() < 1e-14);
+        assert!((rate(3e4) / (1e-9 * 1.185 * 1e5) - 1.0).abs() < 1e-14);
+        // Subsonic inwards at p₂/p₁ = 0.7: ψ = √(1 − 0.5²).
+        assert!((rate(7e4) / (1e-9 * 1.185 * 1e5 * 0.75_f64.sqrt()) - 1.0).abs() < 1e-14);
+        assert_eq!(rate(ambient), 0.0);
+        for regime in
+            [FlowRegime::ChokedOut, FlowRegime::Out, FlowRegime::Even, FlowRegime::In, FlowRegime::ChokedIn]
+        {
+            for (ratio, rising, beyond) in flow.borders(regime).into_iter().flatten() {
+                let p = ratio * ambient;
+                let [here, there] =
+                    [regime, beyond].map(|r| flow.rate(r, 1e-9, [p, ambient], [350.0, 293.15])[0]);
+                // The square root near choked flow turns a rounding ε into √ε.
+                assert!((here - there).abs() < 1e-7 * here.abs(), "{regime:?} {beyond:?}");
+                let ahead = if rising { 1.0 + 1e-9 } else { 1.0 - 1e-9 };
+                assert!(flow.regime(p * ahead, ambient) == beyond);
+            }
+        }
+    }
+
+    #[test]
+    fn vents_open_along_their_rows() {
+        let vents = vec![Vent { position: 0.01, area: 0.0 }, Vent { position: 0.02, area: 2e-6 }];
+        let flow = Flow { leakage: 1e-10, critical_ratio: 0.5, vents };
+        let at = |x: f64| {
+            let [start, slope] = flow.conductance(flow.stretch(x));
+            start + slope * x
+        };
+        // An ideal nozzle of 1 mm² has some 0.2 dm³/(s bar) = 2e-9 m³/(s Pa).
+        let nozzle = Flow::conductance_of_area() * 1e-6;
+        assert!((1.9e-9..2.1e-9).contains(&nozzle), "{nozzle}");
+        for (x, area) in [(0.0, 0.0), (0.01, 0.0), (0.015, 1.0), (0.02, 2.0), (0.03, 2.0)] {
+            assert!((at(x) - 1e-10 - area * nozzle).abs() < 1e-22, "{x}");
+        }
     }
 }

@@ -110,7 +110,7 @@ impl Interface {
 }
 
 impl Machine {
-    /// A machine with a blow of 3 J at 45 turns a second that drills downwards; the dimensions are invented,
+    /// A machine with a blow of 4 J at 45 turns a second that drills downwards; the dimensions are invented,
     /// the masses are those of the thesis' rig.
     ///
     /// ```
@@ -135,10 +135,7 @@ impl Machine {
             flow: Flow {
                 leakage: 8.7e-10,
                 critical_ratio: 0.5,
-                vents: vec![
-                    Vent { position: 0.009, area: 0.0 },
-                    Vent { position: 0.013, area: 1.6e-6 },
-                ],
+                vents: vec![Vent { position: 0.009, area: 0.0 }, Vent { position: 0.013, area: 1.6e-6 }],
             },
             striker: Striker { mass: 0.14, friction: 2.0, damping: 0.55 },
             intermediate: 0.28,
@@ -170,9 +167,11 @@ impl Machine {
         self.crank.check()?;
         self.cushion.check()?;
         self.flow.check()?;
-        for (name, mass) in
-            [("striker", self.striker.mass), ("intermediate piston", self.intermediate), ("bit", self.bit.mass)]
-        {
+        for (name, mass) in [
+            ("striker", self.striker.mass),
+            ("intermediate piston", self.intermediate),
+            ("bit", self.bit.mass),
+        ] {
             number(&format!("mass of the {name}"), mass, "kg", NumberRange::AboveZero)?;
         }
         number("seal friction", self.striker.friction, "N", NumberRange::Zero)?;

@@ -206,9 +206,8 @@ impl Plant {
             sum
         };
         let lines = restraint.response.map(|row| combined(&row));
-        self.accelerations = std::array::from_fn(|i| {
-            lines.map(|line| line.weights.get(i).copied().unwrap_or(line.offset))
-        });
+        self.accelerations =
+            std::array::from_fn(|i| lines.map(|line| line.weights.get(i).copied().unwrap_or(line.offset)));
         self.holds = restraint.forces.map(|row| combined(&row));
         self.restraint = restraint;
         self.conductance = self.machine.flow.conductance(self.stretch);
@@ -342,8 +341,8 @@ impl Plant {
         self.curved && matches!(watch, Watch::Pulls(_) | Watch::Slips(_))
     }
 
-    /// Velocities in m/s after plastic impacts of all constraints that act.
-    pub fn projected(&self, velocities: &[f64; 3]) -> [f64; 3] {
+    /// Velocities in m/s after plastic impacts of all constraints that act, and their impulses in N s.
+    pub fn projected(&self, velocities: &[f64; 3]) -> ([f64; 3], [f64; CONSTRAINTS]) {
         self.chain.projected(&self.restraint, velocities)
     }
 
@@ -377,9 +376,8 @@ impl Plant {
         let indented = (0..4).filter(|k| matches!(self.stages[*k], Stage::Pushing | Stage::Released));
         let energy = |k: usize| {
             let depth = self.indentation(k, y)[0].max(0.0);
-            self.laws[k].map_or(0.0, |law| {
-                law.stiffness * depth.powf(law.exponent + 1.0) / (law.exponent + 1.0)
-            })
+            self.laws[k]
+                .map_or(0.0, |law| law.stiffness * depth.powf(law.exponent + 1.0) / (law.exponent + 1.0))
         };
         indented.map(energy).sum()
     }

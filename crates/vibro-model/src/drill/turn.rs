@@ -121,7 +121,6 @@ impl Turn {
             same.map(|impact| 0.5 * bit * impact.after[1].powi(2)).fold(0.0, f64::max)
         });
         let speed = blow.before[0];
-        self.blow =
-            Some(Blow { time: blow.time, speed, energy: 0.5 * striker * speed * speed, bit_energy });
+        self.blow = Some(Blow { time: blow.time, speed, energy: 0.5 * striker * speed * speed, bit_energy });
     }
 }
