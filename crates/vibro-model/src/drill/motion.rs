@@ -2,10 +2,7 @@
 
 use super::chain::{Chain, STUCK};
 use super::machine::{Interface, Machine};
-use super::plant::{
-    CONTACT_LOSS, GAS, PISTON_WORK, PRESSURE, Plant, SEAL_LOSS, SIZE, STRIKER_WORK, Stage, StrikerDrive,
-    Vector, Watch, halves,
-};
+use super::plant::{GAS, PRESSURE, Plant, SIZE, STRIKER_WORK, Stage, Vector, Watch, halves};
 use super::run::Start;
 use super::rungs::Rung;
 use super::turn::{Book, Impact, Sample, Turn};
@@ -61,10 +58,6 @@ impl Motion {
         y[3..6].copy_from_slice(&start.velocities);
         let m = &plant.machine;
         let speed = TAU * m.crank.frequency * m.crank.radius;
-        let energy = m.striker.mass * speed * speed;
-        if rung == Rung::Prescribed {
-            (y[0], y[3]) = (0.0, 0.0);
-        }
         for (k, interface) in Interface::ALL.into_iter().enumerate() {
             let gap = plant.chain.gap(k, &halves(&y)[0]);
             if gap < -TOUCH && plant.laws[k].is_none() {
@@ -78,10 +71,10 @@ impl Motion {
             return Err(Error::usage("a striker behind the piston", "a start in front of the piston"));
         }
         // A sealed cushion keeps the air that it has at its origin.
-        let sealed = m.flow.is_sealed() && rung != Rung::Prescribed;
+        let sealed = m.flow.is_sealed();
         y[PRESSURE] = if sealed { m.cushion.sealed_pressure(volume) } else { m.cushion.ambient };
         y[GAS] = m.cushion.gas(m.cushion.ambient, if sealed { m.cushion.rest_volume() } else { volume });
-        let (way, work) = (2.0 * m.crank.radius, energy);
+        let (way, work) = (2.0 * m.crank.radius, m.striker.mass * speed * speed);
         let floor = [way, way, way, speed, speed, speed, m.cushion.ambient, y[GAS], work, work, work, work];
         plant.stretch = m.flow.stretch(y[0]);
         plant.flow = m.flow.regime(y[PRESSURE], m.cushion.ambient);
@@ -113,49 +106,32 @@ impl Motion {
 
     /// Follows a whole turn; `samples` states at even angles are kept.
     pub fn turn(&mut self, samples: usize) -> Result<Turn> {
-        let crank = self.plant.machine.crank;
-        let (period, fastest) = (crank.period(), crank.fastest());
         self.y[STRIKER_WORK..].fill(0.0);
-        let (before, gas) = (self.energies(), self.stored_air());
-        self.turn.samples.reserve(samples);
-        if self.plant.drive != StrikerDrive::Forces {
-            // The prescribed striker is back on the piston.
-            (self.y[0], self.y[3]) = (0.0, 0.0);
-            self.plant.drive = StrikerDrive::Carried;
-            self.plant.stages[0] = Stage::Apart;
-            self.settle(None)?;
-            self.fly(fastest, samples)?;
-            if self.plant.drive == StrikerDrive::Carried {
-                self.plant.drive = StrikerDrive::Thrown;
-                self.settle(None)?;
-            }
-        }
-        self.fly(period, samples)?;
-        let (after, gas_after) = (self.energies(), self.stored_air());
-        let change: [f64; 3] = std::array::from_fn(|i| after[i] - before[i]);
-        let mut turn = std::mem::take(&mut self.turn);
-        if self.plant.drive == StrikerDrive::Forces {
-            let [piston, striker] = [self.y[PISTON_WORK], self.y[STRIKER_WORK]];
-            let [kinetic, potential, elastic] = change;
-            let air = gas_after - gas;
-            let (seal, contacts) = (self.y[SEAL_LOSS], self.y[CONTACT_LOSS]);
-            let impacts = turn.book.impacts;
-            let residual = striker - kinetic - potential - elastic - impacts - contacts - seal;
-            let flow = piston - striker - air;
-            turn.book =
-                Book { piston, kinetic, potential, elastic, air, impacts, contacts, seal, flow, residual };
-        } else {
-            turn.book = Book::default();
-        }
-        let m = &self.plant.machine;
-        let thrown = self.plant.drive != StrikerDrive::Forces;
-        let least = if thrown { 0.0 } else { crank.at(fastest)[1] };
-        turn.find_blow(least, m.striker.mass, m.bit.mass);
-        let velocities = &halves(&self.y)[1];
-        turn.momentum = velocities.iter().zip(&self.plant.chain.masses).map(|(v, mass)| v * mass).sum();
+        let (before, air) = (self.energies(), self.stored_air());
+        self.fly(samples)?;
+        let after = self.energies();
+        let [kinetic, potential, elastic] = std::array::from_fn(|i| after[i] - before[i]);
+        let air = self.stored_air() - air;
+        let [.., striker, piston, seal, contacts] = self.y;
+        let mut turn = self.take_turn();
+        let impacts = turn.book.impacts;
+        let residual = striker - kinetic - potential - elastic - impacts - contacts - seal;
+        let flow = piston - striker - air;
+        turn.book =
+            Book { piston, kinetic, potential, elastic, air, impacts, contacts, seal, flow, residual };
         self.turns += 1;
         self.time = 0.0;
         Ok(turn)
+    }
+
+    /// The turn so far, with its blow and momentum; the next begins.
+    pub fn take_turn(&mut self) -> Turn {
+        let mut turn = std::mem::take(&mut self.turn);
+        let (crank, [striker, .., bit]) = (self.plant.machine.crank, self.plant.chain.masses);
+        turn.find_blow(crank.at(crank.fastest())[1], striker, bit);
+        let [_, v] = halves(&self.y);
+        turn.momentum = v.iter().zip(&self.plant.chain.masses).map(|(v, mass)| v * mass).sum();
+        turn
     }
 
     /// Kinetic, potential and elastic energy in J.
@@ -170,51 +146,38 @@ impl Motion {
         self.plant.machine.cushion.stored(self.y[PRESSURE], self.plant.volume(self.time, &self.y))
     }
 
-    /// Integrates to a time (s) of the turn, from event to event.
-    fn fly(&mut self, until: f64, samples: usize) -> Result<()> {
-        let mut events = 0;
-        'event: while self.time < until {
-            let (time, y, step) = (self.time, self.y, self.next_step);
-            let plant = &self.plant;
+    /// Integrates to the end of the turn, from event to event.
+    fn fly(&mut self, samples: usize) -> Result<()> {
+        let period = self.plant.machine.crank.period();
+        for _ in 0..MOST_EVENTS {
+            let (y, plant) = (self.y, &self.plant);
             let rate = |t: f64, y: &Vector| plant.rate(t, y);
-            let mut integrator = Integrator::<Dop853, SIZE>::new(rate, time, y, step, self.tolerance);
-            loop {
-                let step = integrator.step(|t, y| self.plant.rate(t, y), until)?;
+            let mut integrator =
+                Integrator::<Dop853, SIZE>::new(rate, self.time, y, self.next_step, self.tolerance);
+            let mut event = None;
+            while event.is_none() && self.time < period {
+                let step = integrator.step(|t, y| self.plant.rate(t, y), period)?;
                 self.steps += 1;
                 self.next_step = integrator.next_step();
-                let event = self.first_event(&step);
+                event = self.first_event(&step);
                 let duration = event.map_or(step.duration, |(t, _)| t);
                 self.record(&step, duration, samples);
                 self.y = step.at(duration);
                 self.time = if event.is_none() { integrator.time() } else { step.start + duration };
-                let volume = self.plant.volume(self.time, &self.y);
-                if volume <= self.plant.machine.cushion.dead_volume
-                    && self.plant.drive == StrikerDrive::Forces
-                {
-                    return Err(Error::refused(format!(
-                        "at {} s the striker strikes the driving piston",
-                        significant(self.now(), 6)
-                    ))
-                    .hint("check leakage and vents: the air cushion must keep them apart"));
-                }
-                if let Some((duration, watch)) = event {
-                    if let Watch::Flows(_) = watch {
-                        // The slope of the flow is steep where it begins.
-                        self.next_step = self.next_step.min(20.0 * duration.max(1e-6 * until));
-                    }
-                    self.apply(watch)?;
-                    events += 1;
-                    if events > MOST_EVENTS {
-                        return Err(too_many("events in a turn", MOST_EVENTS, self.now()));
-                    }
-                    continue 'event;
-                }
-                if self.time >= until {
-                    break 'event;
+                if self.plant.volume(self.time, &self.y) <= self.plant.machine.cushion.dead_volume {
+                    let now = significant(self.now(), 6);
+                    return Err(Error::refused(format!("at {now} s the striker strikes the driving piston"))
+                        .hint("check leakage and vents: the air cushion must keep them apart"));
                 }
             }
+            let Some((duration, watch)) = event else { return Ok(()) };
+            if let Watch::Flows(_) = watch {
+                // The slope of the flow is steep where it begins.
+                self.next_step = self.next_step.min(20.0 * duration.max(1e-6 * period));
+            }
+            self.apply(watch)?;
         }
-        Ok(())
+        Err(too_many("events in a turn", MOST_EVENTS, self.now()))
     }
 
     /// First event in a step, with its time in s since the start of the step.
@@ -295,7 +258,6 @@ impl Motion {
                 let duration = self.now() - time;
                 let interface = Interface::ALL[k];
                 self.turn.impacts.push(Impact { time, duration, interface, before, after, lost });
-                self.blown(k);
             }
             Watch::ForceEnds(k) => self.plant.stages[k] = Stage::Released,
             Watch::ForceReturns(k) => self.plant.stages[k] = Stage::Pushing,
@@ -312,13 +274,6 @@ impl Motion {
             Watch::Vents(stretch) => self.plant.stretch = stretch,
         }
         self.settle(None)
-    }
-
-    /// A prescribed striker has no more contacts after its blow.
-    fn blown(&mut self, k: usize) {
-        if k == 0 && self.plant.drive != StrikerDrive::Forces {
-            self.plant.stages[0] = Stage::Absent;
-        }
     }
 
     fn touches(&self, k: usize) -> bool {
@@ -355,7 +310,6 @@ impl Motion {
                 let (time, duration) = (self.now(), 0.0);
                 self.turn.impacts.push(Impact { time, duration, interface, before, after, lost });
                 self.plant.slack[k] = 0.0;
-                self.blown(k);
             }
             if !any {
                 break;
@@ -378,7 +332,7 @@ impl Motion {
         for k in 0..4 {
             // Faster rebounds are followed; a chatter ends far below.
             let slow = separation[k] >= -NO_SPEED && separation[k] < 1e-3;
-            if self.plant.laws[k].is_none() && self.plant.stages[k] != Stage::Absent {
+            if self.plant.laws[k].is_none() {
                 let stays = slow && self.touches(k) && released != Some(k);
                 self.plant.stages[k] = if stays { Stage::Held } else { Stage::Apart };
             }

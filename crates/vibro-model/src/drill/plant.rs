@@ -73,19 +73,6 @@ pub(super) enum Stage {
     Pushing,
     /// Compliant and still indented, without force.
     Released,
-    /// Not looked at: a prescribed striker on its way back.
-    Absent,
-}
-
-/// What moves the striker.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum StrikerDrive {
-    /// The forces on it.
-    Forces,
-    /// The piston carries it.
-    Carried,
-    /// It flies at a constant speed.
-    Thrown,
 }
 
 /// What ends the present equations.
@@ -116,7 +103,6 @@ pub(super) struct Plant {
     pub stages: [Stage; 4],
     /// Overlap in m that is no contact, after bodies at rest against each other have parted.
     pub slack: [f64; 4],
-    pub drive: StrikerDrive,
     /// Whether the striker sticks in its seal.
     pub stuck: bool,
     /// Direction in which it slips: −1, 0 or 1.
@@ -148,13 +134,11 @@ impl Plant {
             let compliant = rung >= Rung::Compliant || k == Interface::Damper;
             machine.contacts[k as usize].law.filter(|_| compliant)
         });
-        let drive = if rung == Rung::Prescribed { StrikerDrive::Carried } else { StrikerDrive::Forces };
         Plant {
             chain: Chain::new(&machine),
             laws,
             stages: [Stage::Apart; 4],
             slack: [0.0; 4],
-            drive,
             stuck: false,
             slip: 0.0,
             flow: FlowRegime::Even,
@@ -182,12 +166,8 @@ impl Plant {
         let (area, seal) = (m.cushion.area, m.striker);
         let weight = self.chain.masses.map(|mass| mass * m.gravity);
         self.forces = weight.map(|weight| Line::of(&[], weight));
-        if self.drive == StrikerDrive::Forces {
-            let ambient = area * m.cushion.ambient + seal.friction * self.slip;
-            self.forces[0].add(1.0, &Line::of(&[(PRESSURE, area), (3, -seal.damping)], -ambient));
-        } else {
-            self.forces[0] = Line::default();
-        }
+        let ambient = area * m.cushion.ambient + seal.friction * self.slip;
+        self.forces[0].add(1.0, &Line::of(&[(PRESSURE, area), (3, -seal.damping)], -ambient));
         self.curved = false;
         for k in (0..4).filter(|k| self.stages[*k] == Stage::Pushing) {
             match self.laws[k] {
@@ -257,7 +237,6 @@ impl Plant {
                     watches.push((Watch::Separates(k), gap.times(-1.0)));
                     watches.extend(factor().map(|force| (Watch::ForceReturns(k), force.times(-1.0))));
                 }
-                Stage::Absent => {}
             }
         }
         let m = &self.machine;
@@ -357,9 +336,6 @@ impl Plant {
 
     /// Force in N on the housing, towards the bit, by air, seal and buffer; the piston is without mass.
     pub fn handle_force(&self, y: &Vector) -> f64 {
-        if self.drive != StrikerDrive::Forces {
-            return -self.contact_force(Interface::Buffer as usize, y);
-        }
         let (cushion, seal) = (&self.machine.cushion, self.machine.striker);
         let friction = if self.stuck { -self.hold(STUCK, y) } else { seal.friction * self.slip };
         let air = (y[PRESSURE] - cushion.ambient) * cushion.area;
@@ -387,7 +363,7 @@ impl Plant {
     pub fn rate(&self, t: f64, y: &Vector) -> Vector {
         let m = &self.machine;
         let (cushion, seal) = (&m.cushion, &m.striker);
-        let [piston, piston_velocity, piston_acceleration] = m.crank.at(t);
+        let [piston, piston_velocity] = m.crank.at(t);
         let mut rate = [0.0; SIZE];
         rate[..3].copy_from_slice(&y[3..6]);
         let mut accelerations = self.accelerations[LINEAR];
@@ -408,10 +384,6 @@ impl Plant {
                 let force = if self.stages[k] == Stage::Pushing { force } else { 0.0 };
                 rate[CONTACT_LOSS] += (force - elastic) * approach;
             }
-        }
-        if self.drive != StrikerDrive::Forces {
-            rate[3] = if self.drive == StrikerDrive::Carried { piston_acceleration } else { 0.0 };
-            return rate;
         }
         let volume = cushion.volume(y[0], piston);
         let growth = cushion.area * (y[3] - piston_velocity);

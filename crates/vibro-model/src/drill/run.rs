@@ -112,6 +112,9 @@ pub fn run(machine: &Machine, rung: Rung, course: &Course) -> Result<Run> {
         return Err(Error::usage(found, format!("1 to {MOST_TURNS} turns, and 1 or more judged")));
     }
     let start = course.start.unwrap_or_else(|| Start::rest(machine));
+    if rung == Rung::Prescribed {
+        return thrown(machine, course);
+    }
     let mut motion = Motion::new(machine, rung, &start, course.tolerance)?;
     let first = course.turns.saturating_sub(course.judged);
     let (mut caught, mut turns) = (None, Vec::new());
@@ -125,6 +128,20 @@ pub fn run(machine: &Machine, rung: Rung, course: &Course) -> Result<Run> {
             turns.push(turn);
         }
     }
+    Ok(judged(machine, rung, turns, caught, motion.steps))
+}
+
+/// The blow at the largest speed of the piston, in every turn, on bodies at rest.
+fn thrown(machine: &Machine, course: &Course) -> Result<Run> {
+    let speed = machine.crank.at(machine.crank.fastest())[1];
+    let start = Start { velocities: [speed, 0.0, 0.0], ..Start::rest(machine) };
+    let turn = Motion::new(machine, Rung::Prescribed, &start, course.tolerance)?.take_turn();
+    let turns = (0..course.judged.min(course.turns)).map(|_| turn.clone()).collect();
+    Ok(judged(machine, Rung::Prescribed, turns, Some(0), 0))
+}
+
+/// Answers from the judged turns.
+fn judged(machine: &Machine, rung: Rung, turns: Vec<Turn>, caught: Option<usize>, steps: usize) -> Run {
     let blows: Vec<Blow> = turns.iter().filter_map(|turn| turn.blow).collect();
     let energies: Vec<f64> = blows.iter().map(|blow| blow.energy).collect();
     let bit: Vec<f64> = blows.iter().filter_map(|blow| blow.bit_energy).collect();
@@ -133,7 +150,7 @@ pub fn run(machine: &Machine, rung: Rung, course: &Course) -> Result<Run> {
         let squares: f64 = energies.iter().map(|energy| (energy - mean).powi(2)).sum();
         (squares / energies.len() as f64).sqrt()
     };
-    Ok(Run {
+    Run {
         rung,
         regime: regime(&turns),
         caught,
@@ -142,9 +159,9 @@ pub fn run(machine: &Machine, rung: Rung, course: &Course) -> Result<Run> {
         bit_energy: mean(&bit),
         rate: blows.len() as f64 / (turns.len() as f64 * machine.crank.period()),
         wave_limits: wave_limits(machine, &turns),
-        steps: motion.steps,
+        steps,
         turns,
-    })
+    }
 }
 
 fn mean(values: &[f64]) -> Option<f64> {

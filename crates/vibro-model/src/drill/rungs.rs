@@ -7,8 +7,8 @@ use vibro_record::Result;
 /// Rung of the ladder: how much of the machine the model knows. Each has all of the one before.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Rung {
-    /// No air: the piston carries the striker from top dead centre until it is fastest, and throws it. After
-    /// a blow the striker is back at top dead centre.
+    /// No air, nothing to integrate: in every turn the piston throws the striker at its own largest speed, on
+    /// bodies at rest with rigid contacts.
     Prescribed,
     /// Sealed polytropic cushion, no friction.
     Sealed,

@@ -97,7 +97,7 @@ pub struct Turn {
     /// Blow of the turn: the impact of the fastest striker, if it is faster than the driving piston ever is.
     /// A slower one is a landing of a striker that follows the piston.
     pub blow: Option<Blow>,
-    /// Energies; all 0 for a prescribed striker.
+    /// Energies.
     pub book: Book,
     /// Impulse in N s on the housing towards the bit, with the impulses of rigid impacts.
     pub handle: f64,
@@ -110,11 +110,11 @@ pub struct Turn {
 }
 
 impl Turn {
-    /// The blow among the impacts: the fastest striker, if it exceeds `least` (m/s). Masses in kg.
+    /// The blow among the impacts: the fastest striker, if it reaches `least` (m/s). Masses in kg.
     pub(super) fn find_blow(&mut self, least: f64, striker: f64, bit: f64) {
         let of = |interface| self.impacts.iter().filter(move |impact| impact.interface == interface);
         let fastest = of(Interface::Striker).max_by(|a, b| a.before[0].total_cmp(&b.before[0]));
-        let Some(blow) = fastest.filter(|blow| blow.before[0] > least) else { return };
+        let Some(blow) = fastest.filter(|blow| blow.before[0] >= least) else { return };
         let first = of(Interface::Bit).find(|impact| impact.end() >= blow.time).map(Impact::end);
         let bit_energy = first.map(|end| {
             let same = of(Interface::Bit).filter(|impact| impact.end() == end && impact.end() >= blow.time);
