@@ -1,11 +1,11 @@
 //! Impact unit of a hammer drill: crank, piston, air cushion, striker, intermediate piston, bit, damper.
 //!
-//! The equations of motion, with positions towards the bit and the piston's position x_p from the crank:
-//! - cushion: V = A(L₀ + x_s − x_p) + V_d and ṗ = (n/V)(RT ṁ − pV̇), T the temperature of what flows: that of
-//!   the cushion, pV/(mR), outwards and the ambient one inwards. Sealed, this is pVⁿ = const;
+//! The equations of motion, with positions towards the bit, `x_p` of the piston from the crank:
+//! - cushion: `V = A(L₀ + x_s − x_p) + V_d` and ṗ = (n/V)(RT ṁ − pV̇), T the temperature of what flows: that
+//!   of the cushion, pV/(mR), outwards and the ambient one inwards. Sealed, this is pVⁿ = const;
 //! - flow ṁ by ISO 6358 through leakage and vents;
-//! - striker: m_s ẍ_s = (p − pₐ)A + m_s g cos β − F_c sign ẋ_s − c ẋ_s. Where its velocity falls to zero the
-//!   balance of forces decides whether it sticks;
+//! - striker: `m_s ẍ_s = (p − pₐ)A + m_s g cos β − F_c sign ẋ_s − c ẋ_s`. Where its velocity falls to zero
+//!   the balance of forces decides whether it sticks;
 //! - contacts by restitution or by a law of [`crate::contact`].
 //!
 //! Integrated by DOP853. The air flows, the seal slips, the contacts act by one smooth law each between two

@@ -90,9 +90,9 @@ impl Chain {
 
     /// Response with the constraints `kept`; `None` where they depend on each other.
     ///
-    /// With the rows W of the constraints the forces N keep W a = 0 in M a = f + WᵀN:
-    /// N = −(WM⁻¹Wᵀ)⁻¹WM⁻¹f.
-    pub fn restraint(&self, kept: &[bool; CONSTRAINTS]) -> Option<Restraint> {
+    /// With the rows W of the constraints the forces N keep `Wa = 0` in `Ma = f + WᵀN`:
+    /// `N = −(WM⁻¹Wᵀ)⁻¹WM⁻¹f`.
+    pub fn restraint(&self, kept: [bool; CONSTRAINTS]) -> Option<Restraint> {
         let mut forces = [[0.0; 3]; CONSTRAINTS];
         // Rows of (WM⁻¹Wᵀ | −WM⁻¹), with a row of the unit matrix for a constraint that is not kept.
         let mut system = [[0.0; CONSTRAINTS + 3]; CONSTRAINTS];
@@ -159,18 +159,18 @@ mod tests {
     #[test]
     fn held_bodies_move_as_one_and_redundant_constraints_are_found() {
         // Intermediate piston and bit together under 3 N and 1 N: a = 4/0.71.
-        let held = CHAIN.restraint(&[false, true, false, false, false]).unwrap();
+        let held = CHAIN.restraint([false, true, false, false, false]).unwrap();
         let a = held.response.map(|row| dot(&row, &[2.0, 3.0, 1.0]));
         assert!((a[1] - 4.0 / 0.71).abs() < 1e-14 && (a[2] - a[1]).abs() < 1e-14 && a[0] == 2.0 / 0.14);
         // The force that the bit takes from the piston is what it needs beyond its own 1 N.
         assert!((dot(&held.forces[1], &[2.0, 3.0, 1.0]) - (0.43 * a[2] - 1.0)).abs() < 1e-14);
         // All at rest on the damper: weights add up.
-        let rest = CHAIN.restraint(&[true, true, true, false, false]).unwrap();
+        let rest = CHAIN.restraint([true, true, true, false, false]).unwrap();
         let forces = rest.forces.map(|row| dot(&row, &[1.0, 2.0, 4.0]));
         for (force, expected) in forces.iter().zip([1.0, 3.0, 7.0, 0.0, 0.0]) {
             assert!((force - expected).abs() < 1e-13);
         }
-        assert!(CHAIN.restraint(&[true, true, true, false, true]).is_none());
-        assert!(CHAIN.restraint(&[false, true, true, true, false]).is_none());
+        assert!(CHAIN.restraint([true, true, true, false, true]).is_none());
+        assert!(CHAIN.restraint([false, true, true, true, false]).is_none());
     }
 }

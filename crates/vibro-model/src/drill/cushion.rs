@@ -5,7 +5,7 @@ use crate::least::{NumberRange, number};
 use std::f64::consts::TAU;
 use vibro_record::{Error, Result};
 
-/// Air cushion: its length is L = L₀ + x_s − x_p, its volume V = A·L + V_d.
+/// Air cushion: its length is `L = L₀ + x_s − x_p`, its volume `V = A·L + V_d`.
 ///
 /// A sealed cushion follows the polytrope pVⁿ = p₀V₀ⁿ: n = 1 is isothermal, n = 1.4 adiabatic for air.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -14,7 +14,7 @@ pub struct Cushion {
     pub area: f64,
     /// Length L₀ in m with the piston at top dead centre and the striker at its origin.
     pub length: f64,
-    /// Dead volume V_d in m³.
+    /// Dead volume in m³.
     pub dead_volume: f64,
     /// Polytropic exponent n, 1 to 1.4.
     pub exponent: f64,
@@ -53,7 +53,7 @@ impl Cushion {
 
     /// Energy in J that the air gives by polytropic expansion to ambient pressure, against that pressure.
     ///
-    /// ∫(p − pₐ)dV from V to V_a = V(p/pₐ)^{1/n}; with x = ln(p/pₐ)/n this is
+    /// ∫(p − pₐ)dV from V to V(p/pₐ)^{1/n}; with x = ln(p/pₐ)/n this is
     /// pV(1 − e^{−(n−1)x})/(n − 1) − pₐV(eˣ − 1).
     pub fn stored(&self, pressure: f64, volume: f64) -> f64 {
         let n = self.exponent;

@@ -325,15 +325,16 @@ impl Motion {
     /// Decides by the balance of forces which touching bodies stay together and whether the striker sticks,
     /// and makes the equations anew. `released` is a constraint that has just given way.
     fn settle(&mut self, released: Option<usize>) -> Result<()> {
-        let [_, v] = halves(&self.y);
+        let [x, v] = halves(&self.y);
         let friction = self.plant.machine.striker.friction;
+        let touching: [bool; 4] = std::array::from_fn(|k| self.touches(k));
         let separation: [f64; 4] = std::array::from_fn(|k| -Chain::approach(k, &v));
         let held = self.plant.kept();
-        for k in 0..4 {
+        for (k, speed) in separation.into_iter().enumerate() {
             // Faster rebounds are followed; a chatter ends far below.
-            let slow = separation[k] >= -NO_SPEED && separation[k] < 1e-3;
+            let slow = (-NO_SPEED..1e-3).contains(&speed);
             if self.plant.laws[k].is_none() {
-                let stays = slow && self.touches(k) && released != Some(k);
+                let stays = slow && touching[k] && released != Some(k);
                 self.plant.stages[k] = if stays { Stage::Held } else { Stage::Apart };
             }
         }
@@ -384,8 +385,9 @@ impl Motion {
         let kept = self.plant.kept();
         for k in 0..4 {
             self.turn.chatters += usize::from(kept[k] && !held[k]);
-            if held[k] && !kept[k] && separation[k] <= NO_SPEED {
-                self.plant.slack[k] = PARTING;
+            if touching[k] && !kept[k] && separation[k] <= NO_SPEED {
+                // Rounding must not close a gap that opens from rest.
+                self.plant.slack[k] = PARTING - self.plant.chain.gap(k, &x).min(0.0);
             }
         }
         self.turn.damper += impulses[Interface::Damper as usize];

@@ -40,7 +40,9 @@ pub(super) struct Line {
 impl Line {
     fn of(terms: &[(usize, f64)], offset: f64) -> Line {
         let mut line = Line { offset, ..Line::default() };
-        terms.iter().for_each(|(i, weight)| line.weights[*i] += weight);
+        for (i, weight) in terms {
+            line.weights[*i] += weight;
+        }
         line
     }
 
@@ -161,7 +163,7 @@ impl Plant {
 
     /// Makes the equations of the present stages; `false` where their constraints depend on each other.
     pub fn assemble(&mut self) -> bool {
-        let Some(restraint) = self.chain.restraint(&self.kept()) else { return false };
+        let Some(restraint) = self.chain.restraint(self.kept()) else { return false };
         let m = &self.machine;
         let (area, seal) = (m.cushion.area, m.striker);
         let weight = self.chain.masses.map(|mass| mass * m.gravity);

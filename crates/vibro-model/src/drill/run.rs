@@ -86,7 +86,7 @@ pub struct Run {
     pub regime: Regime,
     /// First turn of the run with a blow, from 0: the striker is caught before. `None` if it never is.
     pub caught: Option<usize>,
-    /// Mean energy ½m_s v² in J of a blow; `None` without a blow.
+    /// Mean energy ½mv² in J of the striker before a blow; `None` without a blow.
     pub blow_energy: Option<f64>,
     /// Standard deviation in J of the blow energy over the judged turns.
     pub blow_scatter: Option<f64>,

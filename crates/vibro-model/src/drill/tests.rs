@@ -9,8 +9,8 @@ fn course(turns: usize, tolerance: f64) -> Course {
     Course { judged: turns, tolerance, ..Course::turns(turns) }
 }
 
-fn at(positions: [f64; 3], velocities: [f64; 3]) -> Option<Start> {
-    Some(Start { positions, velocities })
+fn at(positions: [f64; 3], velocities: [f64; 3]) -> Start {
+    Start { positions, velocities }
 }
 
 #[test]
@@ -26,7 +26,7 @@ fn small_motion_on_the_sealed_cushion_has_its_natural_frequency() {
     // A turn is a period; the piston does not move.
     machine.crank = Crank { radius: 1e-20, rod: 1.0, frequency };
     let amplitude = 1e-4 * cushion.length;
-    let start = at([amplitude, 1.0, 1.0], [0.0; 3]);
+    let start = Some(at([amplitude, 1.0, 1.0], [0.0; 3]));
     let run = run(&machine, Rung::Sealed, &Course { start, samples: 4, ..course(2, 1e-13) }).unwrap();
     // The second turn begins where the first did. The frequency changes by some (a/L₀)² = 1e-8; a step's
     // error of 1e-13 p is 1e-9 of the change of the pressure.
@@ -43,7 +43,7 @@ fn a_sealed_cushion_keeps_its_polytrope_and_gives_back_its_work() {
         let mut machine = afloat();
         machine.cushion.exponent = exponent;
         let cushion = machine.cushion;
-        let start = at([0.0, 1.0, 1.0], [0.0; 3]);
+        let start = Some(at([0.0, 1.0, 1.0], [0.0; 3]));
         let run = run(&machine, Rung::Sealed, &Course { start, samples: 50, ..course(3, 1e-12) }).unwrap();
         let constant = cushion.ambient * cushion.rest_volume().powf(exponent);
         for turn in &run.turns {
@@ -91,7 +91,7 @@ fn energy_and_momentum_balance_on_every_rung() {
 #[test]
 fn without_flow_the_flow_model_is_the_sealed_one() {
     let mut machine = Machine::example();
-    let start = at([0.0, machine.strike, machine.strike], [0.0; 3]);
+    let start = Some(at([0.0, machine.strike, machine.strike], [0.0; 3]));
     machine.flow.vents.clear();
     let course = Course { start, ..course(4, 1e-12) };
     let sealed = run(&machine, Rung::Sealed, &course).unwrap();
@@ -143,7 +143,7 @@ fn a_chatter_ends_after_the_sum_of_its_flights() {
     machine.gravity = 9.81;
     machine.contacts[2] = Contact::rigid(restitution);
     // The bit falls on a rigid damper; the intermediate piston falls far behind it.
-    let start = at([0.0, 0.6, 1.0 - height], [0.0; 3]);
+    let start = Some(at([0.0, 0.6, 1.0 - height], [0.0; 3]));
     let course = Course { start, samples: 1000, ..course(1, 1e-12) };
     let turn = run(&machine, Rung::Sealed, &course).unwrap().turns.remove(0);
     let fall = (2.0 * height / machine.gravity).sqrt();
@@ -166,7 +166,7 @@ fn a_chatter_ends_after_the_sum_of_its_flights() {
     assert!((turn.book.impacts - energy).abs() < 1e-10);
     // Without loss a low rebound never ends.
     machine.contacts[2] = Contact::rigid(1.0);
-    let start = at([0.0, 0.6, 1.0 - 1e-10], [0.0; 3]);
+    let start = Some(at([0.0, 0.6, 1.0 - 1e-10], [0.0; 3]));
     let error = run(&machine, Rung::Sealed, &Course { start, ..course }).err().unwrap();
     assert!(error.to_string().contains("more than 20000 events in a turn"), "{error}");
 }
@@ -176,7 +176,7 @@ fn a_striker_sticks_until_the_force_exceeds_the_friction() {
     let mut machine = afloat();
     machine.crank.radius = 0.004;
     machine.striker.friction = 1e3;
-    let start = at([0.0, 1.0, 1.0], [0.0; 3]);
+    let start = Some(at([0.0, 1.0, 1.0], [0.0; 3]));
     let stuck = run(&machine, Rung::Friction, &Course { start, samples: 20, ..course(2, 1e-10) }).unwrap();
     for sample in stuck.turns.iter().flat_map(|turn| &turn.samples) {
         assert!(sample.velocities[0] == 0.0 && sample.positions[0] == 0.0, "{sample:?}");
@@ -241,10 +241,10 @@ fn impossible_machines_and_starts_are_refused() {
         run(machine, Rung::Friction, &Course { start, ..Course::turns(2) }).err().unwrap().to_string()
     };
     let mut machine = Machine::example();
-    let overlap = at([machine.strike + 1e-3, machine.strike, machine.strike], [0.0; 3]);
+    let overlap = Some(at([machine.strike + 1e-3, machine.strike, machine.strike], [0.0; 3]));
     let found = refused(&machine, overlap);
     assert!(found.contains("overlap by 0.00100 m"), "{found}");
-    let behind = at([-0.03, machine.strike, machine.strike], [0.0; 3]);
+    let behind = Some(at([-0.03, machine.strike, machine.strike], [0.0; 3]));
     assert!(refused(&machine, behind).contains("behind the piston"));
     machine.crank.rod = 0.01;
     assert!(refused(&machine, None).contains("rod length is 0.01 m"));

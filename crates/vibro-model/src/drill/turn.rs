@@ -34,9 +34,9 @@ pub struct Blow {
     pub time: f64,
     /// Velocity in m/s of the striker just before.
     pub speed: f64,
-    /// Energy ½m_s v² in J of the striker just before.
+    /// Energy ½mv² in J of the striker just before.
     pub energy: f64,
-    /// Energy ½m_b v² in J of the bit after it has first parted from the intermediate piston; `None` if that
+    /// Energy ½mv² in J of the bit after it has first parted from the intermediate piston; `None` if that
     /// does not strike the bit in the same turn.
     pub bit_energy: Option<f64>,
 }
