@@ -19,8 +19,9 @@ pub(super) const NO_SPEED: f64 = 1e-12;
 /// Way in m that completed chatters may leave out. Rebounds from a separation at w against an acceleration a
 /// last 2w/(a(1 − R)) in total, and lift the bodies by w²/2a; their product with w bounds the way left out.
 const CHATTER_WAY: f64 = 1e-13;
-/// Overlap in m that is no contact, after bodies have parted from rest.
-const PARTING: f64 = 1e-13;
+/// Overlap in m that is no contact after bodies have parted from rest, and gap in m that is none in a
+/// compliant contact.
+pub(super) const PARTING: f64 = 1e-13;
 /// Most events in a turn, and most impacts in one instant.
 const MOST_EVENTS: usize = 20_000;
 const MOST_SWEEPS: usize = 2_000;
@@ -373,7 +374,8 @@ impl Motion {
             }
             if self.plant.stuck {
                 let force = self.plant.hold(STUCK, &self.y);
-                if force.abs() > friction {
+                // A little less: where it has just begun to slip, rounding must not stop it.
+                if force.abs() > (1.0 - 1e-9) * friction {
                     (self.plant.stuck, self.plant.slip) = (false, -force.signum());
                     continue;
                 }
@@ -385,7 +387,7 @@ impl Motion {
         let kept = self.plant.kept();
         for k in 0..4 {
             self.turn.chatters += usize::from(kept[k] && !held[k]);
-            if touching[k] && !kept[k] && separation[k] <= NO_SPEED {
+            if touching[k] && !kept[k] && separation[k].abs() <= NO_SPEED {
                 // Rounding must not close a gap that opens from rest.
                 self.plant.slack[k] = PARTING - self.plant.chain.gap(k, &x).min(0.0);
             }

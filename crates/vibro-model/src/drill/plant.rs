@@ -6,7 +6,7 @@
 use super::chain::{CONSTRAINTS, Chain, ROWS, Restraint, STUCK};
 use super::flow::{Flow, FlowRegime, GAS_CONSTANT};
 use super::machine::{Interface, Machine};
-use super::motion::NO_SPEED;
+use super::motion::{NO_SPEED, PARTING};
 use super::rungs::Rung;
 use crate::law::{Law, LawDamping};
 
@@ -27,6 +27,8 @@ pub(super) const PISTON_WORK: usize = 9;
 pub(super) const SEAL_LOSS: usize = 10;
 /// Energy in J lost in compliant contacts.
 pub(super) const CONTACT_LOSS: usize = 11;
+/// Pull in N, and relative pull of a curved contact, that counts as none: a billionth of a weight of 1 N.
+const NO_FORCE: f64 = 1e-9;
 /// Number of components that forces depend on.
 const LINEAR: usize = 7;
 
@@ -226,17 +228,20 @@ impl Plant {
                 let force = if law.is_linear() { self.linear_force(k, &law) } else { factor };
                 (law.damping != 0.0).then_some(force)
             };
+            // A little more than zero: rounding must not open and close a contact at rest.
+            let separates = Line { offset: PARTING - gap.offset, ..gap.times(-1.0) };
             match self.stages[k] {
                 Stage::Apart => {
                     watches.push((Watch::Meets(k), Line { offset: gap.offset + self.slack[k], ..gap }));
                 }
                 Stage::Held => watches.push((Watch::Pulls(k), self.holds[k])),
                 Stage::Pushing => {
-                    watches.push((Watch::Separates(k), gap.times(-1.0)));
-                    watches.extend(factor().map(|force| (Watch::ForceEnds(k), force)));
+                    watches.push((Watch::Separates(k), separates));
+                    let ends = factor().map(|force| Line { offset: force.offset + NO_FORCE, ..force });
+                    watches.extend(ends.map(|force| (Watch::ForceEnds(k), force)));
                 }
                 Stage::Released => {
-                    watches.push((Watch::Separates(k), gap.times(-1.0)));
+                    watches.push((Watch::Separates(k), separates));
                     watches.extend(factor().map(|force| (Watch::ForceReturns(k), force.times(-1.0))));
                 }
             }
