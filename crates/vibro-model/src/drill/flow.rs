@@ -1,9 +1,9 @@
 //! Flow between the cushion and the ambient air, by ISO 6358-1:2013.
 //!
 //! From p₁ to p₂ < p₁ flows ṁ = Cρ₀p₁√(T₀/T₁)ψ, with ψ = 1 for p₂/p₁ ≤ b and
-//! ψ² = 1 − ((p₂/p₁ − b)/(1 − b))² above. The standard's slope is infinite at equal pressures. Within 0.5 % of
-//! them the flow is linear in the pressure difference, and the temperature goes over from one side's to the
-//! other's.
+//! ψ² = 1 − ((p₂/p₁ − b)/(1 − b))² above. The standard's slope is infinite at equal pressures. Within 0.5 %
+//! of them the flow is linear in the pressure difference, and the temperature goes over from one side's to
+//! the other's.
 
 use crate::least::{NumberRange, number};
 use vibro_record::{Error, Result};

@@ -191,3 +191,21 @@ fn wave_limits(machine: &Machine, turns: &[Turn]) -> Vec<WaveLimit> {
     };
     [Interface::Bit, Interface::Damper].into_iter().filter_map(shortest).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn regimes_are_named_by_the_turns_with_a_blow() {
+        let of = |pattern: &str| {
+            let blow = Blow { time: 0.0, speed: 7.5, energy: 4.0, bit_energy: None };
+            let turn = |mark: char| Turn { blow: (mark == 'x').then_some(blow), ..Turn::default() };
+            regime(&pattern.chars().map(turn).collect::<Vec<_>>())
+        };
+        assert_eq!(of("----"), Regime::NoBlow);
+        assert_eq!(of("xxxx"), Regime::EveryTurn);
+        assert_eq!((of("x-x-"), of("-x-x-")), (Regime::EverySecondTurn, Regime::EverySecondTurn));
+        assert_eq!((of("x--x"), of("xx-x")), (Regime::Irregular, Regime::Irregular));
+    }
+}

@@ -120,7 +120,8 @@ fn the_example_shows_the_three_motions_of_the_thesis() {
     let (low, up, down) = look(7.0);
     assert_eq!((low.regime, low.rate, low.caught), (Regime::NoBlow, 0.0, None));
     assert!((-0.6..-0.3).contains(&up) && (0.3..0.6).contains(&down), "{up} {down}");
-    // Medium: up as before, in proportion to the speed; a peak of the pressure drives it faster than the piston.
+    // Medium: up as before, in proportion to the speed; a peak of the pressure drives it faster than the
+    // piston.
     let (medium, up, _) = look(18.0);
     let speed =
         |run: &Run| run.turns.iter().filter_map(|turn| turn.blow).map(|b| b.speed).fold(0.0, f64::max);
@@ -153,7 +154,7 @@ fn a_chatter_ends_after_the_sum_of_its_flights() {
         // Fall and n rebounds of 2Rⁿ times its duration; a position of 1 m is rounded to ε, a velocity of
         // 1e-3 m/s at the last impacts.
         let powers = restitution * (1.0 - restitution.powi(n as i32)) / (1.0 - restitution);
-        assert!((time - fall * (1.0 + 2.0 * powers)).abs() < 1e-10, "{n} {time}");
+        assert!((time - fall * (1.0 + 2.0 * powers)).abs() < 1e-12, "{n} {time}");
     }
     assert!(times.len() > 10 && turn.chatters == 1 && end - times.last().unwrap() < 1e-5);
     // At rest the damper carries the weight; all of the energy m g h is lost.
