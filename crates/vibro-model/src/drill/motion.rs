@@ -184,7 +184,13 @@ impl Motion {
     /// First event in a step, with its time in s since the start of the step.
     fn first_event(&self, step: &Step<SIZE>) -> Option<(f64, Watch)> {
         let mut first: Option<(f64, Watch)> = None;
+        let reach = step.reach();
         for (watch, line) in &self.plant.watches {
+            // Most borders are out of reach; rounding is far below a hundredth of the reach.
+            let change: f64 = line.weights.iter().zip(&reach).map(|(w, reach)| w.abs() * reach).sum();
+            if line.value(&self.y) > 1.01 * change && !self.plant.is_curved(*watch) {
+                continue;
+            }
             let time = if self.plant.is_curved(*watch) {
                 self.curved_fall(*watch, step)
             } else {

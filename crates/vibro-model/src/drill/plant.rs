@@ -378,18 +378,21 @@ impl Plant {
             accelerations.iter_mut().zip(column).for_each(|(sum, weight)| *sum += weight * y);
         }
         rate[3..6].copy_from_slice(&accelerations);
-        if self.curved {
-            let extra = self.curved_forces(y);
-            for (rate, row) in rate[3..6].iter_mut().zip(&self.restraint.response) {
-                *rate += row.iter().zip(&extra).map(|(p, f)| p * f).sum::<f64>();
-            }
-        }
+        let mut extra = [0.0; 3];
         for k in 0..4 {
-            if let Stage::Pushing | Stage::Released = self.stages[k] {
+            if let (Stage::Pushing | Stage::Released, Some(law)) = (self.stages[k], &self.laws[k]) {
                 let [depth, approach] = self.indentation(k, y);
                 let [force, elastic] = self.law_forces(k, [depth, approach]);
                 let force = if self.stages[k] == Stage::Pushing { force } else { 0.0 };
                 rate[CONTACT_LOSS] += (force - elastic) * approach;
+                if !law.is_linear() {
+                    extra.iter_mut().zip(&ROWS[k]).for_each(|(sum, row)| *sum += row * force);
+                }
+            }
+        }
+        if self.curved {
+            for (rate, row) in rate[3..6].iter_mut().zip(&self.restraint.response) {
+                *rate += row.iter().zip(&extra).map(|(p, f)| p * f).sum::<f64>();
             }
         }
         let volume = cushion.volume(y[0], piston);
