@@ -379,14 +379,14 @@ impl Plant {
         }
         rate[3..6].copy_from_slice(&accelerations);
         let mut extra = [0.0; 3];
-        for k in 0..4 {
+        for (k, row) in ROWS.iter().take(4).enumerate() {
             if let (Stage::Pushing | Stage::Released, Some(law)) = (self.stages[k], &self.laws[k]) {
                 let [depth, approach] = self.indentation(k, y);
                 let [force, elastic] = self.law_forces(k, [depth, approach]);
                 let force = if self.stages[k] == Stage::Pushing { force } else { 0.0 };
                 rate[CONTACT_LOSS] += (force - elastic) * approach;
                 if !law.is_linear() {
-                    extra.iter_mut().zip(&ROWS[k]).for_each(|(sum, row)| *sum += row * force);
+                    extra.iter_mut().zip(row).for_each(|(sum, row)| *sum += row * force);
                 }
             }
         }
