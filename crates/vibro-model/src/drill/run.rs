@@ -45,7 +45,7 @@ pub struct Course {
 impl Course {
     /// This many turns from rest, of which the last half is judged.
     pub fn turns(turns: usize) -> Course {
-        Course { turns, judged: turns.div_ceil(2), samples: 0, tolerance: 1e-8, start: None }
+        Course { turns, judged: turns.div_ceil(2), samples: 0, tolerance: 1e-9, start: None }
     }
 }
 
