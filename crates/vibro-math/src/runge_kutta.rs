@@ -88,6 +88,15 @@ impl<const N: usize> Step<N> {
         y
     }
 
+    /// Bound on how far each component of the dense output goes from its start.
+    pub fn reach(&self) -> [f64; N] {
+        let mut reach = [0.0; N];
+        for term in &self.terms[1..] {
+            reach.iter_mut().zip(term).for_each(|(sum, term)| *sum += term.abs());
+        }
+        reach
+    }
+
     /// First time after the start of the step at which weights·y + offset falls to zero; it must not be
     /// negative at the start. `None` if it stays above zero.
     pub fn first_fall(&self, weights: &[f64; N], offset: f64) -> Option<f64> {

@@ -7,7 +7,8 @@
 //!
 //! - [`orbits`]: every periodic motion with one impact a period in closed form, each with its verdicts;
 //! - [`Simulation`]: any motion, event by event, on exact flights between guaranteed contacts;
-//! - [`ladder`]: the simplest of these models that is good enough for a scene.
+//! - [`ladder`]: the simplest of these models that is good enough for a scene;
+//! - [`drill`]: the impact unit of a hammer drill, a model of its own.
 //!
 //! ```
 //! use vibro_model::{Rig, orbits};
@@ -21,6 +22,7 @@ mod body;
 mod chirp;
 pub mod contact;
 pub mod continuation;
+pub mod drill;
 mod drive;
 mod duffing;
 mod excitation;

@@ -129,6 +129,9 @@ fn oscillator<S: Scheme>(relative: f64) -> (f64, f64, usize) {
         for part in [0.3, 0.7] {
             let t = part * step.duration;
             inside = inside.max((step.at(t)[0] - (step.start + t).cos()).abs());
+            // Up to the rounding of both values.
+            let way = (step.at(t)[0] - step.at(0.0)[0]).abs();
+            assert!(way <= step.reach()[0] + 4.0 * f64::EPSILON);
         }
         at_end = at_end.max((step.end[0] - (step.start + step.duration).cos()).abs());
     }
