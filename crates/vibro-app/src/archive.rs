@@ -92,7 +92,7 @@ mod tests {
 
     #[test]
     fn an_archive_comes_back_as_it_was() {
-        let bytes = packed([("a.csv", b"1\n".as_slice()), ("b/c.csv", &[0; 100_000])]).unwrap();
+        let bytes = packed([("a.csv", b"1\n".as_slice()), ("b/c.csv", &vec![0; 100_000])]).unwrap();
         assert!(bytes.len() < 1000);
         let (members, left) = unpacked(Path::new("x.zip"), bytes).unwrap();
         assert_eq!(members[1], ("b/c.csv".to_owned(), vec![0; 100_000]));

@@ -95,14 +95,13 @@ impl SeenTable {
     /// Adds what the keys mean, and the further keys that the section knows.
     fn explain(&mut self) {
         for meaning in KeyMeaning::of(&self.section) {
-            match self.keys.iter_mut().find(|row| row.key == meaning.key) {
-                Some(row) => row.meaning = Some(meaning),
-                None => {
-                    let known = if meaning.left_out == "required" { "missing" } else { "possible" };
-                    let key = SeenKey::stated(meaning.key, "");
-                    self.keys.push(SeenKey { known, meaning: Some(meaning), ..key });
-                }
+            if let Some(row) = self.keys.iter_mut().find(|row| row.key == meaning.key) {
+                row.meaning = Some(meaning);
+                continue;
             }
+            let known = if meaning.left_out == "required" { "missing" } else { "possible" };
+            let key = SeenKey::stated(meaning.key, "");
+            self.keys.push(SeenKey { known, meaning: Some(meaning), ..key });
         }
     }
 
