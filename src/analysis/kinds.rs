@@ -204,7 +204,7 @@ fn run_all<A: Analysis>(job: &mut Job<'_>) -> Result<()> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::campaign::SHARED;
+    use crate::campaign::{KeyMeaning, SHARED};
 
     #[test]
     fn every_key_stands_once_and_lets_in_no_value_that_is_no_number() {
@@ -221,5 +221,33 @@ mod tests {
             |key, value| KeyRange::of(key, key_ranges()).expect("a range").check(key, value).is_ok();
         assert!(lets_in("band", 0.0) && lets_in("delay", -1e-3));
         assert!(!lets_in("band", 1e51) && !lets_in("mass", 0.0) && !lets_in("overlap", 1.5));
+    }
+
+    /// Other spellings of `fit`, `beam_from` and `noise`.
+    const SPELT_OTHERWISE: [&str; 3] = ["fit_duration", "from", "noise_record"];
+
+    /// The keys that a section takes are those that the error about an unknown key lists.
+    #[test]
+    fn each_key_of_each_section_has_a_meaning_and_no_other_has() {
+        for section in sections() {
+            let text = format!("[[{section}]]\nname = \"a\"\nno_such_key = 1\n");
+            let error = parse(&Folder::default(), Path::new("campaign.toml"), text).unwrap_err();
+            let listed = error.to_string();
+            let (_, listed) = listed.split_once("keys known here: ").expect("a list of keys");
+            let mut known: Vec<&str> =
+                listed.lines().next().unwrap_or_default().split(", ").map(str::trim).collect();
+            known.retain(|key| !SPELT_OTHERWISE.contains(key));
+            let mut described: Vec<&str> = KeyMeaning::of(section).map(|one| one.key).collect();
+            known.sort_unstable();
+            described.sort_unstable();
+            assert_eq!(described, known, "docs/campaign.md, [[{section}]]");
+            for one in KeyMeaning::of(section) {
+                assert!(!one.meaning.is_empty() && !one.left_out.is_empty(), "{one:?}");
+                let unit = KeyRange::of(one.key, key_ranges()).map_or("", KeyRange::unit);
+                // The mass of a sweep is a number, 1 or 2.
+                let is_number = (section, one.key) == ("sweep", "mass");
+                assert!(is_number || unit.is_empty() || unit == one.unit, "{one:?}: numbers in {unit}");
+            }
+        }
     }
 }

@@ -109,16 +109,28 @@ impl WrittenTable {
         replaced(last..last, &format!("{broken}{line}\n"))
     }
 
-    /// The text with the table in another section. Keys that this does not know become comments.
+    /// The text with the table in another section. Keys that this does not know become comments that name
+    /// the section they are of; those that an earlier move made of its own keys are keys again.
     fn moved(&self, text: &str, section: &str) -> String {
         let foreign = |key: &str| KeyMeaning::of(section).all(|known| known.key != key);
         let mut text = text.to_owned();
         for WrittenKey { row, .. } in self.keys.iter().rev().filter(|one| foreign(&one.key)) {
             let begins = text[..row.start].rfind('\n').map_or(0, |at| at + 1);
             let commented = text[begins..row.end].replace('\n', "\n# ");
-            text.replace_range(begins..row.end, &format!("# {commented}"));
+            let of =
+                if commented.contains('\n') { String::new() } else { format!("  # of [[{}]]", self.section) };
+            text.replace_range(begins..row.end, &format!("# {commented}{of}"));
         }
         let head: usize = text.split_inclusive('\n').take(self.line - 1).map(str::len).sum();
+        let ends = text[head..].find("\n[").map_or(text.len(), |at| head + at);
+        let mark = format!("  # of [[{section}]]");
+        let again = |row: &str| {
+            let (key, note) = row.strip_prefix("# ")?.split_once(&mark)?;
+            Some(format!("{key}{note}"))
+        };
+        let rows = text[head..ends].split_inclusive('\n');
+        let rows: String = rows.map(|row| again(row).unwrap_or_else(|| row.to_owned())).collect();
+        text.replace_range(head..ends, &rows);
         let own = text[head..].find(self.section.as_str()).map(|at| head + at);
         if let Some(at) = own {
             text.replace_range(at..at + self.section.len(), section);
@@ -162,13 +174,14 @@ impl Campaign {
     }
 
     /// The text of a campaign with one table of records in another section. Keys that this section does not
-    /// know become comments. All else stays as it is written.
+    /// know become comments, and keys again when the table moves back. All else stays as it is written.
     ///
     /// ```
     /// use vibroimpact::campaign::Campaign;
     /// let text = "[[impacts]]\nfile = \"a.csv\"\nenvelope = true\n";
     /// let moved = Campaign::text_of_kind(text, ("impacts", 1), "drop")?;
-    /// assert_eq!(moved, "[[drop]]\nfile = \"a.csv\"\n# envelope = true\n");
+    /// assert_eq!(moved, "[[drop]]\nfile = \"a.csv\"\n# envelope = true  # of [[impacts]]\n");
+    /// assert_eq!(Campaign::text_of_kind(&moved, ("drop", 1), "impacts")?, text);
     /// # Ok::<(), vibroimpact::Error>(())
     /// ```
     ///
@@ -204,14 +217,19 @@ mod tests {
         let moved = Campaign::text_of_kind(TEXT, ("drop", 2), "decay").unwrap();
         let (head, tail) = TEXT.rsplit_once("[[drop]]").unwrap();
         assert_eq!(moved, format!("{head}[[decay]]{tail}"));
+        let noted = TEXT.replace("height = 1", "height = 1  # weighed");
+        let there = Campaign::text_of_kind(&noted, ("drop", 1), "decay").unwrap();
+        assert_eq!(Campaign::text_of_kind(&there, ("decay", 1), "drop").unwrap(), noted);
         let moved = Campaign::text_of_kind(TEXT, ("drop", 1), "decay").unwrap();
-        let expected = TEXT.replacen("[[drop]]", "[[decay]]", 1).replace("height = 1", "# height = 1");
+        let expected =
+            TEXT.replacen("[[drop]]", "[[decay]]", 1).replace("height = 1", "# height = 1  # of [[drop]]");
         assert_eq!(moved, expected);
+        assert_eq!(Campaign::text_of_kind(&moved, ("decay", 1), "drop").unwrap(), TEXT);
         let lines = "[[drop]]\nheight = 1\nfile = \"a\"\nintervals = [\n  1,\n  2,\n]\nmasses = [1, 2]\n";
         let moved = Campaign::text_of_kind(lines, ("drop", 1), "pulse").unwrap();
         assert_eq!(
             moved,
-            "[[pulse]]\n# height = 1\nfile = \"a\"\n# intervals = [\n#   1,\n#   2,\n# ]\n# masses = [1, 2]\n"
+            "[[pulse]]\n# height = 1  # of [[drop]]\nfile = \"a\"\n# intervals = [\n#   1,\n#   2,\n# ]\n# masses = [1, 2]  # of [[drop]]\n"
         );
         assert!(Campaign::text_of_kind(TEXT, ("drop", 1), "bell").is_err());
         let inline = "drop = [{ file = \"a\" }, { file = \"b\" }]\n";

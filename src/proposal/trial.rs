@@ -264,7 +264,7 @@ impl Trial<'_> {
             return FoundTables::table(table);
         }
         let table = series.channel_table(k, name, "spectrum", "a time record");
-        let what = "sines to fit, strongest first; gives their true amplitudes";
+        let what = "number of sines to fit, the strongest; gives their true amplitudes";
         self.with_answer(table.open("tones", "", what))
     }
 

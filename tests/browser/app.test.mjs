@@ -197,14 +197,21 @@ test("a value is typed with its unit, its meaning is shown, and a record is meas
   await height.fill("0.485");
   await height.press("Enter");
   await ran(page, before + 2);
-  const card = page.locator(".card", { hasText: "BOUNCE.CSV" });
+  const card = page.locator(".card", { hasText: "BOUNCE.CSV" }), text = await page.locator("#text").inputValue();
   await card.locator("select").selectOption("impacts");
   await ran(page, before + 3);
-  assert.match(await page.locator("#text").inputValue(), /\[\[impacts\]\]\nname = "lively ball"\nfile = "BOUNCE\.CSV"\n# height = 0\.57/);
+  assert.match(await page.locator("#text").inputValue(), /\[\[impacts\]\]\nname = "lively ball"\nfile = "BOUNCE\.CSV"\n# height = 0\.57  # of \[\[drop\]\]/);
+  // Back as it was, and taken back once more.
+  await card.locator("select").selectOption("drop");
+  await page.waitForFunction((text) => document.getElementById("text").value === text, text);
+  await page.click("#undo");
+  await page.waitForFunction(() => document.getElementById("text").value.includes('[[impacts]]\nname = "lively ball"'));
   await card.locator("summary", { hasText: "further keys" }).click();
   await card.locator("input[data-field$=' threshold']").fill("0.4");
   await page.keyboard.press("Enter");
   await page.waitForFunction(() => document.getElementById("text").value.includes("threshold = 0.4"));
+  await page.waitForFunction(() => !app.running);
+  await page.waitForTimeout(500);
   await page.click("#alone");
   const whole = await page.locator("#report").boundingBox();
   assert.ok(whole.width === 1200 && whole.height > 840, JSON.stringify(whole));

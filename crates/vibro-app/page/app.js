@@ -25,6 +25,8 @@ class App {
     this.program = new Program((progress) => this.progress(progress));
     [this.files, this.name, this.example, this.text] = [[], "", null, ""];
     [this.tables, this.problems, this.results, this.scroll] = [[], [], null, 0];
+    // Earlier texts of the campaign, and whether the next one is a change by a person.
+    [this.history, this.changing] = [[], false];
     const measure = (path, section) => this.editor.flush().then(() => this.edit(`${this.text.trimEnd()}\n\n[[${section}]]\nfile = ${JSON.stringify(path)}\n`));
     this.recordings = new Recordings(at("recordings"), { pictures: (path) => this.pictures(path), measure });
     const set = (id, key, value) => this.change(id, "state", { key, value });
@@ -49,6 +51,9 @@ class App {
     }
     for (const button of document.querySelectorAll("[data-example]")) button.onclick = () => this.look({ example: button.dataset.example });
     at("anew").onclick = () => location.reload();
+    at("undo").onclick = () => this.undo();
+    // In a field or in the text the browser takes back what was typed.
+    addEventListener("keydown", (event) => (event.ctrlKey || event.metaKey) && event.key === "z" && !event.target.closest("input, textarea") && this.undo());
     at("to-report").onclick = at("alone").onclick = () => this.read(true);
     at("back").onclick = () => this.read(false);
     addEventListener("keydown", (event) => event.key === "Escape" && document.body.classList.contains("reading") && this.read(false));
@@ -161,7 +166,7 @@ class App {
     this.trace.close();
     [at("bench").hidden, at("drop").hidden] = [false, true];
     at("keep").textContent = "keep in this browser";
-    if (known === null) [this.results, this.edited, this.unsaved, at("report").srcdoc] = [null, false, false, ""];
+    if (known === null) [this.results, this.edited, this.unsaved, this.history, at("report").srcdoc] = [null, false, false, [], ""];
     this.recordings.show(listed.recordings);
     const found = await this.work("looking at files", () => this.program.ask("propose", { known }));
     this.recordings.showLeft(found?.left ?? [], found?.kinds ?? []);
@@ -201,7 +206,20 @@ class App {
     this.trouble(error.message);
   }
 
+  /** Takes the last change of the campaign back. */
+  async undo() {
+    await this.editor.flush();
+    const text = this.history.pop();
+    if (text === undefined) return;
+    await this.edit(text);
+    // That was no change of its own.
+    this.history.pop();
+    at("undo").disabled = this.history.length === 0;
+  }
+
   async state({ text, tables, problems, kinds }) {
+    if (this.text !== text && this.changing) this.history.push(this.text);
+    [this.changing, at("undo").disabled] = [false, this.history.length === 0];
     Object.assign(this, { text, tables, problems });
     this.cards.kinds = kinds;
     this.cards.show(tables, problems);
@@ -216,7 +234,7 @@ class App {
       const table = this.tables.findIndex((_, k) => identity(this.tables, k) === id);
       if (table < 0) throw new Error("this table has changed meanwhile: type it again");
       const after = await this.program.ask(what, { table, ...more });
-      [this.edited, this.unsaved] = [true, true];
+      [this.edited, this.unsaved, this.changing] = [true, true, true];
       return after;
     });
     this.setting = next;
@@ -225,7 +243,7 @@ class App {
 
   async edit(text) {
     at("troubles").replaceChildren();
-    if (this.text !== text) [this.edited, this.unsaved] = [true, true];
+    if (this.text !== text) [this.edited, this.unsaved, this.changing] = [true, true, true];
     await this.state(await this.program.ask("edit", { text }));
   }
 
@@ -243,6 +261,8 @@ class App {
         at("stale").hidden = !at("report").srcdoc;
         done = await this.work("running", () => this.program.ask("run").then((found) => this.report().then(() => found)), true);
         if (done) this.cards.refused = done.refused;
+        // Without an answer no mark stands for the campaign as it is.
+        else this.results = null;
         this.cards.show(this.tables, this.problems);
       } while (this.again);
     } finally {

@@ -1,5 +1,5 @@
 /** An error without the line of the text at which it stands: that is shown in the text. */
-const inShort = (message) => message.split("\n").filter((line) => !/^\s*(\d+\s*)?\|/.test(line)).join("\n");
+const inShort = (message) => message.split("\n").filter((line) => !/^\s*(\d+\s*)?\|/.test(line)).join("\n").replace(/^\S*campaign\.toml, (line \d+), column \d+: /, "$1: ");
 
 /** Parts and multiples of a unit. */
 const STEPS = { µ: 1e-6, u: 1e-6, m: 1e-3, c: 1e-2, "": 1, k: 1e3, M: 1e6 };

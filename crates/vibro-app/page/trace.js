@@ -1,13 +1,15 @@
 /** Keys that the mouse drags in the trace of a kind of record, with what each does. */
 const PICKS = {
   threshold: { of: ["impacts", "drop"], about: "smallest impact counted, as a part of the median height of the impacts" },
-  refractory: { of: ["impacts", "drop"], about: "dead time behind an impact, in s" },
-  span: { of: ["impacts", "drop", "decay", "pulse", "spectrum"], about: "the part that is used, from and to in s" },
-  band: { of: ["impacts", "decay"], about: "band in Hz, dragged in the spectrum" },
+  refractory: { of: ["impacts", "drop"], unit: "s", about: "dead time behind an impact, in s" },
+  span: { of: ["impacts", "drop", "decay", "pulse", "spectrum"], unit: "s", about: "the part that is used, from and to in s" },
+  band: { of: ["impacts", "decay"], unit: "Hz", about: "band in Hz, dragged in the spectrum" },
 };
 
 /** Threshold of the program where none is stated. */
-const THRESHOLD = 0.125;
+const THRESHOLD = { impacts: 0.125, drop: 0.02 };
+/** Distance in pixels within which the mouse takes a line. */
+const NEAR = 5;
 
 /** A value with as many digits as a step of the picture tells. */
 const rounded = (value, step) => String(Number(value.toFixed(Math.min(Math.max(Math.ceil(-Math.log10(step || 1)), 0) + 1, 12))));
@@ -82,7 +84,7 @@ class TraceView {
     const fields = make("div", { className: "does" }), inputs = {};
     for (const key of this.picks()) {
       const input = make("input", { size: 12, value: this.value(key), placeholder: "not stated", title: PICKS[key].about });
-      input.onchange = () => this.state(key, toToml(input.value.trim() === "" ? "" : input.value));
+      input.onchange = () => this.state(key, () => toToml(input.value, PICKS[key].unit));
       inputs[key] = input;
       fields.append(make("label", {}, `${key} `, input));
     }
@@ -202,12 +204,13 @@ class TraceView {
   lines() {
     const all = [], { picture, first, last } = this.data, can = this.picks();
     if (can.includes("threshold")) {
-      const height = this.height(), part = Number(this.value("threshold")) || THRESHOLD;
-      all.push({ name: "threshold", level: part * height, key: "threshold", to: (x, y) => rounded(Math.max(Math.abs(this.level(y)) / height, 1e-3), 0.01) });
+      const height = this.height(), own = Number(this.value("threshold")), part = own || THRESHOLD[this.table.section];
+      all.push({ name: own ? "threshold" : "threshold (default)", level: part * height, key: "threshold", to: (x, y) => rounded(Math.max(Math.abs(this.level(y)) / height, 1e-3), 0.01) });
     }
     if (can.includes("refractory")) {
       const begins = this.times.find((t) => t >= picture.from) ?? this.times[0] ?? this.largest(), dead = Number(this.value("refractory")) || 0;
-      all.push({ name: "refractory (dead time)", place: begins + (dead || 0.02 * this.wide()), key: "refractory", to: (x) => rounded(Math.max(this.at(x) - begins, 1e-6), this.pixel()) });
+      // Where none is stated, the line waits at the impact.
+      all.push({ name: dead ? "refractory (dead time)" : "refractory: drag from here", place: begins + dead, key: "refractory", to: (x) => rounded(Math.max(this.at(x) - begins, 1e-6), this.pixel()) });
     }
     if (can.includes("span")) {
       const [from, to] = pairOf(this.value("span")) ?? [first, last], [low, high] = this.value("span").match(/[-+\d.eE]+/g) ?? [String(first), String(last)];
@@ -219,7 +222,7 @@ class TraceView {
 
   press(event) {
     const near = ({ place, level }) => level !== undefined ? Math.abs(this.up(level) - event.offsetY) : Math.abs(this.across(place) - event.offsetX);
-    const line = this.handles.filter((one) => near(one) < 8).sort((a, b) => near(a) - near(b))[0];
+    const line = this.handles.filter((one) => near(one) < NEAR).sort((a, b) => near(a) - near(b))[0];
     const begun = event.offsetX, ends = (x) => Math.min(Math.max(x, 0), this.canvas.clientWidth);
     let moved = begun, value = "";
     this.canvas.setPointerCapture(event.pointerId);
@@ -240,7 +243,7 @@ class TraceView {
     };
     this.canvas.onpointerup = () => {
       this.canvas.onpointermove = this.canvas.onpointerup = null;
-      if (line && value) this.state(line.key, value);
+      if (line && value) this.state(line.key, () => value);
       else if (!line && Math.abs(moved - begun) > 5) this.go(this.at(Math.min(begun, moved)), this.at(Math.max(begun, moved)));
       else this.draw();
     };
@@ -284,15 +287,16 @@ class TraceView {
       this.band.onpointermove = this.band.onpointerup = null;
       if (Math.abs(moved - begun) < 4) return;
       const [low, high] = [begun, moved].sort((a, b) => a - b).map((x) => rounded(this.hertz(x), (this.data.spectrum.to - this.data.spectrum.from) / this.band.clientWidth));
-      this.state("band", `[${low}, ${high}]`);
+      this.state("band", () => `[${low}, ${high}]`);
     };
   }
 
   async state(key, value) {
     try {
-      await this.set(this.id, key, value);
+      await this.set(this.id, key, value());
     } catch (error) {
-      this.said.textContent = error.message;
+      this.said.replaceChildren(make("span", { className: "wrong", textContent: inShort(error.message) }));
+      this.inputs[key]?.setAttribute("aria-invalid", "true");
     }
   }
 }

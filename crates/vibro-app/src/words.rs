@@ -25,9 +25,16 @@ pub fn error(error: &Error) -> String {
     error.text_with(|key, value| Voice::Campaign.set(key, value), spelt)
 }
 
-/// A sentence with the kinds of records in place of commands.
+/// What else the command line has, and the place on the page.
+const PLACES: [(&str, &str); 2] = [
+    ("docs/campaign.md lists every key", "the card of the record lists every key"),
+    ("as docs/campaign.md shows", "or choose a kind beside the file"),
+];
+
+/// A sentence with the kinds of records in place of commands, and what the page has in place of documents.
 pub fn as_kinds(sentence: &str) -> String {
-    COMMANDS.iter().fold(sentence.to_owned(), |text, (command, section)| {
+    let sentence = PLACES.iter().fold(sentence.to_owned(), |text, (there, here)| text.replace(there, here));
+    COMMANDS.iter().fold(sentence, |text, (command, section)| {
         let kind = format!("the kind “{}”", analysis::title(section).unwrap_or(section));
         text.replace(&format!("`{command}`"), &kind)
     })

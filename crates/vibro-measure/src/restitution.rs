@@ -224,9 +224,9 @@ fn grown(trains: &[Train]) -> Option<Doubt> {
 /// uncertainty, a finding asks for the contact time.
 const LONG_CONTACT: f64 = 5.0;
 
-/// Contact time of an impact and its standard uncertainty in s: both as stated, else the mean over the records
-/// where all show it. Else 0, with the uncertainty of a time anywhere from 0 to [`LONGEST`] with equal
-/// chance.
+/// Contact time of an impact and its standard uncertainty in s: both as stated, else the mean over the
+/// records where all show it. Else 0, with the uncertainty of a time anywhere from 0 to [`LONGEST`] with
+/// equal chance.
 fn contact(measured: &Measured) -> (f64, f64) {
     let seen: Option<Vec<&Estimate>> = measured.trains.iter().map(|train| train.contact.as_ref()).collect();
     let mean = |seen: &[&Estimate], of: &dyn Fn(&Estimate) -> f64| {

@@ -8,15 +8,18 @@ use vibro_record::{median, quantile};
 
 /// Least height of an impact over the remaining ringing of the one before.
 const RISE: f64 = 2.0;
+/// Least height of an impact over the echo before it, which follows the impact before by more than the pause.
+/// Ringing falls; where it beats, it hardly rises above all that the pause before it holds.
+const OVER_ECHO: f64 = 1.25;
 /// Ratio of one candidate decay time to the one before.
 const STEP: f64 = 1.25;
 /// Relative difference up to which two numbers of bursts count as equal.
 const SAME: f64 = 0.02;
 
 /// Bursts of samples farther than `reach` from 0, one for each impact. With `pause`, stretches that follow
-/// within `pause` samples are joined, but for an impact after an echo ([`paused`]). Without it, a burst lasts until the signal rises above the envelope of
-/// its ringing. The second value is then the factor by which the assumed decay of the ringing may change
-/// without changing the number of bursts.
+/// within `pause` samples are joined, but for an impact after an echo ([`paused`]). Without it, a burst lasts
+/// until the signal rises above the envelope of its ringing. The second value is then the factor by which the
+/// assumed decay of the ringing may change without changing the number of bursts.
 pub fn bursts(values: &[f64], reach: f64, pause: Option<usize>) -> (Vec<Range<usize>>, Option<f64>) {
     let runs = runs(values, reach);
     let (firsts, stable) = match pause {
@@ -30,7 +33,7 @@ pub fn bursts(values: &[f64], reach: f64, pause: Option<usize>) -> (Vec<Range<us
 
 /// Indices of the runs that begin an impact where no impact follows another within `pause` samples. A run
 /// does so behind a pause without runs. It also does so where it begins later than `pause` after the impact
-/// before, and rises above [`RISE`] times all runs within `pause` before it: those are an echo.
+/// before, and rises above [`OVER_ECHO`] times all runs within `pause` before it: those are an echo.
 fn paused(values: &[f64], runs: &[Range<usize>], pause: usize) -> Vec<usize> {
     let height = |run: &Range<usize>| values[run.clone()].iter().fold(0.0, |h: f64, v| h.max(v.abs()));
     let heights: Vec<f64> = runs.iter().map(height).collect();
@@ -38,7 +41,7 @@ fn paused(values: &[f64], runs: &[Range<usize>], pause: usize) -> Vec<usize> {
     for (j, run) in runs.iter().enumerate() {
         let is_near = |k: &usize| run.start + 1 - runs[*k].end < pause;
         let later = || found.last().is_none_or(|first| run.start - runs[*first].start >= pause);
-        let rises = || (0..j).rev().take_while(is_near).all(|k| heights[j] > RISE * heights[k]);
+        let rises = || (0..j).rev().take_while(is_near).all(|k| heights[j] > OVER_ECHO * heights[k]);
         let alone = j == 0 || !is_near(&(j - 1));
         if alone || later() && rises() {
             found.push(j);
@@ -232,7 +235,7 @@ mod tests {
         let mut values = vec![0.0; 400];
         for k in 0..5 {
             values[20 + 50 * k] = 1.0;
-            values[50 + 50 * k] = 0.3;
+            values[50 + 50 * k] = 0.7;
         }
         assert_eq!(bursts(&values, 0.1, Some(40)).0.len(), 5);
         for (i, value) in values[300..400].iter_mut().enumerate() {
