@@ -81,7 +81,7 @@ impl Keys {
         let (before, after) = (self.before.is_some(), !self.after.is_empty() || self.after2.is_some());
         let one_of = "one of them: the first of intervals is that after the fall";
         let velocities = "after = V1 and V2, or with masses after = V1 or after2 = V2";
-        let wrong: [(bool, &[&'static str], &str, &str); 9] = [
+        let wrong: [(bool, &[&'static str], &str, &str); 10] = [
             (interval && intervals, &["intervals"], "both interval and intervals", one_of),
             (file && interval, &["interval"], "a file and an interval", "one of them"),
             (file && intervals, &["intervals"], "a file and intervals", "one of them"),
@@ -90,6 +90,12 @@ impl Keys {
                 &["height"],
                 "interval without a height",
                 "both, or flight times as intervals",
+            ),
+            (
+                self.contact_time_std.is_some() && self.contact_time.is_none(),
+                &["contact_time"],
+                "contact_time_std without contact_time",
+                "the contact time, too",
             ),
             (after && !before, &["after"], "velocities after the impact without before", "both"),
             (

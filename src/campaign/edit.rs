@@ -72,15 +72,18 @@ impl WrittenTable {
     }
 
     /// The text with a key of the table set to a value in TOML; without a value it becomes the comment
-    /// `# KEY =`. Such a comment in the table makes room for its key.
+    /// `# KEY =`, or a comment as a whole where its value has several lines. `# KEY =` in the table makes
+    /// room for its key.
     fn with(&self, text: &str, key: &str, value: &str) -> String {
         let line = format!("{key} = {value}");
+        let newline = if text.contains("\r\n") { "\r\n" } else { "\n" };
         let ends = |at: usize| text[at..].find('\n').map_or(text.len(), |n| at + n + 1);
         let replaced =
             |range: Range<usize>, by: &str| format!("{}{by}{}", &text[..range.start], &text[range.end..]);
         if let Some(WrittenKey { row, .. }) = self.keys.iter().find(|one| one.key == key) {
-            let emptied = || replaced(row.clone(), &format!("# {key} ="));
-            return if value.is_empty() { emptied() } else { replaced(row.clone(), &line) };
+            let own = &text[row.clone()];
+            let emptied = if own.contains('\n') { commented(own) } else { format!("# {key} =") };
+            return replaced(row.clone(), if value.is_empty() { &emptied } else { &line });
         }
         if value.is_empty() {
             return text.to_owned();
@@ -101,42 +104,44 @@ impl WrittenTable {
                 let own =
                     !note.is_empty() && !["# missing", "# open"].iter().any(|own| note.starts_with(own));
                 let note = if own { format!("  {note}") } else { String::new() };
-                return replaced(at..at + row.len(), &format!("{line}{note}\n"));
+                return replaced(at..at + row.len(), &format!("{line}{note}{newline}"));
             }
             at += row.len();
         }
-        let broken = if text[..last].ends_with('\n') { "" } else { "\n" };
-        replaced(last..last, &format!("{broken}{line}\n"))
+        let broken = if text[..last].ends_with('\n') { "" } else { newline };
+        replaced(last..last, &format!("{broken}{line}{newline}"))
     }
 
-    /// The text with the table in another section. Keys that this does not know become comments that name
-    /// the section they are of; those that an earlier move made of its own keys are keys again.
-    fn moved(&self, text: &str, section: &str) -> String {
-        let foreign = |key: &str| KeyMeaning::of(section).all(|known| known.key != key);
+    /// The text with the table in another section; it ends before the line `next`. Keys that the section does
+    /// not know become comments. Those of one line name the section they are of; where an earlier move made
+    /// such comments of keys of this section, they are keys again.
+    fn moved(&self, text: &str, section: &str, next: Option<usize>) -> String {
+        let knows = |key: &str| KeyMeaning::of(section).any(|known| known.key == key);
         let mut text = text.to_owned();
-        for WrittenKey { row, .. } in self.keys.iter().rev().filter(|one| foreign(&one.key)) {
-            let begins = text[..row.start].rfind('\n').map_or(0, |at| at + 1);
-            let commented = text[begins..row.end].replace('\n', "\n# ");
-            let of =
-                if commented.contains('\n') { String::new() } else { format!("  # of [[{}]]", self.section) };
-            text.replace_range(begins..row.end, &format!("# {commented}{of}"));
+        for WrittenKey { row, .. } in self.keys.iter().rev().filter(|one| !knows(&one.key)) {
+            let own = &text[row.clone()];
+            let of = format!("# {own}  # of [[{}]]", self.section);
+            let comment = if own.contains('\n') { commented(own) } else { of };
+            text.replace_range(row.clone(), &comment);
         }
-        let head: usize = text.split_inclusive('\n').take(self.line - 1).map(str::len).sum();
-        let ends = text[head..].find("\n[").map_or(text.len(), |at| head + at);
         let mark = format!("  # of [[{section}]]");
         let again = |row: &str| {
-            let (key, note) = row.strip_prefix("# ")?.split_once(&mark)?;
-            Some(format!("{key}{note}"))
+            let (key, note) = row.trim_start().strip_prefix("# ")?.split_once(&mark)?;
+            let name = key.split('=').next().unwrap_or_default().trim();
+            self.value(name).is_none().then(|| format!("{key}{note}"))
         };
-        let rows = text[head..ends].split_inclusive('\n');
-        let rows: String = rows.map(|row| again(row).unwrap_or_else(|| row.to_owned())).collect();
-        text.replace_range(head..ends, &rows);
-        let own = text[head..].find(self.section.as_str()).map(|at| head + at);
-        if let Some(at) = own {
-            text.replace_range(at..at + self.section.len(), section);
-        }
-        text
+        let row = |(number, row): (usize, &str)| match () {
+            () if number == self.line => row.replacen(&self.section, section, 1),
+            () if number < self.line || next.is_some_and(|next| number >= next) => row.to_owned(),
+            () => again(row).unwrap_or_else(|| row.to_owned()),
+        };
+        (1..).zip(text.split_inclusive('\n')).map(row).collect()
     }
+}
+
+/// Rows of TOML as a comment.
+fn commented(rows: &str) -> String {
+    format!("# {}", rows.replace('\n', "\n# "))
 }
 
 impl Campaign {
@@ -174,7 +179,8 @@ impl Campaign {
     }
 
     /// The text of a campaign with one table of records in another section. Keys that this section does not
-    /// know become comments, and keys again when the table moves back. All else stays as it is written.
+    /// know become comments, and those of one line keys again when the table moves back. All else stays as it
+    /// is written.
     ///
     /// ```
     /// use vibroimpact::campaign::Campaign;
@@ -196,7 +202,10 @@ impl Campaign {
         if !head.trim_start().starts_with("[[") {
             return Err(Error::usage(shown(head), format!("a table that begins with [[{}]]", table.0)));
         }
-        Ok(found.moved(text, section))
+        let lines = WrittenTable::all(text)?.into_iter().map(|table| table.line);
+        let moved = found.moved(text, section, lines.filter(|line| *line > found.line).min());
+        WrittenTable::all(&moved)?;
+        Ok(moved)
     }
 
     fn written_table(text: &str, (section, number): (&str, usize)) -> Result<WrittenTable> {
@@ -231,6 +240,10 @@ mod tests {
             moved,
             "[[pulse]]\n# height = 1  # of [[drop]]\nfile = \"a\"\n# intervals = [\n#   1,\n#   2,\n# ]\n# masses = [1, 2]  # of [[drop]]\n"
         );
+        // A key that was set meanwhile stays, and so does what another table has as a comment.
+        let twice = "[[impacts]]\nfile = \"a\"\nthreshold = 0.2\n# threshold = 0.1  # of [[drop]]\n  [[decay]]\n# band = 1  # of [[drop]]\n";
+        let moved = Campaign::text_of_kind(twice, ("impacts", 1), "drop").unwrap();
+        assert_eq!(moved, twice.replacen("impacts", "drop", 1));
         assert!(Campaign::text_of_kind(TEXT, ("drop", 1), "bell").is_err());
         let inline = "drop = [{ file = \"a\" }, { file = \"b\" }]\n";
         assert!(Campaign::text_of_kind(inline, ("drop", 2), "decay").is_err());
@@ -245,9 +258,11 @@ mod tests {
         assert_eq!(set(1, "height", "").unwrap(), TEXT.replace("height = 1\n", "# height =\n"));
         let noted = "[[drop]]\nfile = \"a\"  # first\nintervals = [1,\n 2]  # both\n";
         let emptied = Campaign::text_with(noted, ("drop", 1), "intervals", "").unwrap();
-        assert_eq!(emptied, "[[drop]]\nfile = \"a\"  # first\n# intervals =  # both\n");
-        let filled = Campaign::text_with(&emptied, ("drop", 1), "intervals", "[3]").unwrap();
-        assert_eq!(filled, "[[drop]]\nfile = \"a\"  # first\nintervals = [3]  # both\n");
+        assert_eq!(emptied, "[[drop]]\nfile = \"a\"  # first\n# intervals = [1,\n#  2]  # both\n");
+        let windows = "[[drop]]\r\nheight = 1  # by tape\r\n";
+        let emptied = Campaign::text_with(windows, ("drop", 1), "height", "").unwrap();
+        assert_eq!(emptied, windows.replace("height = 1", "# height ="));
+        assert_eq!(Campaign::text_with(&emptied, ("drop", 1), "height", "1").unwrap(), windows);
         assert_eq!(set(2, "height", "0.5").unwrap(), format!("{TEXT}\nheight = 0.5\n"));
         assert_eq!(
             set(1, "contact_time", "1e-3").unwrap(),
@@ -269,7 +284,7 @@ mod tests {
         assert_eq!(set(noted, "2").unwrap(), noted.replace("\n# h", "\nheight = 2\n# h"));
         assert!(Campaign::text_with("drop = [{ file = \"a\" }]\n", ("drop", 1), "height", "1").is_err());
         let indented = "[[drop]]\r\nfile = \"a\"\r\n  [[drop]]\r\n# height =\r\n";
-        assert!(set(indented, "1").is_ok_and(|text| text.contains("\"a\"\r\nheight = 1\n  [[drop]]")));
+        assert!(set(indented, "1").is_ok_and(|text| text.contains("\"a\"\r\nheight = 1\r\n  [[drop]]")));
     }
 
     #[test]

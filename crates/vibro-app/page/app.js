@@ -25,9 +25,9 @@ class App {
     this.program = new Program((progress) => this.progress(progress));
     [this.files, this.name, this.example, this.text] = [[], "", null, ""];
     [this.tables, this.problems, this.results, this.scroll] = [[], [], null, 0];
-    // Earlier texts of the campaign, and whether the next one is a change by a person.
-    [this.history, this.changing] = [[], false];
-    const measure = (path, section) => this.editor.flush().then(() => this.edit(`${this.text.trimEnd()}\n\n[[${section}]]\nfile = ${JSON.stringify(path)}\n`));
+    // Earlier texts of the campaign.
+    this.history = [];
+    const measure = (path, section) => this.editor.flush().then(() => this.edit((text) => `${text.trimEnd()}\n\n[[${section}]]\nfile = ${JSON.stringify(path)}\n`)).catch((error) => this.trouble(error.message));
     this.recordings = new Recordings(at("recordings"), { pictures: (path) => this.pictures(path), measure });
     const set = (id, key, value) => this.change(id, "state", { key, value });
     const kind = (id, section) => this.change(id, "kind", { section }).catch((error) => this.trouble(error.message));
@@ -51,9 +51,9 @@ class App {
     }
     for (const button of document.querySelectorAll("[data-example]")) button.onclick = () => this.look({ example: button.dataset.example });
     at("anew").onclick = () => location.reload();
-    at("undo").onclick = () => this.undo();
+    at("undo").onclick = () => this.undo().catch((error) => this.trouble(error.message));
     // In a field or in the text the browser takes back what was typed.
-    addEventListener("keydown", (event) => (event.ctrlKey || event.metaKey) && event.key === "z" && !event.target.closest("input, textarea") && this.undo());
+    addEventListener("keydown", (event) => (event.ctrlKey || event.metaKey) && event.key === "z" && !event.target.closest("input, textarea") && at("undo").click());
     at("to-report").onclick = at("alone").onclick = () => this.read(true);
     at("back").onclick = () => this.read(false);
     addEventListener("keydown", (event) => event.key === "Escape" && document.body.classList.contains("reading") && this.read(false));
@@ -172,9 +172,11 @@ class App {
     this.recordings.showLeft(found?.left ?? [], found?.kinds ?? []);
     if (found?.none && !found.tables.length) this.trouble(found.none);
     at("unseen").hidden = found !== null;
-    if (text !== null) return this.edit(text);
+    if (text !== null) return this.changed(() => this.program.ask("edit", { text }), false);
+    if (known !== null && found) this.history.push(known);
     // Stopped, the page goes on with what it had.
-    return found ? this.state(found) : this.edit(known ?? `name = ${JSON.stringify(this.name)}\n`);
+    if (found) return this.state(found);
+    return this.changed(() => this.program.ask("edit", { text: known ?? `name = ${JSON.stringify(this.name)}\n` }), false);
   }
 
   /** Gives the program that began anew its files and the campaign. */
@@ -210,16 +212,11 @@ class App {
   async undo() {
     await this.editor.flush();
     const text = this.history.pop();
-    if (text === undefined) return;
-    await this.edit(text);
-    // That was no change of its own.
-    this.history.pop();
-    at("undo").disabled = this.history.length === 0;
+    if (text !== undefined) await this.changed(() => this.program.ask("edit", { text }), false);
   }
 
   async state({ text, tables, problems, kinds }) {
-    if (this.text !== text && this.changing) this.history.push(this.text);
-    [this.changing, at("undo").disabled] = [false, this.history.length === 0];
+    at("undo").disabled = this.history.length === 0;
     Object.assign(this, { text, tables, problems });
     this.cards.kinds = kinds;
     this.cards.show(tables, problems);
@@ -227,24 +224,34 @@ class App {
     await this.run();
   }
 
-  /** Changes a table, one change after another: each may move its table in the list. */
-  change(id, what, more) {
+  /** One change of the campaign after another: each finds the text and the tables that the one before left. */
+  changed(todo, isStep = true) {
     const next = this.setting.catch(() => {}).then(async () => {
       at("troubles").replaceChildren();
-      const table = this.tables.findIndex((_, k) => identity(this.tables, k) === id);
-      if (table < 0) throw new Error("this table has changed meanwhile: type it again");
-      const after = await this.program.ask(what, { table, ...more });
-      [this.edited, this.unsaved, this.changing] = [true, true, true];
+      const before = this.text, after = await todo();
+      if (isStep && after.text !== before) {
+        this.history.push(before);
+        [this.edited, this.unsaved] = [true, true];
+      }
+      [this.text, this.tables] = [after.text, after.tables];
       return after;
     });
     this.setting = next;
     return next.then((after) => this.state(after));
   }
 
-  async edit(text) {
-    at("troubles").replaceChildren();
-    if (this.text !== text) [this.edited, this.unsaved, this.changing] = [true, true, true];
-    await this.state(await this.program.ask("edit", { text }));
+  /** Changes a table, wherever it stands in the list by then. */
+  change(id, what, more) {
+    return this.changed(() => {
+      const table = this.tables.findIndex((_, k) => identity(this.tables, k) === id);
+      if (table < 0) throw new Error("this table has changed meanwhile: type it again");
+      return this.program.ask(what, { table, ...more });
+    });
+  }
+
+  /** Takes a text, or what a function makes of the one that there is. */
+  edit(text) {
+    return this.changed(() => this.program.ask("edit", { text: typeof text === "function" ? text(this.text) : text }));
   }
 
   /** Runs the campaign as it is now; of several changes only the last one. */

@@ -7,21 +7,29 @@ class Editor {
     this.text.addEventListener("input", () => {
       this.number([]);
       clearTimeout(this.later);
-      this.later = setTimeout(() => this.flush(), 500);
+      this.later = setTimeout(() => this.flush().catch(() => {}), 500);
     });
   }
 
   /** Hands over what was typed and is not known yet. */
   async flush() {
     clearTimeout(this.later);
-    if (this.known !== undefined && this.text.value !== this.known) await this.changed(this.known = this.text.value);
+    const text = this.text.value, before = this.known;
+    if (before === undefined || text === before) return;
+    this.known = text;
+    await this.changed(text).catch((error) => {
+      // What the program does not have is handed over again.
+      if (this.known === text) this.known = before;
+      throw error;
+    });
   }
 
   show(text, problems) {
     // What is being typed, and not yet known, stays as it is.
     if (document.activeElement !== this.text || this.text.value === this.known) {
       if (this.text.value !== text) this.text.value = text;
-      this.known = text;
+      // With the ends of lines that the browser makes of them.
+      this.known = this.text.value;
     }
     this.number(problems.map(({ line }) => line));
     const item = ({ text: words, line }) => {

@@ -107,7 +107,10 @@ class Recordings {
       if (!this.known.has(name)) return row;
       const choice = make("select", {}, make("option", { textContent: "measure it as …", value: "" }), ...kinds.map(([value, textContent]) => make("option", { value, textContent })));
       choice.setAttribute("aria-label", `Measure ${name} as`);
-      choice.onchange = () => choice.value && this.measure(name, choice.value).then(() => row.remove());
+      choice.onchange = () => {
+        choice.disabled = true;
+        this.measure(name, choice.value).then(() => row.remove());
+      };
       row.append(choice);
       return row;
     };

@@ -4,12 +4,15 @@ const inShort = (message) => message.split("\n").filter((line) => !/^\s*(\d+\s*)
 /** Parts and multiples of a unit. */
 const STEPS = { µ: 1e-6, u: 1e-6, m: 1e-3, c: 1e-2, "": 1, k: 1e3, M: 1e6 };
 
+/** May be a thousand, or one with decimals. */
+const THOUSAND = /\d,\d{3}(?!\d)/;
+
 /** A number that a person types with its unit, in the unit of the key: 57 cm as 0.57 where that is m. */
 function inUnit(text, unit) {
   const found = text.match(/^([-+]?[\d.,]+(?:[eE][-+]?\d+)?)\s*([^-+\d\s.,].*)$/);
   if (!found || !unit) return text;
   const [, number, behind] = found, value = Number(number.replace(",", "."));
-  if (!Number.isFinite(value)) return text;
+  if (!Number.isFinite(value) || THOUSAND.test(number)) return text;
   const typed = behind.replaceAll("^2", "²").replaceAll(/[\s·*]/g, ""), base = unit === "kg" ? "g" : unit;
   const step = typed.endsWith(base) ? STEPS[typed.slice(0, -base.length)] : undefined;
   if (step === undefined) throw new Error(`${text}: this is in ${unit}. Type the number alone, or with ${unit}`);
@@ -19,7 +22,7 @@ function inUnit(text, unit) {
 /** Two or more numbers that a person types without brackets, such as 0.5; 3, as a list. */
 function asList(text) {
   const parts = text.replace(/^\[|\]$/g, "").split(/;|\s+|,\s+/).map((part) => part.trim()).filter(Boolean).map((part) => part.replace(/^(-?\d+),(\d+)$/, "$1.$2"));
-  return parts.length > 1 && parts.every((part) => Number.isFinite(Number(part))) ? `[${parts.join(", ")}]` : text;
+  return parts.length > 1 && !THOUSAND.test(text) && parts.every((part) => Number.isFinite(Number(part))) ? `[${parts.join(", ")}]` : text;
 }
 
 /** A value as a person types it, in TOML. */
@@ -44,7 +47,7 @@ const valueOf = (table, key) => table.keys.find((row) => row.key === key)?.value
 
 /** What tells a table from the others, wherever it stands in the list. */
 function identity(tables, k) {
-  const of = (table) => [table.section, table.files, valueOf(table, "channel"), valueOf(table, "name")].join("\n");
+  const of = (table) => [table.section, table.files, valueOf(table, "channel")].join("\n");
   const own = of(tables[k]);
   return `${own}\n${tables.slice(0, k).filter((table) => of(table) === own).length}`;
 }
@@ -57,7 +60,8 @@ class Tables {
    */
   constructor(host, { set, kind, look, find }) {
     Object.assign(this, { host, set, kind, look, find, kinds: [] });
-    [this.refused, this.redraws] = [[], false];
+    // Values that were refused stand, with the reason, until they are typed anew.
+    [this.refused, this.redraws, this.wrong] = [[], false, new Map()];
   }
 
   show(tables, problems) {
@@ -130,16 +134,23 @@ class Tables {
     // A value of several lines is changed in the text.
     input.readOnly = value.includes("\n");
     [input.dataset.field, input.dataset.line] = [`${table} ${key}`, line ?? ""];
-    const wrong = make("span", { className: "wrong" });
+    const wrong = make("span", { className: "wrong" }), refused = this.wrong.get(id);
     let sent = input.value;
+    if (refused) {
+      [input.value, wrong.textContent] = [refused.value, refused.why];
+      sent = refused.value;
+      input.setAttribute("aria-invalid", "true");
+    }
     input.onchange = input.onblur = async () => {
       if (input.value === sent || input.readOnly || this.redraws) return;
       [sent, wrong.textContent] = [input.value, ""];
+      this.wrong.delete(id);
       input.removeAttribute("aria-invalid");
       try {
         await this.set(table, key, toToml(input.value, unit));
       } catch (error) {
         wrong.textContent = inShort(error.message);
+        this.wrong.set(id, { value: input.value, why: wrong.textContent });
         input.setAttribute("aria-invalid", "true");
       }
     };

@@ -38,7 +38,8 @@ class TraceView {
 
   /** The table as it is now; what is dragged is shown anew. */
   async refresh(tables) {
-    if (this.id === undefined) return;
+    // What is being dragged stays; its end runs the campaign once more.
+    if (this.id === undefined || this.canvas?.onpointermove || this.band?.onpointermove) return;
     const k = tables.findIndex((_, k) => identity(tables, k) === this.id);
     if (k < 0) return this.close();
     Object.assign(this, { tables, k, table: tables[k] });
@@ -81,10 +82,10 @@ class TraceView {
     this.canvas.setAttribute("aria-label", `Trace of ${title}; ${this.times.length} detected`);
     this.band = make("canvas", { className: "band", hidden: !data.spectrum || !this.picks().includes("band") });
     this.band.setAttribute("aria-label", "Spectrum of the part that is shown");
-    const fields = make("div", { className: "does" }), inputs = {};
+    const fields = make("div", { className: "does" }), inputs = {}, before = this.inputs ?? {};
     for (const key of this.picks()) {
       const input = make("input", { size: 12, value: this.value(key), placeholder: "not stated", title: PICKS[key].about });
-      input.onchange = () => this.state(key, () => toToml(input.value, PICKS[key].unit));
+      input.onchange = () => !this.redraws && this.state(key, () => toToml(input.value, PICKS[key].unit));
       inputs[key] = input;
       fields.append(make("label", {}, `${key} `, input));
     }
@@ -94,7 +95,15 @@ class TraceView {
     const copy = tool("copy these keys", "Copy as TOML", async () => {
       await navigator.clipboard.writeText(this.toml.textContent).catch(() => getSelection().selectAllChildren(this.toml));
     });
+    // A field that is being typed in stays as it is.
+    const typed = Object.entries(before).find(([, input]) => input === document.activeElement);
+    this.redraws = true;
     this.host.replaceChildren(bar, this.canvas, this.band, fields, this.said, this.toml, copy);
+    this.redraws = false;
+    if (typed && inputs[typed[0]]) {
+      inputs[typed[0]].value = typed[1].value;
+      inputs[typed[0]].focus();
+    }
     this.canvas.onpointerdown = (event) => this.press(event);
     this.canvas.onwheel = (event) => {
       event.preventDefault();

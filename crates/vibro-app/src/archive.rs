@@ -75,13 +75,14 @@ pub(crate) fn unpacked(path: &Path, bytes: Vec<u8>) -> Result<(Vec<Member>, Left
 ///
 /// # Errors
 /// If they are more than a zip archive holds.
-pub(crate) fn packed<'a>(files: impl IntoIterator<Item = (&'a str, &'a [u8])>) -> Result<Vec<u8>> {
+pub(crate) fn packed(files: impl IntoIterator<Item = Result<(String, Vec<u8>)>>) -> Result<Vec<u8>> {
     let mut archive = ZipWriter::new(Cursor::new(Vec::new()));
     let failed = |error: &dyn std::fmt::Display| Error::refused(format!("no archive: {error}"));
     let options = SimpleFileOptions::default().compression_method(CompressionMethod::Deflated);
-    for (name, bytes) in files {
+    for file in files {
+        let (name, bytes) = file?;
         archive.start_file(name, options).map_err(|e| failed(&e))?;
-        archive.write_all(bytes).map_err(|e| failed(&e))?;
+        archive.write_all(&bytes).map_err(|e| failed(&e))?;
     }
     Ok(archive.finish().map_err(|e| failed(&e))?.into_inner())
 }
@@ -92,7 +93,8 @@ mod tests {
 
     #[test]
     fn an_archive_comes_back_as_it_was() {
-        let bytes = packed([("a.csv", b"1\n".as_slice()), ("b/c.csv", &vec![0; 100_000])]).unwrap();
+        let file = |name: &str, bytes: &[u8]| Ok((name.to_owned(), bytes.to_vec()));
+        let bytes = packed([file("a.csv", b"1\n"), file("b/c.csv", &vec![0; 100_000])]).unwrap();
         assert!(bytes.len() < 1000);
         let (members, left) = unpacked(Path::new("x.zip"), bytes).unwrap();
         assert_eq!(members[1], ("b/c.csv".to_owned(), vec![0; 100_000]));
@@ -101,7 +103,8 @@ mod tests {
 
     #[test]
     fn a_name_that_leads_outside_is_left_out() {
-        let bytes = packed([("../a.csv", b"1\n".as_slice()), ("/b.csv", &[]), ("c.csv", &[1])]).unwrap();
+        let file = |name: &str, bytes: &[u8]| Ok((name.to_owned(), bytes.to_vec()));
+        let bytes = packed([file("../a.csv", b"1\n"), file("/b.csv", &[]), file("c.csv", &[1])]).unwrap();
         let (members, left) = unpacked(Path::new("x.zip"), bytes).unwrap();
         assert_eq!(members, [("c.csv".to_owned(), vec![1])]);
         assert_eq!(left.len(), 2);

@@ -298,12 +298,13 @@ impl Workbench {
         let given = given.into_iter().filter(|path| *path != self.path());
         let names = self.results.1.iter().map(String::as_str).chain([Manifest::FILE]);
         let results = names.map(|name| self.results.0.join(name)).filter(|path| self.folder.is_file(path));
-        let mut files = vec![(Proposal::FILE.to_owned(), self.text.clone().into_bytes())];
-        for path in given.chain(results) {
+        let campaign = (Proposal::FILE.to_owned(), self.text.clone().into_bytes());
+        // One file after another: together they may fill the memory.
+        let file = |path: PathBuf| {
             let name = path.strip_prefix(self.folder.root()).unwrap_or(&path);
-            files.push((name.to_string_lossy().into_owned(), self.folder.read(&path)?));
-        }
-        packed(files.iter().map(|(name, bytes)| (name.as_str(), bytes.as_slice())))
+            Ok((name.to_string_lossy().into_owned(), self.folder.read(&path)?))
+        };
+        packed(std::iter::once(Ok(campaign)).chain(given.chain(results).map(file)))
     }
 }
 

@@ -91,9 +91,8 @@ pub fn restitution(measured: &Measured) -> Result<Restitution> {
     not_negative("a contact time", measured.contact_time)?;
     not_negative("an uncertainty of the contact time", measured.contact_time_std)?;
     if measured.contact_time_std.is_some() && measured.contact_time.is_none() {
-        return Err(
-            Error::usage("an uncertainty of no contact time", "both or neither").setting("contact_time")
-        );
+        return Err(Error::usage("contact_time_std without contact_time", "the contact time, too")
+            .setting("contact_time"));
     }
     let (mut by, mut findings) = (Vec::new(), Vec::new());
     let mut intervals: Vec<Vec<f64>> = measured.trains.iter().map(|t| t.intervals.clone()).collect();
@@ -187,7 +186,7 @@ fn contact_not_stated(
         return Some(seen.number("std", contact_std));
     }
     let matters = |(way, moved): (&MethodAnswer, &f64)| {
-        way.restitution.std.is_some_and(|std| LONG_CONTACT * moved > std)
+        way.restitution.std.is_some_and(|std| LONG_CONTACT * moved.abs() > std)
     };
     let methods: Vec<&str> = by.iter().map(|way| way.method).collect();
     let found = Finding::caution("contact-time-unsaid").numbers("parts", bias.to_vec());

@@ -302,8 +302,9 @@ impl Samples<'_> {
         // The parameters absorb noise within the contact: they take its degrees of freedom.
         let free = inside.1 - fit.parameters.len() as f64;
         // Coloured noise scatters more. Its colour shows before the contact; within, a misfit has its own.
-        let quiet = self.times.partition_point(|t| *t < onset - AROUND);
-        let colour = Whiteness::of(&[&fit.residuals[..quiet]]).inflation;
+        // Fewer than a test needs leave the colour of all residuals.
+        let quiet = Whiteness::of(&[&fit.residuals[..before.1 as usize]]);
+        let colour = quiet.p_value.map_or(fitted.whiteness.inflation, |_| quiet.inflation);
         let chance = SURE * colour * (2.0 / free.max(1.0) + 2.0 / before.1).sqrt();
         let shown = before.0 / before.1;
         let noise = shown + self.noise().1.powi(2) + concealed(shown.sqrt(), before.1, self.quantum).powi(2);

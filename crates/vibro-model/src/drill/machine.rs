@@ -7,6 +7,9 @@ use crate::law::Law;
 use crate::least::{NumberRange, number};
 use vibro_record::{Error, Result};
 
+/// Largest ratio of two masses.
+const MOST_RATIO: f64 = 1e6;
+
 /// Speed of sound in a steel rod in m/s.
 pub const SOUND_SPEED: f64 = 5100.0;
 
@@ -173,6 +176,13 @@ impl Machine {
             ("bit", self.bit.mass),
         ] {
             number(&format!("mass of the {name}"), mass, "kg", NumberRange::AboveZero)?;
+        }
+        // Impulses pass the chain by the ratios of its masses.
+        let masses = [self.striker.mass, self.intermediate, self.bit.mass];
+        let (least, most) = masses.iter().fold((f64::INFINITY, 0.0f64), |(a, b), m| (a.min(*m), b.max(*m)));
+        if most > MOST_RATIO * least {
+            let found = format!("masses from {least} kg to {most} kg");
+            return Err(Error::usage(found, "masses within a factor of a million"));
         }
         number("seal friction", self.striker.friction, "N", NumberRange::Zero)?;
         number("seal damping", self.striker.damping, "N s/m", NumberRange::Zero)?;

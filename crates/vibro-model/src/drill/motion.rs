@@ -6,6 +6,7 @@ use super::plant::{GAS, PRESSURE, Plant, SIZE, STRIKER_WORK, Stage, Vector, Watc
 use super::run::Start;
 use super::rungs::Rung;
 use super::turn::{Book, Impact, Sample, Turn};
+use crate::least::{NumberRange, number};
 use std::f64::consts::TAU;
 use vibro_math::border;
 use vibro_math::runge_kutta::{Dop853, Integrator, Step, Tolerance};
@@ -53,6 +54,9 @@ pub(super) struct Motion {
 impl Motion {
     pub fn new(machine: &Machine, rung: Rung, start: &Start, relative: f64) -> Result<Motion> {
         machine.check()?;
+        for value in start.positions.iter().chain(&start.velocities) {
+            number("position or velocity at the start", *value, "", NumberRange::Any)?;
+        }
         let mut plant = Plant::new(machine, rung);
         let mut y = [0.0; SIZE];
         y[..3].copy_from_slice(&start.positions);

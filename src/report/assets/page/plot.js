@@ -304,7 +304,7 @@ class Plot {
   /** The part of a time trace that is shown, as the key by which a campaign uses this part alone. */
   span({ min, max }) {
     const { x } = this.panel, part = max - min < 0.999 * (x.high - x.low), places = Math.max(0, 3 - Math.floor(Math.log10(max - min)));
-    this.keys.textContent = x.title.endsWith("(s)") && part ? `span = [${min.toFixed(places)}, ${max.toFixed(places)}]` : "";
+    this.keys.textContent = x.title === "Time (s)" && part ? `span = [${min.toFixed(places)}, ${max.toFixed(places)}]` : "";
   }
 
   /** Widens the axis with room to spare, so that both have the same length a unit. */

@@ -89,6 +89,9 @@ impl Rational {
         let scaled = Scaled::of(measured, part, &starts, others);
         let Some(fit) = scaled.again(&self.weights) else { return };
         let hidden = self.hidden(&scaled, &fit);
+        if hidden.is_empty() {
+            return;
+        }
         let each = (1.0 / hidden.len() as f64).ln();
         for (q, std) in self.std.iter_mut().flatten().enumerate() {
             let own = std.powi(2);
