@@ -206,6 +206,7 @@ test("a value is typed with its unit, its meaning is shown, and a record is meas
   await page.waitForFunction((text) => document.getElementById("text").value === text, text);
   await page.click("#undo");
   await page.waitForFunction(() => document.getElementById("text").value.includes('[[impacts]]\nname = "lively ball"'));
+  await page.waitForFunction(() => !app.running);
   await card.locator("summary", { hasText: "further keys" }).click();
   await card.locator("input[data-field$=' threshold']").fill("0.4");
   await page.keyboard.press("Enter");

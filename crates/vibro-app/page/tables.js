@@ -154,6 +154,8 @@ class Tables {
         input.setAttribute("aria-invalid", "true");
       }
     };
+    // A field that was drawn anew while it was typed in has not changed for the browser.
+    input.onkeydown = (event) => { if (event.key === "Enter") input.onchange(); };
     const reason = known === "guessed" ? `guessed: ${why}` : known === "missing" ? `missing: ${why || meaning}` : why;
     const label = make("label", { htmlFor: id, textContent: key.replaceAll("_", " "), title: key });
     const row = make("div", { className: `row ${known}` }, label, input, make("span", { className: "unit", textContent: unit ?? "" }));
