@@ -116,9 +116,10 @@ impl WrittenTable {
     /// not know become comments. Those of one line name the section they are of; where an earlier move made
     /// such comments of keys of this section, they are keys again.
     fn moved(&self, text: &str, section: &str, next: Option<usize>) -> String {
-        let knows = |key: &str| KeyMeaning::of(section).any(|known| known.key == key);
+        let known: Vec<&str> = KeyMeaning::of(section).map(|one| one.key).collect();
         let mut text = text.to_owned();
-        for WrittenKey { row, .. } in self.keys.iter().rev().filter(|one| !knows(&one.key)) {
+        for WrittenKey { row, .. } in self.keys.iter().rev().filter(|one| !known.contains(&one.key.as_str()))
+        {
             let own = &text[row.clone()];
             let of = format!("# {own}  # of [[{}]]", self.section);
             let comment = if own.contains('\n') { commented(own) } else { of };

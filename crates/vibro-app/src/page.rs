@@ -32,14 +32,17 @@ fn progress(_what: *const u8, _len: usize, _done: usize, _all: usize) {}
 /// Progress on the page.
 #[derive(Debug, Default)]
 struct OnPage {
-    what: Mutex<String>,
+    /// What is done, and at which file.
+    what: Mutex<(String, String)>,
     done: AtomicUsize,
     all: AtomicUsize,
 }
 
 impl OnPage {
     fn show(&self) {
-        if let Ok(what) = self.what.lock() {
+        if let Ok(held) = self.what.lock() {
+            let (part, file) = &*held;
+            let what = if file.is_empty() { part.clone() } else { format!("{part}: {file}") };
             progress(what.as_ptr(), what.len(), self.done.load(Relaxed), self.all.load(Relaxed));
         }
     }
@@ -48,14 +51,14 @@ impl OnPage {
 impl Progress for OnPage {
     fn start(&self, what: &str, steps: usize) {
         if let Ok(mut held) = self.what.lock() {
-            what.clone_into(&mut held);
+            *held = (what.to_owned(), String::new());
         }
         self.at(0, steps);
     }
 
     fn on(&self, what: &str) {
         if let Ok(mut held) = self.what.lock() {
-            *held = format!("{}: {what}", held.split(": ").next().unwrap_or_default());
+            what.clone_into(&mut held.1);
         }
         self.show();
     }

@@ -307,11 +307,10 @@ impl Motion {
                 }
                 any = true;
                 let before = Chain::both(k, &v);
-                let impulse = -Chain::approach(k, &v) / self.plant.chain.compliance(k);
                 let restitution = self.plant.machine.contacts[k].restitution;
+                let impulse = Chain::approach(k, &v) / self.plant.chain.compliance(k) * (1.0 + restitution);
                 let lost = self.plant.chain.strike(k, restitution, &mut v);
                 let after = Chain::both(k, &v);
-                let impulse = -impulse * (1.0 + restitution);
                 match interface {
                     Interface::Damper => self.turn.damper += impulse,
                     Interface::Buffer => self.turn.handle -= impulse,
