@@ -4,6 +4,7 @@
 pub mod figures;
 
 use super::answer::Answer;
+use super::headline::headline;
 use super::job::Job;
 use super::kind::{Analysis, OfFile, named_in, no_file};
 use super::source::Source;
@@ -237,6 +238,15 @@ impl OfFile for Keys {
         let mut answer = Answer::of(&found)?;
         answer.result.insert("channel".to_owned(), found.name.clone().into());
         answer.add("", &found.findings);
+        answer.headlines.push(headline(
+            "Tones",
+            &found.tones,
+            &[
+                ("frequency", "Hz", &|tone| Cell::from(&tone.frequency)),
+                ("amplitude", "", &|tone| Cell::from(&tone.amplitude)),
+                ("unit", "", &|tone| Cell::from(tone.amplitude.unit)),
+            ],
+        ));
         answer.tables = vec![peaks(source.name, &found), tones(source.name, &found)];
         answer.details.push(settings_table([(found.name.as_str(), &found)]));
         let name = if self.reference.is_some() { "frf" } else { "spectrum" };

@@ -206,7 +206,7 @@ impl Inventory {
             let why = match headers {
                 Ok(headers) if headers.is_empty() => "no records".to_owned(),
                 Ok(headers) if untimed(&headers) => {
-                    "the file has no sampling rate; vibro init FOLDER --rate HZ states one for the whole folder"
+                    "the file has no sampling rate: choose its kind, and state `rate` (vibro init: --rate HZ for all)"
                         .to_owned()
                 }
                 Ok(headers) => {
@@ -222,9 +222,9 @@ impl Inventory {
                 }
                 // Only of a file with uneven times is the setting known that helps.
                 Err(error) if error.settings().any(|key| key == "resample") => {
-                    let settings = error.settings_with(|key, value| Voice::Command.set(key, value));
-                    let settings = settings.join(" ");
-                    format!("its samples are unevenly spaced; vibro init FOLDER {settings} interpolates them")
+                    let in_voice = |voice: Voice| error.settings_with(|key, value| voice.set(key, value)).join(" ");
+                    let (key, option) = (in_voice(Voice::Campaign), in_voice(Voice::Command));
+                    format!("its samples are unevenly spaced: {key} interpolates them (vibro init: {option})")
                 }
                 Err(error) => short(&error),
             };

@@ -136,7 +136,8 @@ impl Table {
             let _ = write!(out, "<tr>");
             for column in &columns {
                 let cell = column.cells.get(line).map_or("", String::as_str);
-                let _ = write!(out, "<td{}>{}</td>", class(column), escaped(cell));
+                // On a narrow page a line may end before the sign, not behind it.
+                let _ = write!(out, "<td{}>{}</td>", class(column), escaped(cell).replace("± ", "±&nbsp;"));
             }
             let _ = writeln!(out, "</tr>");
         }

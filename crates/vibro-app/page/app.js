@@ -25,14 +25,14 @@ class App {
     this.program = new Program((progress) => this.progress(progress));
     [this.files, this.name, this.example, this.text] = [[], "", null, ""];
     [this.tables, this.problems, this.results, this.scroll] = [[], [], null, 0];
-    // Earlier texts of the campaign.
-    this.history = [];
+    // Earlier texts of the campaign, and those that were taken back.
+    [this.history, this.undone] = [[], []];
     const measure = (path, section) => this.editor.flush().then(() => this.edit((text) => `${text.trimEnd()}\n\n[[${section}]]\nfile = ${JSON.stringify(path)}\n`)).catch((error) => this.trouble(error.message));
     this.recordings = new Recordings(at("recordings"), { pictures: (path) => this.pictures(path), measure });
     const set = (id, key, value) => this.change(id, "state", { key, value });
     const kind = (id, section) => this.change(id, "kind", { section }).catch((error) => this.trouble(error.message));
     const look = (id) => this.trace.open(this.tables, id).catch((error) => this.trouble(error.message));
-    this.cards = new Tables(at("tables"), { set, kind, look, find: (line) => this.editor.find(line) });
+    this.cards = new Tables(at("tables"), { set, kind, look, find: (line) => this.editor.find(line), channels: (table) => this.recordings.channels(fromToml(valueOf(table, "file"))) });
     this.editor = new Editor(at("campaign"), (text) => this.edit(text));
     // Edited: not as it was proposed. Unsaved: the edits are nowhere else.
     [this.edited, this.unsaved, this.setting, this.looking] = [false, false, Promise.resolve(), Promise.resolve()];
@@ -51,9 +51,15 @@ class App {
     }
     for (const button of document.querySelectorAll("[data-example]")) button.onclick = () => this.look({ example: button.dataset.example });
     at("anew").onclick = () => location.reload();
-    at("undo").onclick = () => this.undo().catch((error) => this.trouble(error.message));
+    for (const [id, from, to] of [["undo", "history", "undone"], ["redo", "undone", "history"]]) {
+      at(id).onclick = () => this.step(this[from], this[to]).catch((error) => this.trouble(error.message));
+    }
     // In a field or in the text the browser takes back what was typed.
-    addEventListener("keydown", (event) => (event.ctrlKey || event.metaKey) && event.key === "z" && !event.target.closest("input, textarea") && at("undo").click());
+    addEventListener("keydown", (event) => {
+      if (!(event.ctrlKey || event.metaKey) || event.target.closest("input, textarea")) return;
+      const id = { z: event.shiftKey ? "redo" : "undo", y: "redo" }[event.key.toLowerCase()];
+      if (id) at(id).click();
+    });
     at("to-report").onclick = at("alone").onclick = () => this.read(true);
     at("back").onclick = () => this.read(false);
     addEventListener("keydown", (event) => event.key === "Escape" && document.body.classList.contains("reading") && this.read(false));
@@ -166,7 +172,7 @@ class App {
     this.trace.close();
     [at("bench").hidden, at("drop").hidden] = [false, true];
     at("keep").textContent = "keep in this browser";
-    if (known === null) [this.results, this.edited, this.unsaved, this.history, at("report").srcdoc] = [null, false, false, [], ""];
+    if (known === null) [this.results, this.edited, this.unsaved, this.history, this.undone, at("report").srcdoc] = [null, false, false, [], [], ""];
     this.recordings.show(listed.recordings);
     const found = await this.work("looking at files", () => this.program.ask("propose", { known }));
     this.recordings.showLeft(found?.left ?? [], found?.kinds ?? []);
@@ -208,15 +214,17 @@ class App {
     this.trouble(error.message);
   }
 
-  /** Takes the last change of the campaign back. */
-  async undo() {
+  /** Goes to the last text of one list, and puts the one that there is on the other. */
+  async step(from, to) {
     await this.editor.flush();
-    const text = this.history.pop();
-    if (text !== undefined) await this.changed(() => this.program.ask("edit", { text }), false);
+    const text = from.pop();
+    if (text === undefined) return;
+    to.push(this.text);
+    await this.changed(() => this.program.ask("edit", { text }), false);
   }
 
   async state({ text, tables, problems, kinds }) {
-    at("undo").disabled = this.history.length === 0;
+    for (const [id, list] of [["undo", this.history], ["redo", this.undone]]) at(id).disabled = list.length === 0;
     Object.assign(this, { text, tables, problems });
     this.cards.kinds = kinds;
     this.cards.show(tables, problems);
@@ -231,6 +239,7 @@ class App {
       const before = this.text, after = await todo();
       if (isStep && after.text !== before) {
         this.history.push(before);
+        this.undone.length = 0;
         [this.edited, this.unsaved] = [true, true];
       }
       [this.text, this.tables] = [after.text, after.tables];

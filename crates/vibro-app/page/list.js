@@ -91,13 +91,16 @@ class Recordings {
     }
     this.left = make("div");
     this.host.append(this.left);
-    this.known = new Set(recordings.filter(({ problem }) => !problem).map(({ path }) => path));
+    this.known = new Map(recordings.filter(({ problem }) => !problem).map(({ path, records }) => [path, records]));
     this.fold(this.host, `${unread.length} without records that can be read`, unread.map(({ path, problem }) => make("li", { textContent: `${path}: ${inShort(problem)}` })));
   }
 
+  /** Names of the channels of a file. */
+  channels(path) { return (this.known?.get(path) ?? []).map(({ name }) => name); }
+
   /** A folded list; nothing where it is empty. */
-  fold(host, name, items) {
-    if (items.length) host.append(make("details", {}, make("summary", { textContent: name }), make("ul", {}, ...items)));
+  fold(host, name, items, open = false) {
+    if (items.length) host.append(make("details", { open }, make("summary", { textContent: name }), make("ul", {}, ...items)));
   }
 
   /** Files that no table uses, each with the reason; one with records can be measured as a kind. */
@@ -115,7 +118,9 @@ class Recordings {
       return row;
     };
     this.left.replaceChildren();
-    this.fold(this.left, `${left.length} not used`, left.map(item));
+    // Where a choice of the person may help, it is seen.
+    const open = left.some(([name]) => this.known.has(name));
+    this.fold(this.left, `${left.length} not used`, left.map(item), open);
   }
 
   rows(file) {

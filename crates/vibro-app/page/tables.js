@@ -45,6 +45,20 @@ function fromToml(value) {
 /** The value of a key of a table. */
 const valueOf = (table, key) => table.keys.find((row) => row.key === key)?.value ?? "";
 
+/** Keys that name a channel of the file. */
+const OF_CHANNEL = ["channel", "reference", "velocity", "force", "response", "handle"];
+
+/** Values to choose from: the channels of the file, or what the meaning of the key lists. */
+function choices({ key, meaning = "" }, table, channels) {
+  if (OF_CHANNEL.includes(key)) return channels(table).filter((name) => name !== "");
+  const keys = table.keys.map((row) => row.key);
+  const listed = Array.from(meaning.matchAll(/`([a-z][a-z0-9/-]*)`/g), ([, word]) => word).filter((word) => !keys.includes(word));
+  return listed.length === 1 && listed[0] === "true" ? ["true", "false"] : listed;
+}
+
+/** Keys that an error names, such as `low_pass`. */
+const namedIn = (texts) => texts.flatMap((text) => Array.from(text.matchAll(/`([a-z_]+)(?: = [^`]*)?`/g), ([, key]) => key));
+
 /** What tells a table from the others, wherever it stands in the list. */
 function identity(tables, k) {
   const of = (table) => [table.section, table.files, valueOf(table, "channel")].join("\n");
@@ -56,10 +70,10 @@ function identity(tables, k) {
 class Tables {
   /**
    * `set(identity, key, value)` states a value; `kind(identity, section)` makes it another kind;
-   * `look(identity)` shows the trace; `find(line)` shows the text.
+   * `look(identity)` shows the trace; `find(line)` shows the text; `channels(table)` are those of its file.
    */
-  constructor(host, { set, kind, look, find }) {
-    Object.assign(this, { host, set, kind, look, find, kinds: [] });
+  constructor(host, { set, kind, look, find, channels }) {
+    Object.assign(this, { host, set, kind, look, find, channels, kinds: [] });
     // Values that were refused stand, with the reason, until they are typed anew.
     [this.refused, this.redraws, this.wrong] = [[], false, new Map()];
   }
@@ -77,6 +91,8 @@ class Tables {
     const nameOf = (fold) => `${fold.parentElement.dataset.table}\n${fold.className}`;
     const open = new Set(Array.from(this.host.querySelectorAll("details[open]"), nameOf));
     this.host.replaceChildren(...tables.map((table, k) => this.card(table, identity(tables, k), tables[k + 1]?.line, problems)));
+    const waits = tables.flatMap((table, k) => table.keys.filter(({ known }) => known === "missing").map(({ key }) => this.toField(identity(tables, k), table, key)));
+    if (waits.length) this.host.prepend(make("p", { className: "waits" }, waits.length === 1 ? "One value is missing: " : `${waits.length} values are missing: `, ...waits.flatMap((link, k) => (k ? [", ", link] : [link]))));
     for (const fold of this.host.querySelectorAll("details")) fold.open = open.has(nameOf(fold));
     const none = problems.length ? "The campaign has an error, which its text below names: put right, the tables come back." : "Nothing is measured yet. A table can be written below, in the campaign.";
     if (!tables.length) this.host.append(make("p", { textContent: none }));
@@ -87,21 +103,39 @@ class Tables {
     input.setSelectionRange(selectionStart, selectionEnd);
   }
 
+  /** A link to a field. */
+  toField(id, table, key) {
+    const find = () => {
+      const field = this.host.querySelector(`[data-field="${CSS.escape(`${id} ${key}`)}"]`);
+      field.closest("details")?.setAttribute("open", "");
+      field.focus();
+    };
+    return make("button", { className: "link", textContent: `${key.replaceAll("_", " ")} of ${table.files || table.section}`, onclick: find });
+  }
+
   card(table, id, next, problems) {
     const card = make("article", { className: "card" });
     card.dataset.table = id;
     card.append(make("h3", { textContent: table.files || table.section }));
     card.append(this.kindOf(table, id));
-    if (table.refused && !table.line) card.append(make("p", { className: "refused", textContent: table.refused }));
-    const name = fromToml(valueOf(table, "name"));
-    for (const [record, why] of table.line ? this.refused : []) {
-      if (record === name || record === table.files) card.append(make("p", { className: "refused", textContent: why }));
-    }
+    const name = fromToml(valueOf(table, "name")), said = table.refused && !table.line ? [table.refused] : [];
+    said.push(...(table.line ? this.refused : []).filter(([record]) => record === name || record === table.files).map(([, why]) => why));
     const wrong = problems.filter(({ line }) => line && table.line && line >= table.line && line < (next ?? Infinity));
-    for (const { text } of wrong) card.append(make("p", { className: "refused", textContent: inShort(text) }));
-    const rows = (...known) => table.keys.filter((row) => known.includes(row.known)).map((row) => this.row(row, id));
-    card.append(...rows("missing"), ...rows("guessed", "stated", "found"));
-    for (const { line } of wrong) card.querySelector(`[data-line="${line}"]`)?.setAttribute("aria-invalid", "true");
+    // An error of a value stands below its field.
+    const atKey = ({ line }) => table.keys.some((row) => row.line === line);
+    said.push(...wrong.filter((one) => !atKey(one)).map(({ text }) => inShort(text)));
+    for (const text of new Set(said)) card.append(make("p", { className: "refused", textContent: text }));
+    // Keys that an error names stand with those that are in use; the title names the file.
+    const named = namedIn(said), isTitle = (row) => row.key === "file" && fromToml(row.value) === table.files;
+    const shown = (row) => (isTitle(row) ? "possible" : named.includes(row.key) && ["open", "possible"].includes(row.known) ? "named" : row.known);
+    const rows = (...known) => table.keys.filter((row) => known.includes(shown(row))).map((row) => this.row(row, id, table));
+    card.append(...rows("missing"), ...rows("named"), ...rows("guessed", "stated", "found"));
+    for (const { line, text } of wrong) {
+      const input = card.querySelector(`[data-line="${line}"]`);
+      input?.setAttribute("aria-invalid", "true");
+      const below = input?.parentElement.querySelector(".wrong");
+      if (below) below.textContent ||= inShort(text);
+    }
     const folds = { open: (n) => `${n} more that would help`, possible: (n) => `${n} further keys` };
     for (const [known, title] of Object.entries(folds)) {
       const all = rows(known);
@@ -129,7 +163,8 @@ class Tables {
     return make("p", { className: "kind" }, choice, about && about !== title ? ` ${about}` : "");
   }
 
-  row({ key, value, known, why, line, unit, meaning, left_out: without }, table) {
+  row(one, table, of) {
+    const { key, value, known, why, line, unit, meaning, left_out: without } = one;
     const id = `field-${table}-${key}`, input = make("input", { id, value: fromToml(value), autocomplete: "off", spellcheck: false });
     // A value of several lines is changed in the text.
     input.readOnly = value.includes("\n");
@@ -159,6 +194,11 @@ class Tables {
     const reason = known === "guessed" ? `guessed: ${why}` : known === "missing" ? `missing: ${why || meaning}` : why;
     const label = make("label", { htmlFor: id, textContent: key.replaceAll("_", " "), title: key });
     const row = make("div", { className: `row ${known}` }, label, input, make("span", { className: "unit", textContent: unit ?? "" }));
+    const picks = choices(one, of, this.channels);
+    if (picks.length) {
+      input.setAttribute("list", `${id}-picks`);
+      row.append(make("datalist", { id: `${id}-picks` }, ...picks.map((value) => make("option", { value }))));
+    }
     // Shown while the field is used.
     if (meaning) {
       const means = `${meaning}; left out: ${without}`.replaceAll("`", "");

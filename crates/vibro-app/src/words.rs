@@ -19,20 +19,31 @@ const COMMANDS: [(&str, &str); 7] = [
 /// An error as the page says it.
 pub fn error(error: &Error) -> String {
     let spelt = |hint: &Hint| match hint {
+        // The list of recordings tells what is in each file.
+        Hint::OfFile("vibro info") => "the list of recordings tells what is in it".to_owned(),
         Hint::OfFile(command) => as_kinds(&format!("`{command}`")),
+        Hint::Words(words) if words.starts_with("`vibro info") => {
+            "choose a kind beside a file that is not used".to_owned()
+        }
         _ => as_kinds(&hint.to_string()),
     };
     error.text_with(|key, value| Voice::Campaign.set(key, value), spelt)
 }
 
 /// What else the command line has, and the place on the page.
-const PLACES: [(&str, &str); 2] = [
+const PLACES: [(&str, &str); 4] = [
     ("docs/campaign.md lists every key", "the card of the record lists every key"),
     ("as docs/campaign.md shows", "or choose a kind beside the file"),
+    ("vibro info lists the channels with their numbers", "the list of recordings names the channels"),
+    ("or vibro demo", "or an example"),
 ];
+
+/// Begin of an aside in parentheses that is for the command line alone.
+const ASIDE: &str = " (vibro init: ";
 
 /// A sentence with the kinds of records in place of commands, and what the page has in place of documents.
 pub fn as_kinds(sentence: &str) -> String {
+    let sentence = sentence.split(ASIDE).next().unwrap_or(sentence);
     let sentence = PLACES.iter().fold(sentence.to_owned(), |text, (there, here)| text.replace(there, here));
     COMMANDS.iter().fold(sentence, |text, (command, section)| {
         let kind = format!("the kind “{}”", analysis::title(section).unwrap_or(section));
@@ -48,6 +59,10 @@ mod tests {
     fn the_page_names_kinds_and_keys() {
         let rings = || Error::refused("the record rings").hint(Hint::OfFile("vibro decay"));
         assert_eq!(error(&rings()), "the record rings\n  try: the kind “Free decays”");
+        let empty = Error::refused("nothing").hint("`vibro info a/FILE` tells what is in a file");
+        assert_eq!(error(&empty), "nothing\n  try: choose a kind beside a file that is not used");
+        let rate = "no sampling rate: choose its kind, and state `rate` (vibro init: --rate HZ for all)";
+        assert_eq!(as_kinds(rate), "no sampling rate: choose its kind, and state `rate`");
         let low = Error::refused("no pulse").hint("`vibro impacts` finds them").setting("low_pass");
         assert_eq!(error(&low), "no pulse\n  try: the kind “Impacts” finds them (`low_pass`)");
     }

@@ -169,7 +169,8 @@ impl Workbench {
             }
         }
         let of_proposal = self.proposals.last().into_iter().flat_map(|one| &one.left);
-        let left: Vec<_> = self.left.iter().chain(of_proposal).collect();
+        let said = |(file, why): &(String, String)| (file.clone(), words::as_kinds(why));
+        let left: Vec<_> = self.left.iter().chain(of_proposal).map(said).collect();
         Ok(joined(json!({ "left": left, "none": none }), self.state()))
     }
 

@@ -16,14 +16,57 @@ const SMOOTH: usize = 300;
 /// Fewest points of a smooth circle, which is passed within a few bandwidths.
 const SMOOTH_CIRCLE: usize = 3000;
 
+/// The part of the frequencies that is drawn, in units of that up to the last line of a mode.
+const SHOWN: f64 = 2.5;
+
+/// Frequency at which the figures of a function end: its last line, unless all modes lie in its lower part.
+fn end_of(f: &[f64], modes: &[Mode]) -> f64 {
+    let last = f.last().copied().unwrap_or(f64::NAN);
+    let of_modes = modes.iter().map(|mode| SHOWN * mode.lines.1.max(mode.frequency.value));
+    of_modes.reduce(f64::max).map_or(last, |end| end.min(last))
+}
+
+/// The caption, with what is not drawn of a function.
+fn cut_off(caption: String, f: &[f64], end: f64) -> String {
+    match f.last() {
+        Some(last) if end < *last => {
+            format!("{caption} Drawn up to {end:.0} Hz; the function goes on to {last:.0} Hz.")
+        }
+        _ => caption,
+    }
+}
+
+/// A curve over frequency that breaks where lines of an even grid are left out.
+fn broken(f: &[f64], y: &[f64]) -> (Vec<f64>, Vec<f64>) {
+    let step = f.windows(2).map(|w| w[1] - w[0]).fold(f64::INFINITY, f64::min);
+    let is_even = f.windows(2).all(|w| {
+        let steps = (w[1] - w[0]) / step;
+        (steps - steps.round()).abs() < 0.01 * steps
+    });
+    let (mut x, mut values) = (Vec::with_capacity(f.len()), Vec::with_capacity(f.len()));
+    for (k, (at, value)) in f.iter().zip(y).enumerate() {
+        if is_even && k > 0 && at - f[k - 1] > 1.5 * step {
+            x.push(f[k - 1] + step);
+            values.push(f64::NAN);
+        }
+        x.push(*at);
+        values.push(*value);
+    }
+    (x, values)
+}
+
 /// Magnitude (logarithmic) over phase in degrees, with the fitted response over the lines of each mode.
 pub fn frf(title: &str, meta: &Meta, measured: &Measured, modes: &[Mode]) -> Figure {
     let f = &measured.frequency;
-    let magnitude: Vec<f64> = measured.values.iter().map(|v| v.norm()).collect();
+    let end = end_of(f, modes);
+    let part = f.partition_point(|at| *at <= end);
+    let (f, coherence) = (&f[..part], measured.coherence.as_deref().map(|c| &c[..part]));
+    let magnitude: Vec<f64> = measured.values[..part].iter().map(|v| v.norm()).collect();
     let lines = if f.len() <= DOTS {
-        Series::points("measured", f.clone(), magnitude).marker(Marker::Circle)
+        Series::points("measured", f, magnitude).marker(Marker::Circle)
     } else {
-        Series::line("measured", f.clone(), magnitude).stroke(Stroke::Solid)
+        let (x, y) = broken(f, &magnitude);
+        Series::line("measured", x, y).stroke(Stroke::Solid)
     };
     let mut above = Plot::new(AxisSpec::frequency(), magnitude_axis(meta)).with(lines.ink(Ink::Grey));
     // Modes that were fitted together have one curve.
@@ -43,24 +86,24 @@ pub fn frf(title: &str, meta: &Meta, measured: &Measured, modes: &[Mode]) -> Fig
     let above = named_modes(above, modes);
     let fitted = " with the modes fitted to it; vertical lines are natural frequencies";
     let fitted = if modes.is_empty() { "" } else { fitted };
-    let figure =
-        Figure::double(format!("Function, {title}")).caption(format!("Frequency response function{fitted}."));
+    let caption = cut_off(format!("Frequency response function{fitted}."), &measured.frequency, end);
+    let figure = Figure::double(format!("Function, {title}")).caption(caption);
     if measured.magnitude_only {
         return figure.panel(above);
     }
-    let coherence = measured.coherence.as_deref().unwrap_or_default();
-    let mut below = phase_plot(f, measured.values.iter().copied(), coherence, Ink::Grey);
+    let values = measured.values[..part].iter().copied();
+    let mut below = phase_plot(f, values, coherence.unwrap_or_default(), Ink::Grey);
     if !x.is_empty() {
         below = below.with(Series::phase("", &x, &angle).ink(Ink::Nth(0)).stroke(Stroke::Dashed));
     }
     let figure = figure.height(110.0).shared_x().panel(above).panel(below);
-    let seen = match &measured.coherence {
+    let seen = match coherence {
         Some(_) => " The phase is drawn where the coherence is 0.5 or more.",
         None => "",
     };
     let caption = format!("{}{seen}", figure.caption);
     let figure = figure.caption(caption);
-    lettered(match &measured.coherence {
+    lettered(match coherence {
         Some(coherence) => figure.height(145.0).panel(coherence_plot(f, coherence, Ink::Grey)),
         None => figure,
     })
@@ -86,14 +129,18 @@ pub fn stabilisation(
     poles: &[OrderedPole],
     modes: &[Mode],
 ) -> Option<Figure> {
-    let (first, last) = (*measured.frequency.first()?, *measured.frequency.last()?);
+    let end = end_of(&measured.frequency, modes);
+    let part = measured.frequency.partition_point(|at| *at <= end);
+    let (f, values) = (&measured.frequency[..part], &measured.values[..part]);
+    let (first, last) = (*f.first()?, *f.last()?);
     let x = || AxisSpec::frequency().limits(first, last);
     let highest = poles.iter().map(|pole| pole.order).max()?;
-    let magnitude: Vec<f64> = measured.values.iter().map(|v| v.norm()).collect();
-    let lines = Series::line("", measured.frequency.clone(), magnitude).stroke(Stroke::Solid).ink(Ink::Grey);
+    let magnitude: Vec<f64> = values.iter().map(|v| v.norm()).collect();
+    let (at, magnitude) = broken(f, &magnitude);
+    let lines = Series::line("", at, magnitude).stroke(Stroke::Solid).ink(Ink::Grey);
     let above = named_modes(Plot::new(x(), magnitude_axis(meta)).with(lines), modes);
     let those = |name: &str, is: &dyn Fn(&OrderedPole) -> bool| {
-        let chosen = || poles.iter().filter(|pole| is(pole));
+        let chosen = || poles.iter().filter(|pole| pole.frequency <= end && is(pole));
         let x: Vec<f64> = chosen().map(|pole| pole.frequency).collect();
         let y: Vec<f64> = chosen().map(|pole| pole.order as f64).collect();
         Series::points(name, x, y)
@@ -111,6 +158,7 @@ pub fn stabilisation(
     }
     let caption = "Poles of models of rising order. A pole of the structure keeps its frequency (to 1 %) and damping \
                    ratio (to 5 %) from one order to the next; vertical lines are the fitted modes. Damping of low peaks beside high ones is too small at low orders.";
+    let caption = cut_off(caption.to_owned(), &measured.frequency, end);
     let figure = Figure::double(format!("Stabilisation diagram, {title}")).caption(caption);
     Some(lettered(figure.height(150.0).shared_x().panel(above).panel(below)))
 }
@@ -234,8 +282,9 @@ fn curve(measured: &Measured, modes: &[Mode], windowed: bool, smooth: usize) -> 
 
 /// The coherence of a function over its frequencies.
 pub(crate) fn coherence_plot(f: &[f64], coherence: &[f64], ink: Ink) -> Plot {
+    let (x, y) = broken(f, coherence);
     Plot::new(AxisSpec::frequency(), AxisSpec::new("Coherence", "").limits(0.0, 1.0))
-        .with(Series::line("", f, coherence).ink(ink).stroke(Stroke::Solid))
+        .with(Series::line("", x, y).ink(ink).stroke(Stroke::Solid))
 }
 
 /// The phase of a function over its frequencies, where the coherence, if known, is 0.5 or more: below that
@@ -252,7 +301,8 @@ pub(crate) fn phase_plot(
     let shown = if f.len() <= DOTS {
         Series::points("", f, phase).marker(Marker::Circle)
     } else {
-        Series::phase("", f, &phase).stroke(Stroke::Solid)
+        let (x, y) = broken(f, &phase);
+        Series::phase("", &x, &y).stroke(Stroke::Solid)
     };
     Plot::new(AxisSpec::frequency(), AxisSpec::new("Phase", "°").limits(-180.0, 180.0)).with(shown.ink(ink))
 }
@@ -263,6 +313,15 @@ mod tests {
     use crate::measure::modal::{ModalOptions, modal};
     use crate::report::Panel;
     use crate::units::Quantity;
+
+    /// Lines 3 and 4 of an even grid are left out: the curve breaks once. Uneven frequencies are no gaps.
+    #[test]
+    fn a_curve_breaks_where_lines_are_left_out() {
+        let (x, y) = broken(&[1.0, 1.5, 3.0, 3.5], &[0.0, 1.0, 2.0, 3.0]);
+        assert_eq!(x, [1.0, 1.5, 2.0, 3.0, 3.5]);
+        assert!(y[2].is_nan() && y.iter().filter(|v| v.is_nan()).count() == 1);
+        assert_eq!(broken(&[1.0, 1.3, 3.0], &[0.0; 3]).0, [1.0, 1.3, 3.0]);
+    }
 
     /// Two modes at twelve lines: the curve goes through them, and between them as the modes do.
     #[test]

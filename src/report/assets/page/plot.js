@@ -46,8 +46,11 @@ function short(value) {
   return first === "1" ? `10${raised}` : `${first}×10${raised}`;
 }
 
-/** Ticks of a logarithmic axis: all multiples of its powers of ten, on a short one even steps, on a long one the powers. */
-function logTicks(low, high) {
+/** Least length in pixels of a decade that has ticks between its powers, and of one that has numbers at them. */
+const DECADE = 40, NUMBERED = 70;
+
+/** Ticks of a logarithmic axis: all multiples of its powers of ten, on a short one even steps; powers alone, or every second or third of them, where `room` pixels for a decade hold no more. */
+function logTicks(low, high, room) {
   const decades = Math.log10(high / low), ticks = [];
   if (decades < 0.7) {
     const size = 10 ** Math.floor(Math.log10((high - low) / 3));
@@ -55,18 +58,26 @@ function logTicks(low, high) {
     for (let i = Math.ceil(low / step); i * step <= high; i++) ticks.push(Number((i * step).toPrecision(12)));
     return ticks;
   }
-  for (let power = Math.floor(Math.log10(low)); power <= Math.log10(high); power++) {
-    for (let k = 1; k < (decades > 6 ? 2 : 10); k++) ticks.push(Number(`${k}e${power}`));
+  const stride = Math.max(1, Math.ceil(18 / room));
+  for (let power = stride * Math.floor(Math.log10(low) / stride); power <= Math.log10(high); power += stride) {
+    for (let k = 1; k < (room < DECADE ? 2 : 10); k++) ticks.push(Number(`${k}e${power}`));
   }
   return ticks.filter((tick) => tick >= low && tick <= high);
 }
 
-/** What an axis has at its ticks: on a logarithmic one of more than a few, only 1, 2 and 5 times a power of ten have numbers. */
+/** What an axis has at its ticks: on a logarithmic one of more than a few, only 1, 2 and 5 times a power of ten have numbers, or the powers alone. */
 function marks(log) {
+  if (!log) return { values: (_, ticks) => ticks.map((v) => (v == null ? "" : short(v))) };
   const first = (v) => Math.round(v / 10 ** Math.floor(Math.log10(v) + 1e-9));
-  const shown = (v, ticks) => v != null && (!log || ticks.at(-1) < 5 * ticks[0] || [1, 2, 5].includes(first(v)));
-  const values = (_, ticks) => ticks.map((v) => (shown(v, ticks) ? short(v) : ""));
-  return log ? { values, splits: (_, axis, low, high) => logTicks(low, high), filter: (_, ticks) => ticks } : { values };
+  // Pixels of a decade.
+  const room = ({ bbox }, axis, low, high) => Math.max(1, (axis ? bbox.height : bbox.width) / devicePixelRatio / Math.log10(high / low));
+  const splits = (plot, axis, low, high) => logTicks(low, high, room(plot, axis, low, high));
+  const values = (plot, ticks, axis) => {
+    const { min, max } = plot.scales[axis ? "y" : "x"], few = ticks.at(-1) < 5 * ticks[0];
+    const named = few || max < 30 * min || room(plot, axis, min, max) >= NUMBERED ? [1, 2, 5] : [1];
+    return ticks.map((v) => (v != null && (few || named.includes(first(v))) ? short(v) : ""));
+  };
+  return { values, splits, filter: (_, ticks) => ticks };
 }
 
 /** Paths of markers of half width `s` around points. */
@@ -356,25 +367,26 @@ class Plot {
       c.textAlign = "left";
       c.textBaseline = "alphabetic";
       c.font = font.replace("12px", `${11 * ratio}px`);
+      this.taken = [];
       for (const series of this.series.filter((s) => !s.hidden)) {
         this.pen(c, series, ink, ratio);
         this[series.shape]?.(c, series, ratio);
       }
       c.setLineDash([]);
       c.fillStyle = ink;
-      const taken = [], tall = 13 * ratio;
-      for (const note of this.panel.notes) {
-        const [x, y] = this.at(note.x, note.y), right = x > this.plot.bbox.left + 0.6 * this.plot.bbox.width;
-        const wide = c.measureText(note.text).width, begins = x + (right ? -6 * ratio - wide : 6 * ratio);
-        let foot = y - 6 * ratio;
-        // Names of near peaks stand above each other.
-        const over = (one) => begins < one.ends && one.begins < begins + wide && Math.abs(foot - one.foot) < tall;
-        while (taken.some(over) && foot > this.plot.bbox.top + tall) foot -= tall;
-        taken.push({ begins, ends: begins + wide, foot });
-        c.textAlign = "left";
-        c.fillText(note.text, begins, foot);
-      }
+      for (const note of this.panel.notes) this.write(c, note.text, this.at(note.x, note.y), 6 * ratio, -1);
     });
+  }
+
+  /** Writes a name beside a point. Those of near points stand above each other, or below where `way` is 1. */
+  write(c, text, [x, y], gap, way) {
+    const { left, top, width, height } = this.plot.bbox, tall = 13 * devicePixelRatio, wide = c.measureText(text).width;
+    const begins = x + (x > left + 0.6 * width ? -gap - wide : gap);
+    let foot = y - gap;
+    const over = (one) => begins < one.ends && one.begins < begins + wide && Math.abs(foot - one.foot) < tall;
+    while (this.taken.some(over) && (way < 0 ? foot > top + tall : foot < top + height - tall)) foot += way * tall;
+    this.taken.push({ begins, ends: begins + wide, foot });
+    c.fillText(text, begins, foot);
   }
 
   line(c, series) {
@@ -446,7 +458,7 @@ class Plot {
       const at = this.plot.valToPos(x, "x", true);
       c.moveTo(at, top);
       c.lineTo(at, top + height);
-      c.fillText(series.name, at + 3 * ratio, top + 12 * ratio);
+      this.write(c, series.name, [at, top + 15 * ratio], 3 * ratio, 1);
     } else {
       const at = this.plot.valToPos(y, "y", true);
       c.moveTo(left, at);
