@@ -4,4 +4,5 @@ set -euo pipefail
 cd "$(dirname "$0")/../.."
 to=$(realpath "${1:?the folder for vibro.html}")
 module=$(crates/build_wasm.sh vibro-app app target/app)
-"$(command -v python3 || command -v python)" crates/vibro-app/pack.py "$module" "$to/vibro.html"
+unpacker=$(crates/build_wasm.sh vibro-unpack app target/app)
+"$(command -v python3 || command -v python)" crates/vibro-app/pack.py "$module" "$unpacker" "$to/vibro.html"

@@ -1,6 +1,7 @@
-"""Packs the module and the parts of the page into one file: pack.py MODULE PAGE"""
+"""Packs the module, what unpacks it, and the parts of the page into one file: pack.py MODULE UNPACKER PAGE"""
 import base64
 import gzip
+import lzma
 import sys
 from pathlib import Path
 
@@ -13,14 +14,19 @@ def as_text(data: bytes) -> str:
     return base64.b85encode(data, pad=True).decode().replace("<", ",")
 
 
-def main(module: str, page: str) -> None:
-    wasm = gzip.compress(Path(module).read_bytes(), 9, mtime=0)
+def main(module: str, unpacker: str, page: str) -> None:
+    wasm = Path(module).read_bytes()
+    packed = lzma.compress(wasm, lzma.FORMAT_ALONE, preset=9 | lzma.PRESET_EXTREME)
+    first = gzip.compress(Path(unpacker).read_bytes(), 9, mtime=0)
     parts = {
         "STYLE": (HERE / "app.css").read_text(encoding="utf-8"),
         "WORKER": (HERE / "worker.js").read_text(encoding="utf-8"),
         "SCRIPTS": "\n".join((HERE / name).read_text(encoding="utf-8") for name in SCRIPTS),
-        "BYTES": str(len(wasm)),
-        "MODULE": as_text(wasm),
+        "UNPACKER": as_text(first),
+        "UNPACKER_BYTES": str(len(first)),
+        "MODULE": as_text(packed),
+        "MODULE_BYTES": str(len(packed)),
+        "UNPACKED_BYTES": str(len(wasm)),
     }
     text = (HERE / "app.html").read_text(encoding="utf-8")
     for name, part in parts.items():

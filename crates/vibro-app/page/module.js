@@ -39,7 +39,8 @@ class Program {
       if (this.module) return this.end(event.message || "the worker failed");
       for (const { reject } of this.waiting.values()) reject(new Stopped(event.message || "no worker"));
     };
-    const begun = this.module ? { module: this.module } : { packed: document.getElementById("module").textContent, bytes: Number(document.getElementById("module").dataset.bytes) };
+    const of = (id) => ({ text: document.getElementById(id).textContent, bytes: Number(document.getElementById(id).dataset.bytes) });
+    const begun = this.module ? { module: this.module } : { unpacker: of("unpacker"), packed: of("module"), size: Number(document.getElementById("module").dataset.unpacked) };
     this.ready = this.send({ start: begun }).then((module) => { this.module = module; });
     this.ready.catch(() => {});
   }

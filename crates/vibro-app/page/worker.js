@@ -35,7 +35,7 @@ async function add(path, file) {
 }
 
 /** Bytes from text that has five characters for four of them, as pack.py writes it. */
-function unpacked(packed, length) {
+function bytesOf({ text: packed, bytes: length }) {
   const digits = "0123456789ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz!#$%&()*+-;,=>?@^_`{|}~";
   const of = new Uint8Array(128), all = new DataView(new ArrayBuffer(packed.length / 5 * 4));
   for (let k = 0; k < digits.length; k++) of[digits.charCodeAt(k)] = k;
@@ -47,12 +47,20 @@ function unpacked(packed, length) {
   return new Uint8Array(all.buffer, 0, length);
 }
 
-async function started({ packed, bytes: length, module }) {
-  if (!module) {
-    const bytes = unpacked(packed, length);
-    const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("gzip"));
-    module = await WebAssembly.compile(await new Response(stream).arrayBuffer());
-  }
+/** The module: LZMA, which a small module of its own unpacks. */
+async function unpacked(unpacker, packed, size) {
+  const stream = new Blob([bytesOf(unpacker)]).stream().pipeThrough(new DecompressionStream("gzip"));
+  const { instance } = await WebAssembly.instantiate(await new Response(stream).arrayBuffer(), {});
+  const { memory, room, unpack } = instance.exports, bytes = bytesOf(packed), place = room(bytes.length) >>> 0;
+  if (place === 0) throw new Error("the memory of the page does not suffice");
+  new Uint8Array(memory.buffer, place, bytes.length).set(bytes);
+  const from = unpack(size) >>> 0;
+  if (from === 0) throw new Error("this file is damaged: load it anew");
+  return WebAssembly.compile(new Uint8Array(memory.buffer, from, size));
+}
+
+async function started({ unpacker, packed, size, module }) {
+  module ??= await unpacked(unpacker, packed, size);
   let shown = 0;
   const progress = (place, length, done, all) => {
     const now = performance.now();
