@@ -5,7 +5,7 @@ import { cpSync, existsSync, mkdirSync, mkdtempSync, readFileSync, readdirSync, 
 import { tmpdir } from "node:os";
 import { basename, join, relative, resolve } from "node:path";
 import { after, before, test } from "node:test";
-import { deflateRawSync, gunzipSync } from "node:zlib";
+import { deflateRawSync } from "node:zlib";
 import { chromium } from "playwright-core";
 import puppeteer from "puppeteer-core";
 
@@ -436,10 +436,10 @@ test("Firefox runs an example, too, and shows the report", { skip }, async () =>
 /** The program of the page, asked in Node. */
 async function program() {
   const html = readFileSync(app, "utf8"), worker = html.match(/<script type="text\/plain" id="worker">([\s\S]*?)<\/script>/)[1];
-  const [, bytes, packed] = html.match(/id="module" data-bytes="(\d+)">([^<]*)</);
-  const unpack = worker.slice(worker.indexOf("function unpacked"), worker.indexOf("async function started"));
-  const unpacked = new Function(`${unpack}; return unpacked;`)();
-  const module = await WebAssembly.compile(gunzipSync(unpacked(packed, Number(bytes))));
+  const of = (id) => { const [, bytes, rest, text] = html.match(new RegExp(`id="${id}" data-bytes="(\\d+)"([^>]*)>([^<]*)<`)); return { text, bytes: Number(bytes), rest }; };
+  const unpack = worker.slice(worker.indexOf("function bytesOf"), worker.indexOf("async function started"));
+  const packed = of("module"), unpacked = new Function(`${unpack}; return unpacked;`)();
+  const module = await unpacked(of("unpacker"), packed, Number(packed.rest.match(/\d+/)[0]));
   const imports = {}, text = new TextDecoder(), utf8 = new TextEncoder();
   for (const { module: from, name } of WebAssembly.Module.imports(module)) (imports[from] ??= {})[name] = () => 0;
   const wasm = (await WebAssembly.instantiate(module, imports)).exports;
