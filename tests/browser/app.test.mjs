@@ -236,6 +236,11 @@ test("a value is typed with its unit, its meaning is shown, and a record is meas
   await page.mouse.move(box.x + 0.5 * box.width, box.y + 25, { steps: 4 });
   await page.mouse.up();
   assert.match(await report(page).locator("code", { hasText: "span" }).first().innerText(), /^span = \[[\d.]+, [\d.]+\]$/);
+  // A click states what is lower, or sooner behind an impact.
+  await page.mouse.dblclick(box.x + 0.5 * box.width, box.y + 20);
+  await page.mouse.click(box.x + 0.5 * box.width, box.y + 0.4 * box.height);
+  const keys = await report(page).locator(".panels code", { hasText: "threshold" }).first().innerText();
+  assert.match(keys, /^threshold = [\d.]+ +# .+\nrefractory = 0\.\d+ +# .+$/);
   await page.keyboard.press("Escape");
   assert.equal(await page.evaluate(() => document.body.className), "");
 }));

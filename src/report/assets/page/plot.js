@@ -309,7 +309,23 @@ class Plot {
       },
     }, [[x.low, x.high], ends], this.frame);
     if (this.panel.square) this.square(x, y);
-    this.plot.over.addEventListener("click", () => this.spectrum());
+    this.plot.over.addEventListener("click", () => {
+      this.spectrum();
+      this.pick();
+    });
+  }
+
+  /** The place of a click in a trace with impacts as the keys by which a campaign counts what is higher, and nothing sooner behind an impact. */
+  pick() {
+    const [trace, impacts] = ["trace", "impacts"].map((name) => this.series.find((s) => s.name === name));
+    if (!trace || !impacts?.x.length || this.plot.select.width > 0) return;
+    const [t, v] = [this.plot.posToVal(this.plot.cursor.left, "x"), this.plot.posToVal(this.plot.cursor.top, "y")];
+    const times = Array.from(impacts.x), ends = times.map((from, k) => from + ((times[k + 1] ?? Infinity) - from) / 4);
+    const heights = times.map((from, k) => trace.x.reduce((most, at, i) => (at >= from && at < ends[k] ? Math.max(most, Math.abs(trace.y[i])) : most), 0));
+    const height = heights.sort((a, b) => a - b)[Math.floor(heights.length / 2)], last = times.findLast((one) => one < t);
+    const keys = [`threshold = ${digits(Math.abs(v) / height, 2)}  # of the median impact: what is lower is none`];
+    if (last !== undefined) keys.push(`refractory = ${digits(t - last, 3)}  # s behind an impact: what comes sooner is an echo`);
+    this.keys.textContent = keys.join("\n");
   }
 
   /** The part of a time trace that is shown, as the key by which a campaign uses this part alone. */
@@ -497,7 +513,8 @@ class Plot {
     }
     const [series, i] = best, std = series.std[i] ?? NaN;
     const name = series.name ? `${series.name}: ` : "";
-    const click = this.spectra(series.name) ? " (click: its spectrum)" : "";
+    const picks = series.name === "trace" && this.series.some((s) => s.name === "impacts");
+    const click = this.spectra(series.name) ? " (click: its spectrum)" : picks ? " (click: threshold and dead time of this place)" : "";
     this.tip.textContent = `${name}${this.panel.x.title} ${digits(series.x[i])}, ${this.panel.y.title} ${estimate(series.y[i], std)}${click}`;
   }
 }
