@@ -99,8 +99,14 @@ fn damped(measured: &Measured, options: &ModalOptions) -> Result<ModalResult> {
         let others = poles_beside(&lines, &fits, at);
         let (group, fit) = &mut fits[at];
         let sound = complete(&lines, group, fit, &others);
-        fit.cover_hidden(&lines, group.lines.clone(), &others);
-        fit.cover_blow_before(&lines, group.lines.clone(), &others, options.decay.unwrap_or(0.0));
+        let starts = fit.starts();
+        if let Some(again) = fit.again(&lines, group.lines.clone(), &others, &starts) {
+            fit.cover_hidden(&again);
+            fit.cover_noise(&again);
+            if let Some(blows) = &lines.blows {
+                fit.cover_blow_before(&again, blows, options.decay.unwrap_or(0.0));
+            }
+        }
         for (m, sound) in sound.into_iter().enumerate() {
             let candidate = Candidate { measured: &lines, options, group, fit, m, unsaid };
             modes.extend(candidate.mode(sound, &mut findings));

@@ -65,6 +65,12 @@ impl LineNoise {
             }
         }
     }
+
+    /// Minus twice the logarithm of the likelihood of whitened residuals, whose variance is unknown.
+    pub fn unlikely(&self, left: &[f64]) -> f64 {
+        let n = left.len() as f64;
+        n * (left.iter().map(|r| r * r).sum::<f64>() / n).ln() + self.spread(left.len())
+    }
 }
 
 impl Banded {

@@ -1,6 +1,9 @@
 //! Modes and residual terms fitted to a part of a frequency response function in the complex plane.
 
+mod again;
+mod beside;
 mod blow_before;
+mod cover_noise;
 mod hidden;
 mod rivals;
 
@@ -372,12 +375,10 @@ pub(super) fn rational(
     };
     let at = few.nearer(&start, &equal)?;
     let rivals = rivals(measured, part, &scaled, &at);
-    // Minus twice the logarithm of the likelihood.
     let unlikely = |p: &[f64], noise: &LineNoise| {
         let mut left = vec![0.0; scaled.rows()];
         scaled.white(p, noise, &mut left);
-        let n = left.len() as f64;
-        n * (left.iter().map(|r| r * r).sum::<f64>() / n).ln() + noise.spread(left.len())
+        noise.unlikely(&left)
     };
     let mut failed = refuse();
     let mut near = Vec::new();
@@ -465,8 +466,7 @@ impl Scaled<'_> {
         let to_constant = self.to_constant();
         // Fits of fewer than three degrees of freedom were refused.
         let widened = whiteness.inflation * student(fit.degrees_of_freedom()).unwrap_or(f64::NAN);
-        let slopes = self.slopes(p);
-        let covariance = &slopes * &fit.cofactor * slopes.transpose() * fit.variance();
+        let covariance = self.covariance(p, &fit.cofactor, fit.variance());
         let mode = |m: usize| {
             let (own, damping) = self.shape(p, m);
             let a = Complex64::new(p[4 * m + 2], p[4 * m + 3]);
@@ -482,7 +482,7 @@ impl Scaled<'_> {
             unexplained: (sum / n as f64).sqrt(),
             modes,
             std,
-            aicc: aicc(fit.sum_of_squares(), fit.residuals.len(), slopes.ncols() as f64)
+            aicc: aicc(fit.sum_of_squares(), fit.residuals.len(), self.free().len() as f64)
                 + weight.spread(fit.residuals.len()),
             fitted: (0..n).map(|i| self.at(p, i) * self.height).collect(),
             whiteness,

@@ -1,30 +1,19 @@
 //! What the blow before a record left in it.
 
-use super::{Rational, Scaled};
-use crate::modal::{Measured, Pole};
+use super::Rational;
+use super::again::Again;
+use crate::modal::BlowRecords;
 use nalgebra::DVector;
 use num_complex::Complex64;
 use std::f64::consts::TAU;
-use std::ops::Range;
 
 impl Rational {
     /// Widens the uncertainties to cover what the blow before left: e^(sT) of its own response after the time
     /// T, which has the poles of the modes and any phase, but begins with the record. Its mean over blows of
     /// independent phases is smaller by √n; a coherence needs two. The `decay` in 1/s that an exponential
     /// window adds is not its own.
-    pub fn cover_blow_before(
-        &mut self,
-        measured: &Measured,
-        part: Range<usize>,
-        others: &[Pole],
-        decay: f64,
-    ) {
-        let Some(blows) = measured.blows.filter(|_| self.modes.iter().all(|mode| mode.zeta > 0.0)) else {
-            return;
-        };
-        let starts = self.starts();
-        let scaled = Scaled::of(measured, part, &starts, others);
-        let Some(fit) = scaled.again(&self.weights).filter(|_| !measured.magnitude_only) else { return };
+    pub fn cover_blow_before(&mut self, again: &Again<'_>, blows: &BlowRecords, decay: f64) {
+        let Again { scaled, fit, .. } = again;
         let Some(leakage) = &scaled.leakage else { return };
         let p = &fit.parameters;
         let gain = scaled.slopes(p) * &fit.cofactor * fit.jacobian.transpose();
