@@ -6,13 +6,16 @@
 //! likely models. The instrument's low-pass is applied to the models in closed form.
 
 mod contact;
+mod edge;
 mod fit;
 mod instants;
+mod linear;
 mod losses;
 mod low_pass;
 mod normalised;
 mod result;
 mod ringing;
+mod sensor;
 
 pub use contact::KelvinVoigt;
 pub use instants::two_times;
@@ -122,14 +125,23 @@ pub fn pulse(trace: &Trace, options: &PulseOptions) -> Result<PulseResult> {
             .setting("low_pass")
     };
     let scale = Normalised::new(trace, rate, &located, filter)?;
-    let (samples, level) = scale.window(&mut found, unlike)?;
+    let (mut samples, mut level) = scale.window(&mut found, unlike)?;
+    let main = samples.fit(ContactModel::KelvinVoigt).map_err(unlike)?;
+    let (mut fits, mut unfitted) = rivals(&samples, main);
+    let best = leader(&fits);
+    if samples.rings.is_some() || best.whiteness.rejected() || samples.unexplained(best) {
+        if let Some(rings) = sensor::ringing(&scale, &fits) {
+            (samples, fits, unfitted, level) = (rings.samples, rings.fits, rings.unfitted, None);
+        }
+    }
+    let rests = samples.rings.is_none() || level.is_some();
+    found.extend((!rests).then(|| Finding::caution("pulse-no-rest-after")));
     doubts.extend(level);
     // No model of a pulse in doubt has an uncertainty, also where it only decides on another finding.
     let known = doubts.is_empty();
-    let main = samples.fit(ContactModel::KelvinVoigt).map_err(unlike)?;
-    let (widening, whiteness) = (main.widening, main.whiteness);
+    let (widening, whiteness) = (fits[0].widening, fits[0].whiteness);
     let widened = widening.filter(|_| known).unwrap_or(f64::NAN);
-    let mut result = spring_and_damper(&main, (&scale, samples.times.len()), widened, options)?;
+    let mut result = spring_and_damper(&fits[0], (&scale, samples.times.len()), widened, options)?;
     found.splice(..0, doubts.into_iter().map(|doubt| doubt.of(&mut result)));
     // A contact cannot return more energy than it took: ξ may be below 0 only by its uncertainty.
     let gains = result.xi.value + 2.0 * result.xi.std.unwrap_or(UNKNOWN) < 0.0;
@@ -149,12 +161,12 @@ pub fn pulse(trace: &Trace, options: &PulseOptions) -> Result<PulseResult> {
         let near = Finding::caution("pulse-near-corner").number("duration", duration);
         say(duration * filter.corner < 2.0, near.number("corner", filter.corner));
     }
-    let (mut fits, unfitted) = rivals(&samples, main);
     result.unfitted = unfitted;
-    let best = fits.iter().min_by(|a, b| a.aicc().total_cmp(&b.aicc()));
-    let unexplained = best.is_some_and(|best| samples.unexplained(best));
-    let inflation = best.map_or(1.0, |best| best.whiteness.inflation.max(1.0));
-    let lower = best.map_or(0.0, |best| fits[0].aicc() - best.aicc());
+    let best = leader(&fits);
+    let unexplained = samples.unexplained(best);
+    let inflation = best.whiteness.inflation.max(1.0);
+    let lower = fits[0].aicc() - best.aicc();
+    found.extend(samples.mode.map(|_| scale.rings(best)));
     // A power law needs its losses only where spring and damper does not lead.
     let law = fits.iter_mut().find(|fit| fit.model == ContactModel::PowerLaw);
     if let Some(law) = law.filter(|_| lower > NO_SUPPORT * inflation.powi(2))
@@ -180,6 +192,11 @@ pub fn pulse(trace: &Trace, options: &PulseOptions) -> Result<PulseResult> {
     result.picture = Some(scale.picture(&samples, &fits));
     result.width = seen / rate;
     Ok(result)
+}
+
+/// The fit of the lowest AICc.
+fn leader(fits: &[FittedPulse]) -> &FittedPulse {
+    fits.iter().fold(&fits[0], |best, fit| if fit.aicc() < best.aicc() { fit } else { best })
 }
 
 /// Number of samples of a pulse above half its height.

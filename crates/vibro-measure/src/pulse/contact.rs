@@ -2,6 +2,7 @@
 //! spring.
 
 use super::LowPass;
+use super::linear::Linear;
 use num_complex::Complex64;
 use std::f64::consts::{PI, TAU};
 
@@ -66,10 +67,15 @@ impl KelvinVoigt {
     /// Deceleration at `t` in s, in m/s² for each m/s of approach, as an instrument with this low-pass shows
     /// it.
     pub fn filtered(&self, filter: &LowPass, t: f64) -> f64 {
+        self.through(&filter.linear, &[t])[0]
+    }
+
+    /// Deceleration at each of the `times` in s, in m/s² for each m/s of approach, as the parts of an
+    /// instrument show it.
+    pub(super) fn through(&self, instrument: &Linear, times: &[f64]) -> Vec<f64> {
         let s = Complex64::new(-self.omega * self.theta.sin(), self.omega * self.theta.cos());
         let c = Complex64::cis(2.0 * self.theta) * (self.omega / self.theta.cos());
-        // The filter is real, so the response to the imaginary part is the imaginary part of the response.
-        filter.exponential(c, s, self.duration(), t).im
+        instrument.exponential(c, s, self.duration(), times)
     }
 }
 
@@ -178,19 +184,32 @@ impl Rebound {
     }
 
     /// Deceleration at each of the rising `times` in s, in m/s² for each m/s of approach, of a contact that
-    /// lasts `duration` seconds; as an instrument with this low-pass shows it where there is one.
-    pub(crate) fn decelerations(&self, duration: f64, filter: Option<&LowPass>, times: &[f64]) -> Vec<f64> {
+    /// lasts `duration` seconds; as an `instrument` shows it where there is one.
+    pub(super) fn decelerations(
+        &self,
+        duration: f64,
+        instrument: Option<&Linear>,
+        times: &[f64],
+    ) -> Vec<f64> {
         let scale = duration / self.duration;
         let step = STEP * scale;
-        let mut values: Vec<f64> = match filter {
-            Some(filter) => {
+        let bare = || times.iter().map(|t| self.between(t / step));
+        let mut values: Vec<f64> = match instrument {
+            Some(instrument) => {
                 // Behind a low-pass only the impulse of the rise matters: it is given to the first value,
                 // which counts for half a step.
                 let mut lines = self.deceleration.clone();
                 lines[0] += 2.0 * self.rise.iter().sum::<f64>() / PARTS as f64;
-                filter.straight_lines(&lines, step, times)
+                let mut values = instrument.straight_lines(&lines, step, times);
+                if instrument.direct != 0.0 {
+                    values
+                        .iter_mut()
+                        .zip(bare())
+                        .for_each(|(value, bare)| *value += instrument.direct * bare);
+                }
+                values
             }
-            None => times.iter().map(|t| self.between(t / step)).collect(),
+            None => bare().collect(),
         };
         for value in &mut values {
             *value /= scale;
@@ -380,7 +399,8 @@ mod curved {
         let step = 1e-8;
         let times: Vec<f64> = (0..40_000).map(|i| f64::from(i) * step).collect();
         for filter in [None, Some(&filter)] {
-            let sum: f64 = contact.decelerations(20e-6, filter, &times).iter().sum::<f64>() * step;
+            let sum: f64 =
+                contact.decelerations(20e-6, filter.map(|f| &f.linear), &times).iter().sum::<f64>() * step;
             // Straight lines between the integration's steps miss h²/12 of the change of slope, and the end
             // part of a step.
             assert!((sum - 1.0 - contact.restitution).abs() < 1e-4, "{sum} {}", contact.restitution);

@@ -1,11 +1,11 @@
 //! Models of a contact fitted to the samples of a pulse.
 
+use super::linear::Linear;
 use super::ringing::Ringing;
 use super::{ContactModel, KelvinVoigt, LowPass, Rebound};
 use crate::converter::{concealed, hidden, rounding};
 use crate::mean::{average, scatter};
 use crate::residuals::{Whiteness, aicc, student};
-use nalgebra::{DMatrix, DVector};
 use std::cell::RefCell;
 use vibro_math::{Fit, least_squares};
 use vibro_record::{Error, Result, sort_by_number};
@@ -20,6 +20,9 @@ pub(super) struct Samples<'a> {
     pub places: Vec<usize>,
     pub times: Vec<f64>,
     pub values: Vec<f64>,
+    /// First guess of a mode of the sensor: share of the signal, frequency in cycles per length of the pulse,
+    /// and damping ratio. `None` for a sensor without a mode.
+    pub mode: Option<[f64; 3]>,
     /// Step of the converter, over the height; 0 where values are not rounded.
     pub quantum: f64,
     /// Ringing after the pulse, which may occur within it, too.
@@ -30,7 +33,8 @@ pub(super) struct Samples<'a> {
 
 /// The best fit of a model. Its parameters are onset, baseline, velocity of approach, and those of the
 /// shape: ξ and f (Kelvin–Voigt); duration (Hertz); duration and α (Hunt–Crossley) or restitution
-/// (yielding); duration, α and both exponents (power law).
+/// (yielding); duration, α and both exponents (power law). Behind them are those of the sensor's mode where
+/// it has one.
 #[derive(Clone)]
 pub(super) struct FittedPulse {
     pub model: ContactModel,
@@ -48,6 +52,9 @@ pub(super) struct FittedPulse {
     pub losses: Vec<(f64, FittedPulse)>,
 }
 
+/// A fit, whether its onset is outside of where it may be, and its sum of squares with the onset inside.
+pub(super) type Judged = ((bool, f64), FittedPulse);
+
 /// Fits whose exponents of the loss differ by less than this belong to one minimum.
 const APART: f64 = 0.05;
 
@@ -63,9 +70,6 @@ const LEAD: f64 = 0.08;
 /// Half-width of the finer grid of onsets around a first guess, in durations of the contact: one and a half
 /// steps of the coarse grid.
 const REACH: f64 = 1.5 * LEAD;
-
-/// Onsets between two samples over which a fit is averaged.
-const ONSETS: u32 = 32;
 
 /// Most samples that the search for a first guess uses; of more, every n-th is taken.
 const COARSE: usize = 48;
@@ -98,6 +102,12 @@ impl Samples<'_> {
     /// The model without baseline and at unit velocity.
     fn shape(&self, model: ContactModel, p: &[f64], times: &[f64], first: Option<usize>) -> Option<Vec<f64>> {
         let since = times.iter().map(|t| t - p[0]);
+        let (shape, mode) = p[3..].split_at(model.parameters());
+        let rings = match *mode {
+            [share, frequency, zeta] => Some(Linear::sensor([share, frequency, zeta], self.filter)?),
+            _ => None,
+        };
+        let instrument = rings.as_ref().or(self.filter.map(|filter| &filter.linear));
         Some(match model {
             ContactModel::KelvinVoigt => {
                 let contact = KelvinVoigt::new(p[3], p[4])?;
@@ -106,17 +116,22 @@ impl Samples<'_> {
                     let begun = first.map_or(t >= 0.0, |first| i >= first);
                     if begun && t <= end { contact.unbounded(t) } else { 0.0 }
                 };
-                match self.filter {
-                    Some(filter) => since.map(|t| contact.filtered(filter, t)).collect(),
-                    None => since.enumerate().map(inside).collect(),
+                let Some(instrument) = instrument else {
+                    return Some(since.enumerate().map(inside).collect());
+                };
+                let mut shown = contact.through(instrument, &since.clone().collect::<Vec<_>>());
+                if instrument.direct != 0.0 {
+                    let bare = since.enumerate().map(inside);
+                    shown.iter_mut().zip(bare).for_each(|(shown, bare)| *shown += instrument.direct * bare);
                 }
+                shown
             }
             _ if p[3] > 0.0 => {
                 let mut last = self.last.borrow_mut();
-                if !last.as_ref().is_some_and(|(of, shape, _)| *of == model && *shape == p[4..]) {
-                    *last = Some((model, p[4..].to_vec(), model.rebound(&p[4..])?));
+                if !last.as_ref().is_some_and(|(of, known, _)| *of == model && *known == shape[1..]) {
+                    *last = Some((model, shape[1..].to_vec(), model.rebound(&shape[1..])?));
                 }
-                last.as_ref()?.2.decelerations(p[3], self.filter, &since.collect::<Vec<_>>())
+                last.as_ref()?.2.decelerations(shape[0], instrument, &since.collect::<Vec<_>>())
             }
             _ => return None,
         })
@@ -166,7 +181,7 @@ impl Samples<'_> {
             (outside, fit.fit.sum_of_squares() * (1.0 + (beyond / std).powi(2) / free))
         };
         let fits = from.into_iter().filter_map(|(start, first)| self.from(model, noise, &start, first));
-        let mut fits: Vec<((bool, f64), FittedPulse)> = fits.map(|fit| (held(&fit), fit)).collect();
+        let mut fits: Vec<Judged> = fits.map(|fit| (held(&fit), fit)).collect();
         fits.sort_by(|(a, _), (b, _)| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
         self.between_samples(&mut fits);
         let mut fits = fits.into_iter().map(|((outside, _), fit)| self.judged(fit, outside));
@@ -182,52 +197,6 @@ impl Samples<'_> {
             }
         }
         Ok(best)
-    }
-
-    /// Replaces the best of the `fits` whose onsets lie between different samples by the mean over all
-    /// onsets between any of these, each weighted with its likelihood by the sum of squares. For an onset x
-    /// the other parameters pᵢ with cofactor C are pᵢ + Cᵢ₀/C₀₀ (x − p₀). The jump of the force shows
-    /// between which samples the contact begins. This determines the onset, and with it ξ, better than the
-    /// shape does.
-    fn between_samples(&self, fits: &mut [((bool, f64), FittedPulse)]) {
-        let Some(((false, _), FittedPulse { fit: best, first: Some(_), .. })) = fits.first() else { return };
-        let variance = best.variance().max(self.noise().1.powi(2)).max(f64::EPSILON.powi(2));
-        // Logarithm of the weight, parameters, and index of the fit.
-        let mut onsets: Vec<(f64, DVector<f64>, usize)> = Vec::new();
-        for (index, (_, fitted)) in fits.iter().enumerate().filter(|(_, ((outside, _), _))| !outside) {
-            let (fit, Some(first)) = (&fitted.fit, fitted.first) else { continue };
-            let (from, to) = (self.times[first - 1], self.times[first]);
-            let slopes = fit.cofactor.column(0) / fit.cofactor[(0, 0)];
-            onsets.extend((0..ONSETS).map(|k| {
-                let off = from + (to - from) * (f64::from(k) + 0.5) / f64::from(ONSETS) - fit.parameters[0];
-                let squares = fit.sum_of_squares() + off * off / fit.cofactor[(0, 0)];
-                let width = (to - from).ln();
-                let p = DVector::from_column_slice(&fit.parameters) + &slopes * off;
-                (width - 0.5 * squares / variance, p, index)
-            }));
-        }
-        let most = onsets.iter().map(|o| o.0).fold(f64::NEG_INFINITY, f64::max);
-        for onset in &mut onsets {
-            onset.0 = (onset.0 - most).exp();
-        }
-        let total: f64 = onsets.iter().map(|o| o.0).sum();
-        let n = best.parameters.len();
-        let mean = onsets.iter().fold(DVector::zeros(n), |sum, (w, p, _)| sum + p * (w / total));
-        let cofactor = onsets.iter().fold(DMatrix::zeros(n, n), |sum, (w, p, index)| {
-            let own = &fits[*index].1.fit.cofactor;
-            let column = own.column(0);
-            let off = p - &mean;
-            let given = own - column * column.transpose() / own[(0, 0)];
-            sum + (given + &off * off.transpose() / variance) * (w / total)
-        });
-        let first = self.times.partition_point(|t| *t < mean[0]);
-        let p = mean.as_slice();
-        let Some(model) = self.model(ContactModel::KelvinVoigt, p, &self.times, Some(first)) else { return };
-        let fitted = &mut fits[0].1;
-        fitted.fit.parameters = p.to_vec();
-        fitted.fit.residuals = self.values.iter().zip(model).map(|(v, m)| v - m).collect();
-        fitted.fit.cofactor = cofactor;
-        fitted.first = Some(first);
     }
 
     /// Tests the residuals of a fit for whiteness, and sets the factor of its uncertainties, unless its
@@ -292,7 +261,9 @@ impl Samples<'_> {
     /// follows another law, or something else moved.
     pub fn unexplained(&self, fitted: &FittedPulse) -> bool {
         let fit = &fitted.fit;
-        let (onset, end) = (fit.parameters[0], fitted.end() + self.delay());
+        let onset = fit.parameters[0];
+        // A sensor's mode has to explain what follows the contact, too.
+        let end = self.mode.map_or(fitted.end() + self.delay(), |_| f64::INFINITY);
         let of = |part: &dyn Fn(f64) -> bool| {
             let squares =
                 self.times.iter().zip(&fit.residuals).filter(|(t, _)| part(**t)).map(|(_, r)| r * r);
@@ -388,7 +359,8 @@ impl Samples<'_> {
                     let duration = duration * (1.0 + 0.05 * f64::from(longer));
                     let Some(contact) = KelvinVoigt::lasting(duration, xi) else { continue };
                     let onset = guess[0] + reach * f64::from(onset) / steps;
-                    let p = vec![onset, 0.0, 1.0, xi, contact.frequency()];
+                    let mut p = vec![onset, 0.0, 1.0, xi, contact.frequency()];
+                    p.extend(self.mode.into_iter().flatten());
                     let levelled = self.levelled(ContactModel::KelvinVoigt, p, (&self.times, &self.values));
                     if let Some(better) = levelled.filter(|l| l.0 < least.0) {
                         least = better;
@@ -402,7 +374,7 @@ impl Samples<'_> {
     /// First guesses, the best first, one for each shape: durations and onsets on a grid, baseline and
     /// velocity by linear least squares.
     fn starts(&self, model: ContactModel) -> Result<Vec<Vec<f64>>> {
-        let stride = self.times.len().div_ceil(COARSE).max(1);
+        let stride = self.times.len().div_ceil(if self.mode.is_some() { 2 * COARSE } else { COARSE }).max(1);
         let thin = |all: &[f64]| all.iter().copied().step_by(stride).collect::<Vec<f64>>();
         let (times, values) = (thin(&self.times), thin(&self.values));
         let delay = self.delay();
@@ -425,6 +397,7 @@ impl Samples<'_> {
                 ContactModel::HuntCrossley | ContactModel::Yielding => p.extend([duration, shape]),
                 ContactModel::PowerLaw => p.extend([duration, shape, 1.5, loss]),
             }
+            p.extend(self.mode.into_iter().flatten());
             self.levelled(model, p, (&times, &values))
         };
         let nearest = |shape: &[f64; 2]| {

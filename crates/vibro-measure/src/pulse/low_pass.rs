@@ -1,19 +1,20 @@
-//! The low-pass of an instrument, applied to a model in closed form.
+//! The low-pass of an instrument.
 
+use super::linear::Linear;
 use num_complex::Complex64;
 use std::f64::consts::{PI, TAU};
 use vibro_math::border;
 use vibro_record::{Error, Result};
 
-/// Causal analog Butterworth low-pass as a sum of first-order parts: h(t) = Σ rₖ e^{pₖt}.
+/// Causal analog Butterworth low-pass.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LowPass {
     /// Frequency of −3 dB in Hz.
     pub corner: f64,
     /// Number of poles.
     pub order: usize,
-    /// Poles pₖ in 1/s and residues rₖ in 1/s.
-    parts: Vec<(Complex64, Complex64)>,
+    /// Its poles and residues; nothing passes it directly.
+    pub(super) linear: Linear,
 }
 
 /// Highest order: beyond it the residues cancel to fewer than ten digits.
@@ -34,20 +35,22 @@ impl LowPass {
             return Err(Error::usage(found, format!("an order between 1 and {HIGHEST_ORDER}")));
         }
         let n = order as f64;
-        let unit: Vec<Complex64> =
-            (1..=order).map(|k| Complex64::cis(PI * (2.0 * k as f64 + n - 1.0) / (2.0 * n))).collect();
+        let on_circle = |k: usize| Complex64::cis(PI * (2.0 * k as f64 + n - 1.0) / (2.0 * n));
+        let real = |k: usize| 2 * k == order + 1;
+        let pole = |k: usize| if real(k) { Complex64::new(-1.0, 0.0) } else { on_circle(k) };
+        let unit: Vec<Complex64> = (1..=order).map(pole).collect();
         let part = |(k, pole): (usize, &Complex64)| {
             let others = unit.iter().enumerate().filter(|(j, _)| *j != k);
             let product: Complex64 = others.map(|(_, other)| pole - other).product();
             (pole * TAU * corner, TAU * corner / product)
         };
         let parts = unit.iter().enumerate().map(part).collect();
-        Ok(LowPass { corner, order, parts })
+        Ok(LowPass { corner, order, linear: Linear { direct: 0.0, parts } })
     }
 
     /// Delay at low frequency in s: −dφ/dω at 0.
     pub fn delay(&self) -> f64 {
-        self.parts.iter().map(|(p, _)| -1.0 / p).sum::<Complex64>().re
+        self.linear.parts.iter().map(|(p, _)| -1.0 / p).sum::<Complex64>().re
     }
 
     /// Times in s of the largest value and of the first zero after it in the response to an impulse: no
@@ -56,8 +59,9 @@ impl LowPass {
         if self.order == 1 {
             return None;
         }
-        let value = |t: f64| self.parts.iter().map(|(p, r)| r * (p * t).exp()).sum::<Complex64>().re;
-        let slope = |t: f64| self.parts.iter().map(|(p, r)| r * p * (p * t).exp()).sum::<Complex64>().re;
+        let value = |t: f64| self.linear.parts.iter().map(|(p, r)| r * (p * t).exp()).sum::<Complex64>().re;
+        let slope =
+            |t: f64| self.linear.parts.iter().map(|(p, r)| r * p * (p * t).exp()).sum::<Complex64>().re;
         // Poles lie within ω of 0: a step of 1/(100·corner) turns none by more than 4°.
         let step = 0.01 / self.corner;
         let after = |from: f64, f: &dyn Fn(f64) -> f64| {
@@ -66,89 +70,6 @@ impl LowPass {
         };
         let peak = after(0.0, &slope)?;
         Some([peak, after(peak, &value)?])
-    }
-
-    /// Response at `t` in s to c e^{st} from 0 to `length` in s, and to 0 elsewhere.
-    pub(super) fn exponential(&self, c: Complex64, s: Complex64, length: f64, t: f64) -> Complex64 {
-        if t <= 0.0 {
-            return Complex64::new(0.0, 0.0);
-        }
-        let (inside, after) = (t.min(length), (t - length).max(0.0));
-        let driven = (s * inside).exp();
-        let one = |(p, r): &(Complex64, Complex64)| {
-            let z = (s - p) * inside;
-            // (e^{su} − e^{pu})/(s − p) loses digits where the exponents are near each other.
-            let sum = if z.norm() < 1e-2 {
-                (p * inside).exp() * inside * mean_exponentials(z).0
-            } else {
-                (driven - (p * inside).exp()) / (s - p)
-            };
-            if after > 0.0 { r * sum * (p * after).exp() } else { r * sum }
-        };
-        let sum: Complex64 = self.parts.iter().map(one).sum();
-        sum * c
-    }
-
-    /// Response at each of the rising `times` to values at 0, `step`, 2·`step`, … joined by straight lines, 0
-    /// elsewhere; exact for such an input.
-    pub(super) fn straight_lines(&self, input: &[f64], step: f64, times: &[f64]) -> Vec<f64> {
-        let mut out = vec![0.0; times.len()];
-        let pieces = input.len().saturating_sub(1);
-        for (p, r) in &self.parts {
-            let whole = Advance::over(*p, step);
-            let mut state = Complex64::new(0.0, 0.0);
-            let mut done = 0;
-            for (t, out) in times.iter().zip(&mut out) {
-                if *t <= 0.0 {
-                    continue;
-                }
-                let piece = ((t / step) as usize).min(pieces);
-                while done < piece {
-                    state = whole.apply(state, input[done], input[done + 1]);
-                    done += 1;
-                }
-                let rest = t - done as f64 * step;
-                let now = if done == pieces {
-                    state * (p * rest).exp()
-                } else {
-                    let end = input[done] + (input[done + 1] - input[done]) * rest / step;
-                    Advance::over(*p, rest).apply(state, input[done], end)
-                };
-                *out += (r * now).re;
-            }
-        }
-        out
-    }
-}
-
-/// One step of y′ = py + u for u on a straight line.
-struct Advance {
-    decay: Complex64,
-    first: Complex64,
-    second: Complex64,
-}
-
-impl Advance {
-    fn over(p: Complex64, h: f64) -> Advance {
-        let z = p * h;
-        let (first, second) = mean_exponentials(z);
-        Advance { decay: z.exp(), first: h * (first - second), second: h * second }
-    }
-
-    fn apply(&self, state: Complex64, from: f64, to: f64) -> Complex64 {
-        self.decay * state + self.first * from + self.second * to
-    }
-}
-
-/// (e^z − 1)/z and (e^z − 1 − z)/z², by their series for small z, where the differences lose digits.
-fn mean_exponentials(z: Complex64) -> (Complex64, Complex64) {
-    if z.norm() < 0.1 {
-        let second =
-            0.5 + z * (1.0 / 6.0 + z * (1.0 / 24.0 + z * (1.0 / 120.0 + z * (1.0 / 720.0 + z / 5040.0))));
-        (1.0 + z * second, second)
-    } else {
-        let first = (z.exp() - 1.0) / z;
-        (first, (first - 1.0) / z)
     }
 }
 
@@ -163,7 +84,7 @@ mod tests {
         for t in [1e-9, 1e-6, 7e-6, 40e-6] {
             let step = |order| {
                 let filter = LowPass::new(30e3, order).unwrap();
-                filter.exponential(Complex64::new(1.0, 0.0), Complex64::new(0.0, 0.0), 1.0, t).re
+                filter.linear.exponential(Complex64::I, Complex64::ZERO, 1.0, &[t])[0]
             };
             let turned = omega * t / f64::sqrt(2.0);
             // 1 − (…) cancels to a rounding of 1, and the residues are of order ω/pole = 1.
@@ -191,9 +112,8 @@ mod tests {
     fn a_ramp_is_the_integral_of_the_step() {
         let filter = LowPass::new(1.0, 4).unwrap();
         let times: Vec<f64> = (0..400).map(|i| f64::from(i) * 0.01).collect();
-        let ramp = filter.straight_lines(&[0.0, 1.5, 3.0, 4.5], 1.5, &times);
-        let (one, zero) = (Complex64::new(1.0, 0.0), Complex64::new(0.0, 0.0));
-        let step: Vec<f64> = times.iter().map(|t| filter.exponential(one, zero, 9.0, *t).re).collect();
+        let ramp = filter.linear.straight_lines(&[0.0, 1.5, 3.0, 4.5], 1.5, &times);
+        let step = filter.linear.exponential(Complex64::I, Complex64::ZERO, 9.0, &times);
         let mut sum = 0.0;
         for i in 1..times.len() {
             sum += 0.005 * (step[i] + step[i - 1]);
@@ -210,7 +130,7 @@ mod tests {
         let filter = LowPass::new(1.0, 1).unwrap();
         let s = Complex64::new(-TAU, 0.0);
         for off in [0.0, 1e-12, 1e-5, 9.9e-4, 1.1e-3, 1e-2] {
-            let found = filter.exponential(Complex64::new(1.0, 0.0), s * (1.0 + off), 5.0, 0.4).re;
+            let found = filter.linear.exponential(Complex64::I, s * (1.0 + off), 5.0, &[0.4])[0];
             // ∫ω e^{−ω(t−τ)} e^{−ω(1+ε)τ} dτ = e^{−ωt}(1 − e^{−εωt})/ε, to second order in ε.
             let x = TAU * 0.4;
             let expected = (-x).exp() * x * (1.0 - off * x / 2.0 + (off * x).powi(2) / 6.0);

@@ -37,6 +37,9 @@ const LEVEL: f64 = 0.5;
 /// Baseline fitted before and after the pulse, in lengths of the pulse.
 const BESIDE: f64 = 2.0;
 
+/// Ringing fitted after the pulse, in lengths of the pulse.
+const RINGS: f64 = 2.0 * BESIDE;
+
 /// Duration of the tail of the low-pass, in its delays: a first-order tail has fallen to e⁻³ then.
 const TAIL: f64 = 3.0;
 
@@ -83,7 +86,8 @@ impl<'a> Normalised<'a> {
         let values = places.iter().map(|i| self.trace.values[*i] / self.height).collect();
         let (step, filter) = (self.step / self.length, self.filter.as_ref());
         let quantum = self.found.quantum / self.height;
-        Samples { step, filter, places, times, values, quantum, rings: None, last: RefCell::default() }
+        let (mode, rings, last) = (None, None, RefCell::default());
+        Samples { step, filter, places, times, values, mode, quantum, rings, last }
     }
 
     /// The samples to be fitted: the pulse with a baseline on both sides, or only before it where the record
@@ -120,11 +124,16 @@ impl<'a> Normalised<'a> {
         let inside = (fitted.fit.sum_of_squares() / n as f64).sqrt().max(rounding(first.quantum)).max(1e-6);
         let restless = left.len() >= 4 && rms > RESTLESS * inside;
         let level = !restless || mean.abs() <= LEVEL * rms;
-        findings.extend((restless && level).then(|| Finding::caution("pulse-no-rest-after")));
         let changes = (!level).then(|| Finding::doubt("pulse-level-changes"));
         let end = if restless { self.index(fitted.end()).max(self.found.low) } else { far };
         let rings = restless.then(|| Ringing::of(&left, mean, rms));
         Ok((Samples { rings, ..self.samples(from..end) }, changes))
+    }
+
+    /// The samples of a pulse that ends at a scaled time, with the ringing that may follow it.
+    pub fn ringing(&self, end: f64) -> Samples<'_> {
+        let delay = self.filter.as_ref().map_or(0.0, LowPass::delay);
+        self.samples(self.index(-BESIDE - delay)..self.index(end + TAIL * delay + RINGS))
     }
 
     /// Adds findings on clipped samples, on missing ones, and on another pulse in the record.
@@ -179,6 +188,14 @@ impl<'a> Normalised<'a> {
         }
     }
 
+    /// The mode of the sensor in a fit.
+    pub fn rings(&self, fitted: &FittedPulse) -> Finding {
+        let mode = &fitted.fit.parameters[3 + fitted.model.parameters()..];
+        let number = |i: usize| mode.get(i).copied().unwrap_or(f64::NAN);
+        let found = Finding::note("pulse-sensor-rings").number("share", number(0));
+        found.number("frequency", number(1) / self.length).number("zeta", number(2))
+    }
+
     /// The parameters of a fit, in SI units.
     fn parameters(
         &self,
@@ -216,10 +233,15 @@ impl<'a> Normalised<'a> {
                 ("loss_exponent", 1.0, "1"),
             ],
         };
-        for (i, (name, factor, unit)) in names.iter().enumerate() {
-            put(name, 3 + i, *factor, 0.0, unit);
+        let sensor = [
+            ("sensor_share", 1.0, "1"),
+            ("sensor_frequency", 1.0 / self.length, "Hz"),
+            ("sensor_damping", 1.0, "1"),
+        ];
+        for (i, (name, factor, unit)) in (3..fit.parameters.len()).zip(names.iter().chain(&sensor)) {
+            put(name, i, *factor, 0.0, unit);
         }
-        let shape = &fit.parameters[3..];
+        let shape = &fit.parameters[3..3 + model.parameters()];
         let variance = |i: usize, j: usize| fit.covariance(3 + i, 3 + j) * widened.powi(2);
         let kelvin_voigt = |p: &[f64]| KelvinVoigt::new(p[0], p[1]);
         // All but spring and damper are integrated, and smooth only to 1e-5: differences need larger steps.

@@ -36,6 +36,11 @@ impl ContactModel {
         ["kelvin-voigt", "hertz", "hunt-crossley", "power-law", "yielding"][self as usize]
     }
 
+    /// Number of parameters of its shape.
+    pub(super) fn parameters(self) -> usize {
+        [2, 1, 2, 4, 2][self as usize]
+    }
+
     /// The contact for the shape parameters after the duration: none (Hertz), the loss α, α and both
     /// exponents, or the restitution (yielding). `None` for spring and damper, and for impossible values.
     pub(super) fn rebound(self, shape: &[f64]) -> Option<Rebound> {

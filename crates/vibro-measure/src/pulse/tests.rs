@@ -226,6 +226,51 @@ fn ringing_after_the_pulse_is_not_fitted() {
     assert!(says(&result, "pulse-no-rest-after"), "{:?}", result.findings);
 }
 
+/// A contact of ξ 0.2, 10 kHz and 3 m/s from 80.4 µs on, as a sensor shows it through which a share passes
+/// by a mode of 31 kHz and ζ 0.03, integrated with a step of 1/400 of a sample; and noise.
+fn rung(share: f64, filter: Option<&LowPass>) -> Vec<f64> {
+    let contact = KelvinVoigt::new(0.2, 10e3).unwrap();
+    let (omega, zeta, step, mut noise) = (std::f64::consts::TAU * 31e3, 0.03, DT / 400.0, Noise::new(8));
+    let (mut x, mut v) = (0.0, 0.0);
+    let value = |i: i32| {
+        let mut force = 0.0;
+        for k in 1..=400 {
+            let t = f64::from(i) * DT + f64::from(k - 400) * step - 80.4e-6;
+            force = match filter {
+                Some(filter) => contact.filtered(filter, t),
+                None if t >= 0.0 && t <= contact.duration() => contact.unbounded(t),
+                None => 0.0,
+            };
+            x += 0.5 * step * v;
+            v += step * (omega * omega * (force - x) - 2.0 * zeta * omega * v);
+            x += 0.5 * step * v;
+        }
+        3.0 * ((1.0 - share) * force + share * x) + 200.0 * noise.normal()
+    };
+    (0..400).map(value).collect()
+}
+
+/// The order of two linear systems does not matter: the low-pass may stand before the sensor here.
+#[test]
+fn a_mode_of_the_sensor_is_fitted_with_the_contact() {
+    let filter = LowPass::new(60e3, 2).unwrap();
+    for filter in [None, Some(filter)] {
+        let values = rung(0.1, filter.as_ref());
+        let instrument = filter.map_or(Instrument::Flat, Instrument::LowPass);
+        let result = pulse(&trace(values, "m/s²"), &PulseOptions { instrument, mass: None }).unwrap();
+        assert!(says(&result, "pulse-sensor-rings") && !says(&result, "pulse-no-rest-after"));
+        let own = &result.fits[0].parameters;
+        let sensor = [("sensor_share", 0.1), ("sensor_frequency", 31e3), ("sensor_damping", 0.03)];
+        let velocity = result.initial_velocity.as_ref().unwrap();
+        let truths = [(&result.xi, 0.2), (&result.frequency, 10e3), (velocity, 3.0)];
+        for (estimate, truth) in truths.into_iter().chain(sensor.map(|(name, truth)| (&own[name], truth))) {
+            // Five standard uncertainties, and those of a few percent of the value.
+            let std = estimate.std.unwrap();
+            assert!((estimate.value - truth).abs() < 5.0 * std && std < 0.1 * truth, "{truth} {estimate:?}");
+        }
+    }
+}
+
 #[test]
 fn a_sensor_that_droops_leaves_no_uncertainty() {
     // A first-order high-pass with a time constant of 15 pulses: y' = x' − y/τ.
