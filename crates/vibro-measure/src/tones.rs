@@ -24,6 +24,10 @@ use vibro_signal::spectrum;
 
 /// Most sines of one record.
 pub const MOST: usize = 10;
+/// Most sines that are fitted beside those that were asked for, since they act on them.
+const MOST_BESIDE: usize = 10;
+/// Smallest shift of an amplitude by a sine that is not fitted, over its standard uncertainty, that counts.
+const ACTS: f64 = 0.2;
 /// Smallest distance of two sines in spectral lines (1/T). Nearer sines are so correlated that noise can make
 /// a fit find two where there is one.
 const NEAREST: f64 = 0.5;
@@ -87,7 +91,7 @@ pub struct Tones {
 /// If the trace has no spectrum ([`spectrum::plain`]), no line is above the noise, the record has fewer than
 /// one and a half periods, or the sine lies within a quarter of a line of half the sampling rate.
 pub fn sine(trace: &Trace, near: Option<f64>) -> Result<Tones> {
-    Ok(SineFit::new(trace, &[HannLines::of(trace)?.strongest(near)?])?.estimates(trace))
+    Ok(SineFit::new(trace, &[HannLines::of(trace)?.strongest(near)?])?.estimates(trace, 1))
 }
 
 /// The `count` strongest sines of a trace; fewer, with a finding, where no further line is above the noise or
@@ -121,8 +125,15 @@ pub fn tones(trace: &Trace, count: usize) -> Result<Tones> {
         }
     }
     let known = fitted.omega.len();
-    let mut found = fitted.estimates(trace);
+    while let Some(more) =
+        fitted.one_that_acts(trace, known).filter(|_| fitted.omega.len() < known + MOST_BESIDE)
+    {
+        fitted = more;
+    }
+    let mut found = fitted.estimates(trace, known);
     found.findings.extend(fewer.map(|f| f.count("known", known).count("count", count)));
+    let beside = fitted.omega.len() - known;
+    found.findings.extend((beside > 0).then(|| Finding::note("tones-beside").count("n", beside)));
     sort_by_number(&mut found.tones, |a| -a.amplitude.value);
     Ok(found)
 }
@@ -160,17 +171,48 @@ impl HannLines {
         if alone { factor } else { factor.max(1.0) }
     }
 
+    /// Noise around line `k`.
+    fn noise(&self, k: usize) -> Option<stands_out::Floor> {
+        floor(&self.powers, k, stands_out::REACH, 1.0, Some(Window::Hann))
+    }
+
+    /// Whether line `k`, one of `n` that were looked at, stands out of the noise.
+    fn is_visible(&self, k: usize, n: usize) -> bool {
+        self.noise(k).is_none_or(|noise| noise.is_below(self.powers[k], 1.0, n))
+    }
+
+    /// Place of the sine of line `k`, in lines.
+    fn position(&self, k: usize) -> f64 {
+        interpolate(&self.magnitudes, k, Some(Window::Hann), None).map_or(k as f64, |line| line.position)
+    }
+
+    /// Frequency in Hz of the sine that acts most on the sines at `frequencies`, if any acts on one by more
+    /// than `least`. A sine of height h at d lines from another shifts its amplitude by up to h/(πd), the
+    /// side lobe of a record that is cut off (sinc); frequency and phase are shifted alike.
+    fn acting(&self, frequencies: &[f64], least: f64) -> Option<f64> {
+        let shift = |k: &usize| {
+            let near = |f: &f64| (*k as f64 - f / self.spacing).abs().max(1.0);
+            let nearest = frequencies.iter().map(near).fold(f64::INFINITY, f64::min);
+            self.magnitudes[*k] / (PI * nearest)
+        };
+        let n = self.magnitudes.len().saturating_sub(1);
+        let is_peak = |k: &usize| self.magnitudes[*k] >= self.magnitudes[k - 1].max(self.magnitudes[k + 1]);
+        let mut peaks: Vec<usize> = (2..n).filter(|k| shift(k) > least && is_peak(k)).collect();
+        sort_by_number(&mut peaks, |k| -shift(k));
+        let strongest = peaks.into_iter().take(MOST_BESIDE).find(|k| self.is_visible(*k, n))?;
+        Some(self.spacing * self.position(strongest))
+    }
+
     /// Frequency in Hz of the strongest line above the noise, or of the strongest within two lines of `near`
     /// Hz, interpolated between lines.
     fn strongest(&self, near: Option<f64>) -> Result<f64> {
-        let HannLines { magnitudes, powers, spacing } = self;
+        let HannLines { magnitudes, spacing, .. } = self;
         let within = |k: &usize| near.is_none_or(|f| (*k as f64 - f / spacing).abs() <= NEAR);
         let mut lines: Vec<usize> = (1..magnitudes.len().saturating_sub(1)).filter(within).collect();
         sort_by_number(&mut lines, |a| -magnitudes[*a]);
         let first = *lines.first().ok_or_else(|| Error::refused("no line of the spectrum lies there"))?;
-        let noise = |k: usize| floor(powers, k, stands_out::REACH, 1.0, Some(Window::Hann));
-        let visible = |k: &usize| noise(*k).is_none_or(|n| n.is_below(powers[*k], 1.0, lines.len()));
-        let Some(largest) = lines.iter().copied().find(visible) else {
+        let noise = |k: usize| self.noise(k);
+        let Some(largest) = lines.iter().copied().find(|k| self.is_visible(*k, lines.len())) else {
             let why = format!(
                 "no sine stands out of the noise: the largest line, {:.6} Hz, has {}, the noise of a line is {}",
                 first as f64 * spacing,
@@ -179,8 +221,7 @@ impl HannLines {
             );
             return Err(Error::refused(why).hint("take a longer record, or state the frequency"));
         };
-        let line = interpolate(magnitudes, largest, Some(Window::Hann), None);
-        let position = line.map_or(largest as f64, |l| l.position);
+        let position = self.position(largest);
         if position < 1.5 {
             let why = format!("the record holds {position:.2} periods: a mean and a sine cannot be parted");
             return Err(Error::refused(why).hint("take a longer record"));
@@ -361,15 +402,35 @@ impl SineFit {
         if self.is_exact() {
             return None;
         }
-        let frequencies =
-            |fit: &SineFit| -> Vec<f64> { fit.omega.iter().map(|w| w / (TAU * fit.half)).collect() };
-        let mut start = frequencies(self);
-        start.push(HannLines::of(&self.rest(trace)).ok()?.strongest(None).ok()?);
+        self.with(trace, HannLines::of(&self.rest(trace)).ok()?.strongest(None).ok()?, spacing)
+    }
+
+    /// The fit with one more sine, that which acts most on the first `known`; `None` where no other acts on
+    /// them, or it cannot be separated from the others.
+    fn one_that_acts(&self, trace: &Trace, known: usize) -> Option<SineFit> {
+        if self.is_exact() {
+            return None;
+        }
+        let left = HannLines::of(&self.rest(trace)).ok()?;
+        let std = self.noise * (2.0 / trace.values.len() as f64).sqrt();
+        let acting = left.acting(&self.frequencies()[..known], ACTS * std)?;
+        self.with(trace, acting, left.spacing)
+    }
+
+    /// The fit with one more sine near a frequency, if it can be separated from the others.
+    fn with(&self, trace: &Trace, frequency: f64, spacing: f64) -> Option<SineFit> {
+        let mut start = self.frequencies();
+        start.push(frequency);
         let more = SineFit::new(trace, &start).ok()?;
-        let mut f = frequencies(&more);
+        let mut f = more.frequencies();
         f.sort_by(f64::total_cmp);
         let parted = f.windows(2).all(|w| w[1] - w[0] >= NEAREST * spacing) && more.noise < self.noise;
         parted.then_some(more)
+    }
+
+    /// Frequencies in Hz.
+    fn frequencies(&self) -> Vec<f64> {
+        self.omega.iter().map(|w| w / (TAU * self.half)).collect()
     }
 
     /// Whether the residual is rounding only.
@@ -396,9 +457,9 @@ impl SineFit {
         Trace { meta: trace.meta.clone(), axis: trace.axis.clone(), values }
     }
 
-    /// The sines with first-order uncertainties, widened for coloured noise and for neighbouring lines of the
-    /// residual.
-    fn estimates(&self, trace: &Trace) -> Tones {
+    /// The `known` strongest sines with first-order uncertainties, widened for coloured noise and for
+    /// neighbouring lines of the residual.
+    fn estimates(&self, trace: &Trace, known: usize) -> Tones {
         let n = trace.values.len();
         let (rest, unit) = (self.rest(trace), trace.meta.unit.quantity().symbol());
         let lines = if self.is_exact() { None } else { HannLines::of(&rest).ok() };
@@ -438,7 +499,11 @@ impl SineFit {
             tone.amplitude = tone.amplitude.with_relative(trace.meta.lost(frequency));
             tone
         };
-        let tones = self.omega.iter().zip(self.linear.chunks_exact(2)).enumerate().map(tone).collect();
+        let mut sines: Vec<_> = self.omega.iter().zip(self.linear.chunks_exact(2)).enumerate().collect();
+        if known < sines.len() {
+            sort_by_number(&mut sines, |(_, (_, p))| -p[0].hypot(p[1]));
+        }
+        let tones = sines.into_iter().take(known).map(tone).collect();
         Tones { tones, noise: self.noise, findings }
     }
 }
