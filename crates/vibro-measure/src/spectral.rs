@@ -123,18 +123,15 @@ fn lines(
     progress: impl FnMut(usize) + Send,
 ) -> Result<SpectralResult> {
     let (scaling, window) = (options.scaling.unwrap_or(Scaling::Peak), options.window());
-    let (mut tones, mut cut) = (None, Vec::new());
+    let (mut tones, mut cut, mut segments) = (None, Vec::new(), None);
     let (spectrum, averages, independent, mut scatter) = if options.method() == Method::Welch {
         let averages = averages(traces, options, progress)?;
         cut = clipped(&averages.ranges, traces);
         let meta = traces.channels().first().cloned().unwrap_or_else(|| Meta::new("", Unit::opaque("")));
         let scatter = spectrum::scatter(&averages, scaling);
-        (
-            spectrum::averaged(&averages, 0, &meta, window, scaling)?,
-            averages.count,
-            averages.effective,
-            scatter,
-        )
+        let spectrum = spectrum::averaged(&averages, 0, &meta, window, scaling)?;
+        let averages = segments.insert(averages);
+        (spectrum, averages.count, averages.effective, scatter)
     } else {
         let [trace] = whole(traces, progress)?;
         // The fit of sines (`tones`) accounts for clipping itself.
@@ -160,11 +157,43 @@ fn lines(
     found.value_std = found.value.iter().zip(scatter).map(|(v, part)| v * part).collect();
     let cut: Vec<Finding> = cut.into_iter().map(|doubt| doubt.of(&mut found)).collect();
     found.findings.extend(cut);
+    found.findings.extend(segments.and_then(|segments| varying(&found, &segments, &powers, left_out, shown)));
     if let Some(tones) = tones {
         found.findings.extend(tones.findings);
         found.tones = tones.tones;
     }
     Ok(found)
+}
+
+/// Smallest power of a line over the noise around it, and smallest variation of its power from segment to
+/// segment, at which it is said to vary: noise varies the power of such a line by √(2/100).
+const VARIES: (f64, f64) = (100.0, 0.3);
+/// Fewest segments that tell how a line varies.
+const FEWEST: usize = 6;
+/// Largest lines that are looked at.
+const LARGEST: usize = 3;
+
+/// Caution about the first of the largest lines whose power varies from segment to segment, though it stands
+/// high above the noise: two sines beat in it, or it is the resonance of a body that noise excites.
+fn varying(
+    found: &SpectralResult,
+    segments: &Averages,
+    powers: &[f64],
+    left_out: usize,
+    window: Option<Window>,
+) -> Option<Finding> {
+    if segments.count < FEWEST {
+        return None;
+    }
+    let varies = |k: usize| {
+        let line = k + left_out;
+        let noise = floor(powers, line, REACH, segments.effective, window)?;
+        let variation = segments.variation(line).filter(|variation| *variation > VARIES.1)?;
+        (powers[line] > VARIES.0 * noise.power).then_some((found.frequency[k], variation))
+    };
+    let (frequency, variation) = found.peaks(LARGEST).into_iter().find_map(varies)?;
+    let caution = Finding::caution("spectrum-line-varies").number("frequency", frequency);
+    Some(caution.number("variation", variation).number("apart", 2.0 * segments.step()))
 }
 
 /// Doubts about channels that are clipped at ends of their range. A channel at one end for half of the time
@@ -348,6 +377,7 @@ fn whole<const N: usize>(traces: &mut Traces, mut progress: impl FnMut(usize)) -
 mod tests {
     use super::*;
     use vibro_math::Noise;
+    use vibro_record::Fact;
 
     /// Frequencies in Hz of the peaks listed for a sine of amplitude 1 with noise of 0.002: 8 segments of
     /// 256 samples at 256 Hz, with lines 1 Hz apart.
@@ -362,6 +392,32 @@ mod tests {
             SpectralOptions { segment: Some(256), window: Some(window), ..SpectralOptions::default() };
         let found = spectral(&mut traces, &options, |_| ()).unwrap();
         found.peaks(8).iter().map(|k| found.frequency[*k]).collect()
+    }
+
+    /// Two sines half a line apart beat in one line: in 40 segments their power varies by √2ab/(a² + b²) of
+    /// its mean, to some hundredths for the phases that the segments happen to see. A single one is steady.
+    #[test]
+    fn a_line_in_which_two_sines_beat_is_named() {
+        let found = |other: f64| {
+            let mut noise = Noise::new(7);
+            let mut value = |i: i32| {
+                let t = f64::from(i) / 256.0;
+                (TAU * 40.2 * t).sin() + other * (TAU * 40.7 * t).sin() + 0.05 * noise.normal()
+            };
+            let values: Vec<f64> = (0..10_240).map(&mut value).collect();
+            let axis = Axis::time(0.0, 1.0 / 256.0, values.len());
+            let trace = Trace { meta: Meta::new("v", Unit::opaque("V")), axis, values };
+            let options = SpectralOptions { segment: Some(256), ..SpectralOptions::default() };
+            let found = spectral(&mut Traces::from_memory(vec![trace]).unwrap(), &options, |_| ()).unwrap();
+            let varies = found.findings.iter().find(|found| found.code == "spectrum-line-varies");
+            varies.map(|found| found.fact("variation").cloned())
+        };
+        assert_eq!(found(0.0), None);
+        let Some(Some(Fact::Number(variation))) = found(0.5) else { panic!("{:?}", found(0.5)) };
+        // The line at 40 Hz shows each by the window's shape.
+        let (a, b) = (line_shape(Window::Hann, 0.2), 0.5 * line_shape(Window::Hann, 0.7));
+        let expected = f64::sqrt(2.0) * a * b / (a * a + b * b);
+        assert!((variation - expected).abs() < 0.05 * expected, "{variation} {expected}");
     }
 
     #[test]

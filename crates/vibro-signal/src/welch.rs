@@ -49,6 +49,8 @@ pub struct Averages {
     pub squares: f64,
     /// Mean of |X|² for each channel.
     pub auto: Vec<Vec<f64>>,
+    /// Mean of |X|⁴ of the first channel.
+    pub fourth: Vec<f64>,
     /// Mean of conj(X₀) X for each channel after the first, where products were requested.
     pub cross: Vec<Vec<Complex64>>,
     /// The range of each channel; empty where it was not determined.
@@ -59,6 +61,14 @@ impl Averages {
     /// Distance of spectral lines in Hz.
     pub fn step(&self) -> f64 {
         self.rate / self.length as f64
+    }
+
+    /// Standard deviation of the power of line `k` of the first channel from segment to segment, as a part of
+    /// its mean: 1 for noise, nothing for a steady sine, √2ab/(a² + b²) for two sines of amplitudes a and b
+    /// that beat in it.
+    pub fn variation(&self, k: usize) -> Option<f64> {
+        let (power, square) = (self.auto.first()?.get(k)?, self.fourth.get(k)?);
+        (*power > 0.0).then(|| (square / (power * power) - 1.0).max(0.0).sqrt())
     }
 
     /// Crest factor of a channel: half its range from peak to peak, over its root mean square without the
@@ -142,6 +152,7 @@ impl Welch {
 pub(super) struct Sums {
     count: usize,
     auto: Vec<Vec<f64>>,
+    fourth: Vec<f64>,
     cross: Vec<Vec<Complex64>>,
 }
 
@@ -151,6 +162,7 @@ impl Sums {
         Sums {
             count: 0,
             auto: vec![vec![0.0; lines]; channels],
+            fourth: vec![0.0; lines],
             cross: vec![vec![Complex64::ZERO; lines]; pairs],
         }
     }
@@ -162,6 +174,7 @@ impl Sums {
             sum.iter_mut().zip(&work.output).for_each(|(s, x)| *s += x.norm_sqr());
         }
         let Some((first, rest)) = lines.split_first() else { return };
+        self.fourth.iter_mut().zip(&first.output).for_each(|(s, x)| *s += x.norm_sqr().powi(2));
         for (sum, work) in self.cross.iter_mut().zip(rest) {
             let pairs = first.output.iter().zip(&work.output);
             sum.iter_mut().zip(pairs).for_each(|(s, (a, b))| *s += a.conj() * b);
@@ -174,6 +187,7 @@ impl Sums {
             for (sum, more) in self.auto.iter_mut().zip(&part.auto) {
                 sum.iter_mut().zip(more).for_each(|(s, m)| *s += m);
             }
+            self.fourth.iter_mut().zip(&part.fourth).for_each(|(s, m)| *s += m);
             for (sum, more) in self.cross.iter_mut().zip(&part.cross) {
                 sum.iter_mut().zip(more).for_each(|(s, m)| *s += m);
             }
@@ -189,7 +203,7 @@ impl Sums {
         detrended: bool,
     ) -> Averages {
         let factor = 1.0 / self.count.max(1) as f64;
-        self.auto.iter_mut().flatten().for_each(|v| *v *= factor);
+        self.auto.iter_mut().flatten().chain(&mut self.fourth).for_each(|v| *v *= factor);
         self.cross.iter_mut().flatten().for_each(|v| *v *= factor);
         Averages {
             count: self.count,
@@ -200,6 +214,7 @@ impl Sums {
             sum: weights.iter().sum(),
             squares: weights.iter().map(|w| w * w).sum(),
             auto: self.auto,
+            fourth: self.fourth,
             cross: self.cross,
             ranges: Vec::new(),
         }
