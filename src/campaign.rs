@@ -351,7 +351,15 @@ impl Campaign {
         if self.folder.exists(&path) {
             return Ok(path);
         }
-        let error = Error::absent(format!("the file {} does not exist", shown(path)), self.folder(), name);
+        let found = format!("the file {} does not exist", shown(path));
+        let error = if self.folder().is_dir() {
+            Error::absent(found, self.folder(), name)
+        } else {
+            let all = self.folder.walk(self.folder.root(), LEVELS).map(|walk| walk.files).unwrap_or_default();
+            let root = self.folder.root();
+            let name_of = |path: &PathBuf| path.strip_prefix(root).unwrap_or(path).display().to_string();
+            Error::absent_among(found, &all.iter().map(name_of).collect::<Vec<_>>(), name)
+        };
         let error = match &self.made_by {
             Some(command) => error.hint(format!("`{command}` makes it")),
             None => error,
@@ -359,6 +367,9 @@ impl Campaign {
         Err(self.fault(entry, error.setting(key)))
     }
 }
+
+/// Levels of folders in which a name is looked for that was probably meant.
+const LEVELS: usize = 8;
 
 /// The table of this name; `None` where the key is missing or is no table.
 fn table_of<'a>(all: &'a DeTable<'a>, name: &str) -> Option<&'a DeTable<'a>> {

@@ -218,21 +218,19 @@ impl Table {
         let text = self.rows_of_toml(notes, "");
         let rows = text.trim_end().replace('\n', "\n#");
         let rows = format!("#{}\n", rows.trim_end_matches('#').trim_end());
-        format!("{}# {}\n{rows}", self.above(), Campaign::FILL_IN)
+        let refused = self.refused.iter().map(|refused| format!("# {}\n", shown(refused.in_words())));
+        format!("{}{}# {}\n{rows}", self.above(), refused.collect::<String>(), Campaign::FILL_IN)
     }
 
-    /// The table as TOML, in which a key that must be stated is a comment.
+    /// The table as TOML, in which a key that must be stated is a comment. Why it gave no answer before it
+    /// was stated is told no more.
     fn opened(&self, notes: &[Note]) -> String {
         self.above() + &self.rows_of_toml(notes, "# ")
     }
 
-    /// Comments above the table: its description, and why it gives no answer.
+    /// Comment above the table: its description.
     fn above(&self) -> String {
-        let mut about = format!("# {}\n", shown(self.in_words()));
-        if let Some(refused) = &self.refused {
-            let _ = writeln!(about, "# {}", shown(refused.in_words()));
-        }
-        about
+        format!("# {}\n", shown(self.in_words()))
     }
 
     /// Its head and keys; `missing` stands before a key that must be stated.
@@ -351,14 +349,19 @@ impl Proposal {
 
     /// The campaign as TOML.
     pub fn toml(&self) -> String {
+        self.below(&format!(
+            "# Proposed by `vibro init`. Check what is guessed, fill in what is missing, then: vibro run {}\n# docs/campaign.md lists every key.\n",
+            Proposal::FILE
+        ))
+    }
+
+    /// The campaign as TOML, below comments that say where it comes from.
+    pub fn below(&self, head: &str) -> String {
         let root = self.folder.root();
         let folder = root.canonicalize().unwrap_or_else(|_| root.to_owned());
         let name = folder.file_name().map_or_else(|| "Campaign".into(), shown);
         let name = serde_json::to_string(&name).unwrap_or_default();
-        let mut text = format!(
-            "# Proposed by `vibro init`. Check what is guessed, fill in what is missing, then: vibro run {}\n# docs/campaign.md lists every key.\nname = {name}\n",
-            Proposal::FILE
-        );
+        let mut text = format!("{head}name = {name}\n");
         let beside =
             |note: &Note| self.tables.iter().any(|table| table.rows.iter().any(|row| table.asks(row, note)));
         for note in self.notes.iter().filter(|note| !beside(note)) {

@@ -142,15 +142,31 @@ impl<'a> Job<'a> {
         measure: impl FnOnce(&mut Job<'_>) -> Result<()>,
     ) -> Result<()> {
         let (inputs, files) = self.inputs_of(&[section])?;
+        // What is said of each record where none has an answer.
+        let mut said = Answer::default();
         let answered = self.kept.or_make(inputs, &files, || {
             let mut job = Job::new(self.campaign, self.kept, self.kinds, self.progress);
             measure(&mut job)?;
             match job.failed {
-                Some(error) if job.answers == 0 => Err(error),
+                Some(error) if job.answers == 0 => {
+                    said = job.found;
+                    Err(error)
+                }
                 _ => Ok((job.found, job.answers)),
             }
         });
-        let Some((all, answers)) = self.found(section, answered) else { return Ok(()) };
+        let (all, answers) = match answered {
+            Ok(found) => found,
+            Err(error) if said.findings.is_empty() => {
+                self.leave_out(section, error);
+                return Ok(());
+            }
+            Err(error) => {
+                self.found.append(said);
+                self.failed.get_or_insert(error);
+                return Ok(());
+            }
+        };
         if self.kept.is_old(&inputs) {
             self.again += answers;
         }

@@ -14,6 +14,8 @@ pub struct KeyMeaning {
     pub meaning: &'static str,
     /// What holds without it.
     pub left_out: &'static str,
+    /// Whether tables of all kinds have it: it says how a file is read.
+    pub shared: bool,
 }
 
 impl KeyMeaning {
@@ -34,6 +36,8 @@ impl KeyMeaning {
             }
             all.extend(KeyMeaning::in_row(line).filter(|_| sections > 0).map(|key| (sections, key)));
         }
+        let most = all.iter().map(|(sections, _)| *sections).max();
+        all.iter_mut().for_each(|(sections, key)| key.shared = *sections > 2 && Some(*sections) == most);
         all.sort_by_key(|(sections, _)| *sections);
         all.into_iter().map(|(_, key)| key)
     }
@@ -43,6 +47,6 @@ impl KeyMeaning {
         let (key, rest) = line.strip_prefix("| `")?.split_once("` | ")?;
         let mut cells = rest.trim_end_matches(" |").split("| ").map(str::trim);
         let (unit, meaning, left_out) = (cells.next()?, cells.next()?, cells.next()?);
-        Some(KeyMeaning { key, unit, meaning, left_out })
+        Some(KeyMeaning { key, unit, meaning, left_out, shared: false })
     }
 }

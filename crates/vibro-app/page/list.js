@@ -80,6 +80,7 @@ class Recordings {
     const head = make("tr", {}, ...["file", "channel", "what", "unit", "rate", "length", ""].map((name) => make("th", { textContent: name, className: /rate|length/.test(name) ? "number" : "" })));
     const body = make("tbody");
     const unread = recordings.filter(({ problem }) => problem);
+    this.unread = new Set(unread.map(({ path }) => path));
     for (const file of recordings.filter(({ problem }) => !problem)) body.append(...this.rows(file));
     const rows = Array.from(body.rows);
     rows.slice(FIRST_ROWS).forEach((row) => { row.hidden = true; });
@@ -118,6 +119,8 @@ class Recordings {
       return row;
     };
     this.left.replaceChildren();
+    // A file without records is listed below.
+    left = left.filter(([name]) => !this.unread.has(name));
     // Where a choice of the person may help, it is seen.
     const open = left.some(([name]) => this.known.has(name));
     this.fold(this.left, `${left.length} not used`, left.map(item), open);

@@ -1,6 +1,9 @@
 /** An error without the line of the text at which it stands: that is shown in the text. */
 const inShort = (message) => message.split("\n").filter((line) => !/^\s*(\d+\s*)?\|/.test(line)).join("\n").replace(/^\S*campaign\.toml, (line \d+), column \d+: /, "$1: ");
 
+/** An error at its field. */
+const here = (message) => inShort(message).replace(/^line \d+: /, "");
+
 /** Parts and multiples of a unit. */
 const STEPS = { µ: 1e-6, u: 1e-6, m: 1e-3, c: 1e-2, "": 1, k: 1e3, M: 1e6 };
 
@@ -10,7 +13,7 @@ const THOUSAND = /\d,\d{3}(?!\d)/;
 /** A number that a person types with its unit, in the unit of the key: 57 cm as 0.57 where that is m. */
 function inUnit(text, unit) {
   const found = text.match(/^([-+]?[\d.,]+(?:[eE][-+]?\d+)?)\s*([^-+\d\s.,].*)$/);
-  if (!found || !unit) return text;
+  if (!found || !unit || Number.isFinite(Number(text.replace(",", ".")))) return text;
   const [, number, behind] = found, value = Number(number.replace(",", "."));
   if (!Number.isFinite(value) || THOUSAND.test(number)) return text;
   const typed = behind.replaceAll("^2", "²").replaceAll(/[\s·*]/g, ""), base = unit === "kg" ? "g" : unit;
@@ -19,16 +22,19 @@ function inUnit(text, unit) {
   return String(Number((value * step / (unit === "kg" ? 1e3 : 1)).toPrecision(12)));
 }
 
-/** Two or more numbers that a person types without brackets, such as 0.5; 3, as a list. */
-function asList(text) {
-  const parts = text.replace(/^\[|\]$/g, "").split(/;|\s+|,\s+/).map((part) => part.trim()).filter(Boolean).map((part) => part.replace(/^(-?\d+),(\d+)$/, "$1.$2"));
-  return parts.length > 1 && !THOUSAND.test(text) && parts.every((part) => Number.isFinite(Number(part))) ? `[${parts.join(", ")}]` : text;
+/** Two or more numbers that a person types without brackets, such as 0.5; 3 s, as a list in the unit of the key. The last unit holds for numbers without one. */
+function asList(text, unit) {
+  const parts = text.replace(/^\[|\]$/g, "").split(/;|,\s+|(?<=[\d.])\s+(?=[-+.\d])|(?<=[^\W\d_])\s+(?=[-+.\d])|(?<=\.\d+),(?=\d+\.)/).map((part) => part.trim()).filter(Boolean);
+  const last = parts.at(-1)?.match(/[^-+\d\s.,eE].*$/)?.[0] ?? "";
+  const values = parts.map((part) => inUnit(/[^-+\d\s.,eE]/.test(part) ? part : `${part}${last}`, unit).replace(/^(-?\d+),(\d+)$/, "$1.$2"));
+  return parts.length > 1 && !THOUSAND.test(text) && values.every((value) => Number.isFinite(Number(value))) ? `[${values.join(", ")}]` : null;
 }
 
 /** A value as a person types it, in TOML. */
-function toToml(typed, unit = "") {
+function toToml(typed, unit = "", isList = true) {
+  if (unit && !isList && /^[-+]?\d[\d.,]*\s+\d/.test(typed.trim())) throw new Error(`${typed}: one number is wanted here. Type it without a gap`);
   // 1,000 may be a thousand: it stays text, which no number takes.
-  const text = unit ? inUnit(asList(typed.trim()), unit) : typed.trim(), number = text.replace(/^(-?\d+),(?!\d{3}$)(\d+)$/, "$1.$2").replace(/^(-?)\./, "$10.");
+  const text = unit ? (isList ? asList(typed.trim(), unit) : null) ?? inUnit(typed.trim(), unit) : typed.trim(), number = text.replace(/^(-?\d+),(?!\d{3}$)(\d+)$/, "$1.$2").replace(/^(-?)\./, "$10.");
   if (text === "" || /^(true|false|["'[{].*|[-+]?\d[\d_]*(\.\d+)?([eE][-+]?\d+)?)$/s.test(number)) return number;
   return JSON.stringify(text);
 }
@@ -100,7 +106,7 @@ class Tables {
     if (!input) return;
     input.value = value;
     input.focus();
-    input.setSelectionRange(selectionStart, selectionEnd);
+    input.setSelectionRange?.(selectionStart, selectionEnd);
   }
 
   /** A link to a field. */
@@ -123,20 +129,20 @@ class Tables {
     const wrong = problems.filter(({ line }) => line && table.line && line >= table.line && line < (next ?? Infinity));
     // An error of a value stands below its field.
     const atKey = ({ line }) => table.keys.some((row) => row.line === line);
-    said.push(...wrong.filter((one) => !atKey(one)).map(({ text }) => inShort(text)));
+    said.push(...wrong.filter((one) => !atKey(one)).map(({ text }) => here(text)));
     for (const text of new Set(said)) card.append(make("p", { className: "refused", textContent: text }));
     // Keys that an error names stand with those that are in use; the title names the file.
     const named = namedIn(said), isTitle = (row) => row.key === "file" && fromToml(row.value) === table.files;
-    const shown = (row) => (isTitle(row) ? "possible" : named.includes(row.key) && ["open", "possible"].includes(row.known) ? "named" : row.known);
+    const shown = (row) => (isTitle(row) || (row.known === "possible" && row.shared && !named.includes(row.key)) ? "reading" : named.includes(row.key) && ["open", "possible"].includes(row.known) ? "named" : row.known);
     const rows = (...known) => table.keys.filter((row) => known.includes(shown(row))).map((row) => this.row(row, id, table));
     card.append(...rows("missing"), ...rows("named"), ...rows("guessed", "stated", "found"));
     for (const { line, text } of wrong) {
       const input = card.querySelector(`[data-line="${line}"]`);
       input?.setAttribute("aria-invalid", "true");
       const below = input?.parentElement.querySelector(".wrong");
-      if (below) below.textContent ||= inShort(text);
+      if (below) below.textContent ||= here(text);
     }
-    const folds = { open: (n) => `${n} more that would help`, possible: (n) => `${n} further keys` };
+    const folds = { open: (n) => `${n} more that would help`, possible: (n) => `${n} further keys`, reading: (n) => `${n} on how the file is read` };
     for (const [known, title] of Object.entries(folds)) {
       const all = rows(known);
       if (all.length) card.append(make("details", { className: known }, make("summary", { textContent: title(all.length) }), ...all));
@@ -165,7 +171,9 @@ class Tables {
 
   row(one, table, of) {
     const { key, value, known, why, line, unit, meaning, left_out: without } = one;
-    const id = `field-${table}-${key}`, input = make("input", { id, value: fromToml(value), autocomplete: "off", spellcheck: false });
+    const id = `field-${table}-${key}`, picks = choices(one, of, this.channels);
+    const isSwitch = picks.join() === "true,false" && ["", ...picks].includes(value);
+    const input = isSwitch ? make("select", { id }, ...["", ...picks].map((choice) => make("option", { value: choice, textContent: choice, selected: choice === value }))) : make("input", { id, value: fromToml(value), autocomplete: "off", spellcheck: false });
     // A value of several lines is changed in the text.
     input.readOnly = value.includes("\n");
     [input.dataset.field, input.dataset.line] = [`${table} ${key}`, line ?? ""];
@@ -182,9 +190,9 @@ class Tables {
       this.wrong.delete(id);
       input.removeAttribute("aria-invalid");
       try {
-        await this.set(table, key, toToml(input.value, unit));
+        await this.set(table, key, toToml(input.value, unit, /[[…]/.test(meaning ?? "")));
       } catch (error) {
-        wrong.textContent = inShort(error.message);
+        wrong.textContent = here(error.message);
         this.wrong.set(id, { value: input.value, why: wrong.textContent });
         input.setAttribute("aria-invalid", "true");
       }
@@ -194,8 +202,7 @@ class Tables {
     const reason = known === "guessed" ? `guessed: ${why}` : known === "missing" ? `missing: ${why || meaning}` : why;
     const label = make("label", { htmlFor: id, textContent: key.replaceAll("_", " "), title: key });
     const row = make("div", { className: `row ${known}` }, label, input, make("span", { className: "unit", textContent: unit ?? "" }));
-    const picks = choices(one, of, this.channels);
-    if (picks.length) {
+    if (picks.length && !isSwitch) {
       input.setAttribute("list", `${id}-picks`);
       row.append(make("datalist", { id: `${id}-picks` }, ...picks.map((value) => make("option", { value }))));
     }

@@ -179,7 +179,7 @@ class TraceView {
       pen.fill();
     }
     this.handles = this.lines();
-    for (const line of this.handles) this.drawHandle(pen, line, width, height - foot);
+    for (const line of this.handles.filter(({ name }) => name !== this.dragged)) this.drawHandle(pen, line, width, height - foot);
     if (!this.band.hidden) this.drawSpectrum();
     const stated = this.picks().filter((key) => this.value(key));
     this.toml.textContent = stated.map((key) => `${key} = ${this.value(key)}`).join("\n") || "# nothing is stated: all is found from the record";
@@ -237,6 +237,8 @@ class TraceView {
     this.canvas.setPointerCapture(event.pointerId);
     this.canvas.onpointermove = ({ offsetX, offsetY }) => {
       moved = ends(offsetX);
+      // The line that is dragged stands where the mouse is, not where it was.
+      this.dragged = line?.name;
       this.draw();
       const { pen, height } = { pen: this.canvas.getContext("2d"), height: this.canvas.clientHeight };
       if (line) {
@@ -252,6 +254,7 @@ class TraceView {
     };
     this.canvas.onpointerup = () => {
       this.canvas.onpointermove = this.canvas.onpointerup = null;
+      this.dragged = undefined;
       if (line && value) this.state(line.key, () => value);
       else if (!line && Math.abs(moved - begun) > 5) this.go(this.at(Math.min(begun, moved)), this.at(Math.max(begun, moved)));
       else this.draw();

@@ -37,6 +37,10 @@ const DEEPEST: usize = 64;
 /// Columns of the small picture of a record.
 const COLUMNS: usize = 160;
 
+/// First line of a campaign that the page proposes.
+const HEAD: &str =
+    "# Proposed by vibro.html from the files. Check what is guessed, fill in what is missing.\n";
+
 /// The error of a number that no table has.
 fn no_table() -> Error {
     Error::usage("no such table", "one of the list")
@@ -182,7 +186,7 @@ impl Workbench {
         let proposal = Proposal::of(&self.folder, &Reading::default(), campaign.as_ref(), &none, progress)?;
         let text = match known {
             Some(known) => format!("{}\n{}", known.trim_end(), proposal.tables()),
-            None => proposal.toml(),
+            None => proposal.below(HEAD),
         };
         Ok((text, proposal))
     }

@@ -168,6 +168,14 @@ impl Error {
         Error::usage(found, "").hint(instead(folder, name))
     }
 
+    /// A name that is not among `all` of a folder that is on no disk; the hint is the one that was probably
+    /// meant.
+    pub fn absent_among(found: impl Into<String>, all: &[String], name: &Path) -> Self {
+        let near = nearest(&name.to_string_lossy(), all.iter().map(String::as_str));
+        let meant = near.map(|near| Hint::Name { wrong: name.to_owned(), meant: PathBuf::from(near) });
+        Error::usage(found, "").hint(meant.unwrap_or_else(|| "a name of the list of recordings".into()))
+    }
+
     /// Names the setting that helps by its key in a campaign: `low_pass`. The command line shows it as its
     /// option.
     pub fn setting(self, key: &'static str) -> Self {

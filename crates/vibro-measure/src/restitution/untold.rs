@@ -34,15 +34,19 @@ pub(super) struct Untold {
 impl Untold {
     /// Adds to an error the first advice that finds the bounces when tried.
     pub fn advise(&self, refused: Error, read: Read<'_>) -> Error {
-        if let Some(threshold) = self.threshold(read) {
-            return refused
-                .hint("a threshold that leaves one of them, if what is quieter is no bounce")
-                .set("threshold", format!("{threshold:.2}"));
-        }
-        if let Some(pause) = self.pause(read) {
-            return refused
-                .hint("a pause that leaves one of them, if what follows an impact within it is its echo")
-                .set("refractory", format!("{pause:.2}"));
+        const QUIETER: &str = "a threshold that leaves one of them, if what is quieter is no bounce";
+        const SOONER: &str =
+            "a pause that leaves one of them, if what follows an impact within it is its echo";
+        let pause = self.pause(read).map(|pause| format!("{pause:.2}"));
+        let threshold = self.threshold(read).map(|threshold| format!("{threshold:.2}"));
+        match (threshold, pause) {
+            (Some(threshold), Some(pause)) => {
+                let either = refused.hint(format!("{QUIETER}; or {SOONER}"));
+                return either.set("threshold", threshold).set("refractory", pause);
+            }
+            (Some(threshold), None) => return refused.hint(QUIETER).set("threshold", threshold),
+            (None, Some(pause)) => return refused.hint(SOONER).set("refractory", pause),
+            (None, None) => (),
         }
         if let Some((from, to)) = self.before_third(read) {
             return refused
