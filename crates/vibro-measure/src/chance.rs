@@ -12,6 +12,11 @@ pub(crate) fn normal_beyond(a: f64) -> f64 {
     Normal::standard().pdf(a) / Normal::standard().sf(a)
 }
 
+/// Probability that a standard normal variable exceeds `a`.
+pub(crate) fn normal_above(a: f64) -> f64 {
+    Normal::standard().sf(a)
+}
+
 /// P(χ² > x) for `free` degrees of freedom; NaN for 0.
 pub(crate) fn chi_squared_above(x: f64, free: usize) -> f64 {
     ChiSquared::new(free as f64).map_or(f64::NAN, |chance| chance.sf(x))

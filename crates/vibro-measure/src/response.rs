@@ -158,12 +158,17 @@ impl Response {
         findings.extend((faint > 0).then(|| Finding::caution("sweep-below-noise").count("n", faint)));
         findings.extend((below > 0).then_some(below_cutoff));
         if let Some(direction) = direction.filter(|_| points.len() >= 3) {
-            let at =
-                |p: &ResponsePoint| (p.excitation, p.amplitude.value, p.amplitude.std.unwrap_or(f64::NAN));
+            let at = |p: &ResponsePoint| (p.excitation, p.amplitude.value, p.off_curve().unwrap_or(f64::NAN));
             let receptance = |p: &ResponsePoint| p.receptance.as_ref().map(|r| Complex64::new(r.re, r.im));
             let receptances: Option<Vec<Complex64>> = points.iter().map(receptance).collect();
             let receptances = receptances.unwrap_or_default();
-            let curve = NamedCurve::new(points.iter().map(at).collect(), &receptances, direction, *mass);
+            let mut curve = NamedCurve::new(points.iter().map(at).collect(), &receptances, direction, *mass);
+            for Resonance { frequency, amplitude, amplitude_std, .. } in &mut curve.resonances {
+                let away = |p: &&ResponsePoint| (p.excitation - *frequency).abs();
+                let nearest = points.iter().min_by(|a, b| away(a).total_cmp(&away(b)));
+                let common = nearest.map_or(0.0, ResponsePoint::with_curve) * *amplitude;
+                *amplitude_std = amplitude_std.map(|std| std.hypot(common));
+            }
             // Two steps at one frequency prevent an interpolation there, however fine the other steps are.
             let alone = |f: f64| points.iter().filter(|p| p.excitation == f).count() == 1;
             let coarse = curve.resonances.iter().filter(|r| r.is_largest_point()).map(|r| r.frequency);

@@ -94,6 +94,20 @@ impl Uncertain for Response {
 }
 
 impl ResponsePoint {
+    /// Standard uncertainty of the amplitude for a known force: how far it may be off the curve of its
+    /// neighbours. What the force adds by its drift within a step, it adds to all steps alike.
+    pub(crate) fn off_curve(&self) -> Option<f64> {
+        let per_newton = self.receptance.and_then(|r| Some(self.amplitude.value * r.std? / r.re.hypot(r.im)));
+        Some(self.amplitude.std?.min(per_newton.unwrap_or(f64::INFINITY)))
+    }
+
+    /// Relative standard uncertainty of the amplitude that neighbours share.
+    pub(crate) fn with_curve(&self) -> f64 {
+        let shared =
+            self.amplitude.std.zip(self.off_curve()).map(|(all, own)| (all * all - own * own).sqrt());
+        shared.unwrap_or(0.0) / self.amplitude.value
+    }
+
     /// The numbers of the response: all but its frequency and the force.
     pub(crate) fn of_response(&mut self) -> [&mut dyn Uncertain; 5] {
         let ResponsePoint { amplitude, harmonics, subharmonics, phase, receptance, .. } = self;

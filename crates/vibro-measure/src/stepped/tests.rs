@@ -60,9 +60,10 @@ fn the_force_is_that_of_the_steady_part() {
 }
 
 /// Forces that grow by 2 % within each step: the response of the oscillator is H(iω + ε), in closed form.
-/// Returns the errors of receptances in standard uncertainties, and the largest uncertainty over |H|.
-fn grown(draws: u64) -> (Vec<f64>, f64) {
-    let (mut off, mut widest) = (Vec::new(), 0.0_f64);
+/// Returns the errors of receptances in standard uncertainties, the largest uncertainty over |H|, and for
+/// the resonance of each sweep its error and its standard uncertainty in Hz.
+fn grown(draws: u64) -> (Vec<f64>, f64, Vec<(f64, f64)>) {
+    let (mut off, mut widest, mut resonances) = (Vec::new(), 0.0_f64, Vec::new());
     for seed in 0..draws {
         let mut noise = Noise::new(0x6707 + seed);
         let steps: Vec<StepTraces> = (0..15)
@@ -90,28 +91,35 @@ fn grown(draws: u64) -> (Vec<f64>, f64) {
                 step
             })
             .collect();
-        for point in response_of(&steps).points.iter().skip(1).take(13) {
+        let found = response_of(&steps);
+        let top = found.resonances.iter().find(|r| r.kind.is_maximum()).unwrap();
+        let truth = OWN * (1.0 - 2.0 * ZETA * ZETA).sqrt();
+        resonances.push((top.frequency - truth, top.frequency_std.unwrap()));
+        for point in found.points.iter().skip(1).take(13) {
             let (truth, ratio) = (receptance(point.frequency), point.receptance.unwrap());
             let std = ratio.std.unwrap();
             off.extend([ratio.re - truth.re, ratio.im - truth.im].map(|v| (v / std).abs()));
             widest = widest.max(std / truth.norm());
         }
     }
-    (off, widest)
+    (off, widest, resonances)
 }
 
 #[test]
 fn a_force_that_grows_gives_the_response_to_a_steady_one() {
-    let (off, widest) = grown(2);
+    let (off, widest, resonances) = grown(2);
     // None of 52 errors exceeds five uncertainties. A growth of 2 % over 4 s is 1.3 ‰ of the decay rate of
     // the resonance: uncorrected, this error would exceed six uncertainties of 2·10⁻⁴ |H|.
     assert!(off.iter().all(|v| *v < 5.0) && widest < 2e-4, "{widest} {off:?}");
+    // All amplitudes grow alike, by 2 %/√12 about their mean, and the top of their curve stays. Amplitudes
+    // that are that far off it move it by that part of the half bandwidth of 0.6 Hz: by 3·10⁻³ Hz.
+    assert!(resonances.iter().all(|(off, std)| off.abs() < 5.0 * std && *std < 1e-3), "{resonances:?}");
 }
 
 #[test]
 #[ignore = "Monte Carlo: cargo test --release -- --ignored"]
 fn uncertainties_under_growing_forces_cover_the_truth() {
-    let (off, _) = grown(30);
+    let (off, _, _) = grown(30);
     let within = off.iter().filter(|v| **v < 1.96).count() as f64 / off.len() as f64;
     // 95 % of 780 less three standard deviations, 0.78 %.
     assert!(within > 0.926, "{within}");

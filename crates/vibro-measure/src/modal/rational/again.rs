@@ -43,6 +43,13 @@ impl Rational {
     }
 }
 
+impl Again<'_> {
+    /// Height of the peak of a mode with a constant of 1.
+    pub(super) fn peak(&self, (own, zeta): (f64, f64)) -> f64 {
+        1.0 / (2.0 * zeta * own.powi(2 - self.scaled.power))
+    }
+}
+
 impl Scaled<'_> {
     /// The fit from the first guesses of frequency and damping.
     pub(super) fn from_starts(&self, noise: &LineNoise) -> Option<Fit> {
