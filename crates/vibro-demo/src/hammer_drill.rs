@@ -2,6 +2,7 @@
 //!
 //! - `data/drill.wav`: striker, bit and pulse in volts, 20 s at 102.4 kHz (25 MB);
 //! - `data/still.wav`: noise of the same vibrometer with the machine at rest;
+//! - `drill.toml`: the impact unit as a model, for `vibro model drill`;
 //! - `TRUTH.csv`: turn, time, phase and velocities of every impact, without noise and faults.
 
 mod record;
@@ -18,6 +19,7 @@ const SECONDS: f64 = 20.0;
 
 /// Writes all files.
 pub fn recordings(sink: &mut Sink<'_>) -> Result<()> {
+    sink("drill.toml", include_bytes!("hammer_drill/drill.toml"))?;
     let made = record::record(SECONDS);
     let mut wave = |name: &str, channels: Vec<Record>| {
         let mut bytes = Vec::new();
