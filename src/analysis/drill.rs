@@ -344,7 +344,9 @@ impl Analysis for Keys {
             Ok(vec![answer])
         })?;
         let (joined, apart) = joined::joined(&std::mem::take(&mut job.found.bodies))?;
-        apart.iter().for_each(|(record, finding)| job.found.add(record, [finding]));
+        for (record, finding) in &apart {
+            job.found.add(record, [finding]);
+        }
         let mut machines = Vec::new();
         for (number, answer) in (1..).zip(joined) {
             let mark = if number == 1 { String::new() } else { number.to_string() };

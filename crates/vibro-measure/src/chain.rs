@@ -2,7 +2,7 @@
 //!
 //! Each run has a [`Drill`](crate::drill::Drill) with its turns counted from the same pulse of the crank. At
 //! a contact the body behind gives the momentum m(v⁻ − v⁺), and the body in front takes m(v⁺ − v⁻): from both
-//! records R = (v_b⁺ − v_a⁺)/(v_a⁻ − v_b⁻), and from one with the masses and the struck body at rest.
+//! records `R = (v_b⁺ − v_a⁺)/(v_a⁻ − v_b⁻)`, and from one with the masses and the struck body at rest.
 
 mod body;
 mod passage;
@@ -143,7 +143,9 @@ mod tests {
                 body("bit", 0.43, &[(0.6999, [0.0, bit])]),
             ];
             let all = all.map(|mut body| {
-                body.hits.iter_mut().for_each(|hits| hits.velocities = hits.velocities.map(|v| sign * v));
+                for hits in &mut body.hits {
+                    hits.velocities = hits.velocities.map(|v| sign * v);
+                }
                 body
             });
             let chain = Chain::of(&all.each_ref()).unwrap();

@@ -87,7 +87,9 @@ fn other_run(seconds: f64, seed: u64, moved: impl Fn(&mut [f64], &Struck, f64)) 
     let run = machine.run(seconds, &mut ShiftedNoise::new(seed));
     let (mut laser, mut pick_up) = (ShiftedNoise::new(seed + 1), ShiftedNoise::new(seed + 2));
     let mut velocity = vec![0.0; count];
-    run.impacts.iter().for_each(|impact| moved(&mut velocity, impact, machine.contact));
+    for impact in &run.impacts {
+        moved(&mut velocity, impact, machine.contact);
+    }
     let pulse = run.pulse(RATE, count).iter().map(|p| 4.0 * p + 0.3 + 0.01 * pick_up.normal()).collect();
     [velocity.iter().map(|v| 0.25 * v + NOISE * laser.normal()).collect(), pulse]
 }

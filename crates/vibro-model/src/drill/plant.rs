@@ -365,7 +365,7 @@ impl Plant {
         indented.map(energy).sum()
     }
 
-    /// Mass flow ṁ in kg/s into the cushion of this volume (m³), and RTṁ of what flows, in W.
+    /// Mass flow ṁ in kg/s into the cushion of this volume (m³), and `RTṁ` of what flows, in W.
     #[inline]
     fn flow(&self, volume: f64, y: &Vector) -> [f64; 2] {
         let [start, slope] = self.conductance;
@@ -381,7 +381,7 @@ impl Plant {
         [flow, GAS_CONSTANT * at * flow]
     }
 
-    /// Power in W that the air loses by flow, at a time (s) of the turn: −∂E/∂p (n/V) RTṁ.
+    /// Power in W that the air loses by flow, at a time (s) of the turn: `−∂E/∂p (n/V) RTṁ`.
     pub fn flow_loss(&self, t: f64, y: &Vector) -> f64 {
         let [_, filled] = self.flow(self.volume(t, y), y);
         if filled == 0.0 {

@@ -13,8 +13,8 @@ use vibro_record::{Error, Result};
 /// Most turns of a run: half a minute of work.
 const MOST_TURNS: usize = 100_000;
 
-/// Most integration steps of a turn, in the mean of a run; a turn of an ordinary machine takes some hundred.
-const MOST_STEPS: usize = 5000;
+/// Most integration steps of a run beside those of each turn, which takes some hundred in an ordinary machine.
+const MOST_STEPS: [usize; 2] = [100_000, 5000];
 
 /// State of the bodies at the start, with the piston at top dead centre and the air at ambient pressure; a
 /// sealed cushion has ambient pressure at its origin.
@@ -142,7 +142,7 @@ pub fn run(machine: &Machine, rung: Rung, course: &Course) -> Result<Run> {
         return thrown(machine, course);
     }
     let mut motion = Motion::new(machine, rung, &start, course.tolerance)?;
-    motion.most_steps = MOST_STEPS * course.turns;
+    motion.most_steps = MOST_STEPS[0] + MOST_STEPS[1] * course.turns;
     let first = course.turns.saturating_sub(course.judged);
     let (mut caught, mut turns) = (None, Vec::new());
     for index in 0..course.turns {
@@ -225,7 +225,7 @@ fn blows(machine: &Machine, first: usize, turns: &[Turn]) -> Vec<Option<Blow>> {
         Turn::blow_among(&own, least, striker, bit)
     };
     // The turns begin before the first one's top dead centre, or end behind the last one's.
-    (1..turns.len()).map(|turn| blow(turn)).collect()
+    (1..turns.len()).map(blow).collect()
 }
 
 fn regime(blows: &[Option<Blow>]) -> Regime {

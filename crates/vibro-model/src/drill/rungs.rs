@@ -74,7 +74,7 @@ pub fn climb(machine: &Machine, course: &Course, tolerance: f64) -> Result<Ladde
         .map(|rung| {
             let (run, refused) = match run(machine, rung, course) {
                 Ok(run) => (Some(run), None),
-                Err(why) => (None, Some(why.why().to_owned())),
+                Err(why) => (None, Some(why.why())),
             };
             let error = run.as_ref().map(|run| error(run, &fullest));
             Step { rung, run, refused, error }

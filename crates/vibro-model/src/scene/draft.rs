@@ -89,7 +89,9 @@ impl Draft {
     pub fn set(&mut self, assignment: &str) -> Result<()> {
         let mut later = Given::default();
         later.set(assignment, "", table)?;
-        leaves("", later.table).into_iter().for_each(|(key, value)| self.put(&key, value));
+        for (key, value) in leaves("", later.table) {
+            self.put(&key, value);
+        }
         Ok(())
     }
 

@@ -141,7 +141,7 @@ impl<'a> Sweep<'a> {
         let cell = |(value, machine): &(Option<f64>, crate::model::drill::Machine)| {
             let found = run(machine, rung, course);
             progress.step();
-            let refused = found.as_ref().err().map(|e| e.why().to_owned());
+            let refused = found.as_ref().err().map(Error::why);
             let found = found.ok();
             Cell {
                 speed: machine.crank.frequency,
