@@ -3,6 +3,7 @@
 use super::compared_rig::ComparedRig;
 use super::evidence::Evidence;
 use crate::error::{Error, Result};
+use crate::measure::chain::Body;
 use crate::record::{Finding, Step};
 use crate::report::files::Files;
 use crate::report::words::{About, Voice};
@@ -37,6 +38,8 @@ pub struct Answer {
     pub compared: Option<ComparedRig>,
     /// Evidence on the kinds of its records.
     pub evidence: Vec<Evidence>,
+    /// Measured bodies of hammer drills, which are joined.
+    pub bodies: Vec<Body>,
     /// Reason why the main result is missing, where the rest can still be shown.
     #[serde(skip)]
     pub refused: Option<Error>,
@@ -78,6 +81,7 @@ impl Answer {
         join(&mut self.tables, more.tables);
         self.histories.append(&mut more.histories);
         self.evidence.append(&mut more.evidence);
+        self.bodies.append(&mut more.bodies);
         self.compared = self.compared.take().or(more.compared);
         self.result.append(&mut more.result);
         self.findings.append(&mut more.findings);

@@ -3,6 +3,7 @@
 pub mod cycles;
 pub mod figures;
 mod file;
+mod joined;
 pub mod tables;
 
 use super::answer::Answer;
@@ -12,6 +13,7 @@ use super::kind::{Analysis, no_file};
 use super::source::Source;
 use crate::campaign::{Channel, Entry, KeyRange, LowPass, channel, channels};
 use crate::error::{Error, Result};
+use crate::measure::chain::Body;
 use crate::measure::drill::{
     AngleOrigin, Beam, Cycle, Drill, DrillOptions, Edge, Slices, Smoothing, drill_each,
 };
@@ -52,6 +54,10 @@ pub struct Keys {
     pub edge: Option<Edge>,
     /// Trigger level of the edge, in the unit of the reference [default: the middle of its two levels]
     pub level: Option<f64>,
+    /// Name of the measured body, such as striker or bit: bodies of a campaign are joined by the crank, in
+    /// the order of their tables
+    #[cfg_attr(feature = "cli", arg(skip))]
+    pub body: Option<String>,
     /// Measured mass in kg, for the energies
     pub mass: Option<f64>,
     /// Struck mass in kg, at rest before the impact, for the restitution
@@ -259,7 +265,10 @@ impl Keys {
         let twice = (is_velocity && options.sensitivity != 1.0).then(|| twice.of(&mut found));
         doubt_with_record(&channels.findings, &mut found);
         found.findings.splice(..0, channels.findings.into_iter().chain(twice));
-        answer(source.name, &found)
+        let mut answer = answer(source.name, &found)?;
+        let body = self.body.as_ref().map(|body| Body::of(source.name, body, self.mass, &found));
+        answer.bodies.extend(body);
+        Ok(answer)
     }
 }
 
@@ -295,6 +304,8 @@ impl Analysis for Keys {
         "drill_speed",
         "drill_noise",
         "drill_bandwidth",
+        "drill_joined",
+        "drill_chain",
     ]);
     const RANGES: &'static [KeyRange] = &[
         KeyRange::above_zero("Hz", &["instrument"]),
@@ -331,6 +342,16 @@ impl Analysis for Keys {
             let mut answer = entry.keys.measure(source, &mut |_| Ok(()))?;
             answer.files.iter_mut().for_each(|file| file.0.insert_str(0, "drill_"));
             Ok(vec![answer])
-        })
+        })?;
+        let (joined, apart) = joined::joined(&std::mem::take(&mut job.found.bodies))?;
+        for (record, finding) in &apart {
+            job.found.add(record, [finding]);
+        }
+        let mut machines = Vec::new();
+        for (number, answer) in (1..).zip(joined) {
+            let mark = if number == 1 { String::new() } else { number.to_string() };
+            machines.push(job.show("joined", &mark, answer));
+        }
+        if machines.is_empty() { Ok(()) } else { job.put("drill_machines", &machines) }
     }
 }

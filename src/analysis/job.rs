@@ -105,6 +105,7 @@ impl<'a> Job<'a> {
             histories,
             compared,
             evidence,
+            bodies,
             ..
         } = answer;
         let of_record = |headline| of_record(headline, name, findings.iter().map(|(_, finding)| finding));
@@ -124,6 +125,7 @@ impl<'a> Job<'a> {
             histories,
             compared,
             evidence,
+            bodies,
             figures: figures.into_iter().map(|(name, figure)| (marked(name), figure)).collect(),
             files: files.into_iter().map(|(name, bytes)| (marked(name), bytes)).collect(),
             ..Answer::default()

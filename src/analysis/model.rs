@@ -5,6 +5,7 @@ pub mod backbone;
 pub mod branch;
 pub mod choose;
 pub mod contact;
+pub mod drill;
 pub mod figures;
 pub mod map;
 pub mod orbit;

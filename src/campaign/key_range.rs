@@ -116,7 +116,7 @@ impl KeyRange {
 /// commands that no campaign has.
 pub(crate) const SHARED: &[KeyRange] = &[
     KeyRange::above_zero("Hz", &["rate", "base_band", "excitation", "low_pass", "high_pass", "fmin", "fmax"]),
-    KeyRange::above_zero("Hz", &["resample"]),
+    KeyRange::above_zero("Hz", &["resample", "speed"]),
     KeyRange::from_zero("Hz", &["band"]),
     KeyRange::above_zero("Hz/s", &["sweep_rate"]),
     KeyRange::above_zero("s", &["force_window"]).times(),
@@ -130,7 +130,7 @@ pub(crate) const SHARED: &[KeyRange] = &[
     KeyRange::above_zero("", &["threshold"]).within(1e-9, 1e3),
     KeyRange::from_zero("", &["overlap", "left_at_end", "scatter"]).within(1e-9, 1.0),
     KeyRange::count(1e3, &["order", "peak_lines", "starts"]),
-    KeyRange::count(1e9, &["segment", "points", "impacts", "cycles", "settle", "measure", "steps"]),
+    KeyRange::count(1e9, &["segment", "points", "impacts", "cycles", "turns", "settle", "measure", "steps"]),
     KeyRange::above_zero("", &["stretch"]).within(1.0, 1e9),
     KeyRange::any("", &["integrate"]).within(1.0, 1e3),
 ];

@@ -3,7 +3,7 @@
 use super::question::{Asked, Question};
 use super::study::Shared;
 use crate::analysis::Answer;
-use crate::analysis::model::{backbone, branch, choose, map, orbit, response, simulate, sweep};
+use crate::analysis::model::{backbone, branch, choose, drill, map, orbit, response, simulate, sweep};
 use crate::error::Result;
 use crate::read::Folder;
 use crate::report::files::Names;
@@ -36,6 +36,8 @@ enum Which {
     Choose(ModelArgs<choose::Keys>),
     /// Regime and stability over two parameters
     Map(PartArgs<map::Keys>),
+    /// Impact unit of a hammer drill: blow energy and rate, regime, pressure, forces, speeds, start
+    Drill(ModelArgs<drill::Keys>),
 }
 
 /// The keys of an analysis, and the folder for results.
@@ -77,7 +79,23 @@ impl Question for Model {
             Which::Sweep(_) => sweep::Keys::FILES,
             Which::Choose(_) => choose::Keys::FILES,
             Which::Map(_) => map::Keys::FILES,
+            Which::Drill(_) => drill::Keys::FILES,
         }
+    }
+
+    fn files(&self) -> Vec<PathBuf> {
+        let file = match &self.question {
+            Which::Orbit(of) => &of.keys.scene.rig,
+            Which::Simulate(of) => &of.keys.scene.rig,
+            Which::Response(response) => &response.of.keys.scene.rig,
+            Which::Backbone(of) => &of.keys.scene.rig,
+            Which::Continue(of) => &of.keys.scene.rig,
+            Which::Sweep(of) => &of.keys.scene.rig,
+            Which::Choose(of) => &of.keys.scene.rig,
+            Which::Map(map) => &map.of.keys.scene.rig,
+            Which::Drill(of) => &of.keys.machine,
+        };
+        file.iter().cloned().collect()
     }
 
     fn out(&self) -> Option<&Path> {
@@ -90,6 +108,7 @@ impl Question for Model {
             Which::Sweep(of) => of.out.as_deref(),
             Which::Choose(of) => of.out.as_deref(),
             Which::Map(map) => map.of.out.as_deref(),
+            Which::Drill(of) => of.out.as_deref(),
         }
     }
 
@@ -119,6 +138,7 @@ impl Question for Model {
             Which::Sweep(of) => of.keys.answer(),
             Which::Choose(of) => of.keys.answer(),
             Which::Map(map) => map.of.keys.answer(asked.progress),
+            Which::Drill(of) => of.keys.answer(asked.progress),
         }
     }
 }

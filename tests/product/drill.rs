@@ -69,11 +69,7 @@ pub fn wav(folder: &Path, name: &str, channels: &[Record]) -> PathBuf {
 fn the_example_comes_out_as_it_was_made() {
     let folder = tempfile::tempdir().unwrap();
     let made = record::record(2.0);
-    let channels = [
-        volts("striker", made.striker.clone()),
-        volts("bit", made.bit.clone()),
-        volts("pulse", made.pulse.clone()),
-    ];
+    let channels = [volts("striker", made.striker.clone()), volts("pulse", made.pulse.clone())];
     let file = wav(folder.path(), "drill.wav", &channels);
     let still = wav(folder.path(), "still.wav", &[volts("striker", record::still(1.0))]);
     let out = folder.path().join("out");
@@ -83,7 +79,7 @@ fn the_example_comes_out_as_it_was_made() {
             "--mass",
             "0.14",
             "--struck-mass",
-            "0.43",
+            "0.28",
             "--noise",
             still.to_str().unwrap(),
             "--out",
@@ -138,13 +134,17 @@ fn the_truth_beside_the_example_is_the_one_it_is_made_from() {
 }
 
 #[test]
-fn a_campaign_measures_both_channels() {
+fn a_campaign_joins_the_bodies_by_the_crank() {
     let folder = tempfile::tempdir().unwrap();
-    let made = record::record(0.6);
-    let channels = [volts("striker", made.striker), volts("bit", made.bit), volts("pulse", made.pulse)];
     let data = folder.path().join("data");
     std::fs::create_dir(&data).unwrap();
-    wav(&data, "drill.wav", &channels);
+    let made = record::record(2.0);
+    let runs =
+        [("striker", [made.striker, made.pulse]), ("piston", record::piston(2.0)), ("bit", record::bit(2.0))];
+    for (name, [velocity, pulse]) in runs {
+        let file = if name == "striker" { "drill.wav".to_owned() } else { format!("{name}.wav") };
+        wav(&data, &file, &[volts(name, velocity), volts("pulse", pulse)]);
+    }
     wav(&data, "still.wav", &[volts("striker", record::still(0.5))]);
     let own = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/hammer_drill/campaign.toml");
     let text = std::fs::read_to_string(own).unwrap();
@@ -155,19 +155,44 @@ fn a_campaign_measures_both_channels() {
     };
     let found = json(&run(&campaign));
     let drills = found["results"]["drill"].as_array().unwrap();
-    assert_eq!(drills.len(), 2);
-    // The bit gains (1 + R) m/(m + M) of 7.5 m/s from rest.
-    let gained = drills[1]["after"]["value"].as_f64().unwrap();
-    assert!((gained - 7.5 * 1.45 * 0.14 / 0.57).abs() < 0.15, "{gained}");
+    assert_eq!(drills.len(), 3);
     // The bit strikes nothing. Its velocity before the impacts is consistent with zero: no restitution.
-    assert!(drills[1]["restitution"].is_null() && drills[0]["restitution"]["value"].as_f64().unwrap() < 1.0);
-    assert!(found["warnings"].to_string().contains("bit: No restitution"), "{}", found["warnings"]);
+    assert!(drills[2]["restitution"].is_null() && drills[0]["restitution"]["value"].as_f64().unwrap() < 1.0);
     assert!(
-        finding(&drills[1], "drill-not-striking")["numbers"]["speed"].is_f64(),
+        finding(&drills[2], "drill-not-striking")["numbers"]["speed"].is_f64(),
         "{}",
-        drills[1]["findings"]
+        drills[2]["findings"]
     );
-    assert!(folder.path().join("results/drill_average_striker.svg").exists());
+    let machine = &found["results"]["drill_machines"][0];
+    assert_eq!(machine["bodies"], serde_json::json!(["striker", "intermediate piston", "bit"]));
+    let passages = machine["passages"].as_array().unwrap();
+    let near = |estimate: &Value, truth: f64| {
+        let (value, std) = (estimate["value"].as_f64().unwrap(), estimate["std"].as_f64().unwrap());
+        assert!((value - truth).abs() < 4.0 * std && std < 0.02 * truth, "{truth}: {estimate}");
+    };
+    // The striker gives (1 + R)mM/(m + M) of 7.5 m/s, the piston (1 + R')MM'/(M + M') of what it gains.
+    let (m, p, b) = (record::STRIKER, record::PISTON, record::BIT);
+    let driven = (1.0 + record::RESTITUTION) * m / (m + p) * 7.5;
+    let momenta = [p * driven, (1.0 + record::RESTITUTION_OF_BIT) * p * b / (p + b) * driven];
+    let restitutions = [record::RESTITUTION, record::RESTITUTION_OF_BIT];
+    assert_eq!(passages.len(), 2);
+    for ((passage, momentum), restitution) in passages.iter().zip(momenta).zip(restitutions) {
+        near(&passage["given"], momentum);
+        near(&passage["taken"], momentum);
+        near(&passage["restitution"], restitution);
+        near(&passage["restitution_from_one"], restitution);
+        let [given, taken, lost] = ["given", "taken", "lost"]
+            .map(|what| passage[format!("energy_{what}")]["value"].as_f64().unwrap());
+        assert!((given - taken - lost).abs() < 1e-12 && lost > 0.0, "{passage}");
+    }
+    // The velocity scatters by 2 % from blow to blow: its mean square is 0.04 % larger.
+    near(&machine["blow_energy"], 0.5 * m * 7.5 * 7.5 * 1.0004);
+    let bit = momenta[1] / b;
+    near(&machine["efficiency"], b * bit * bit / (m * 7.5 * 7.5));
+    assert!((machine["blow_rate"].as_f64().unwrap() - 60.0 * 47.3).abs() < 60.0);
+    for name in ["drill_average_striker_run.svg", "drill_joined.svg", "drill_chain.csv"] {
+        assert!(folder.path().join("results").join(name).exists(), "{name}");
+    }
     // A missing key that has no default is named.
     std::fs::write(&campaign, text.replace("beam_from = \"normal\"", "")).unwrap();
     let without = run(&campaign);

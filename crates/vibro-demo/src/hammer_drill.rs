@@ -1,8 +1,11 @@
-//! Recordings of the example hammer drill: striker and bit under a laser vibrometer, with a pulse per turn.
+//! Recordings of the example hammer drill: striker, intermediate piston and bit under a laser vibrometer in
+//! three runs, with a pulse per turn.
 //!
-//! - `data/drill.wav`: striker, bit and pulse in volts, 20 s at 102.4 kHz (25 MB);
+//! - `data/drill.wav`: striker and pulse in volts, 20 s at 102.4 kHz (16 MB);
+//! - `data/piston.wav`, `data/bit.wav`: runs of the other bodies, 4 s each (3 MB);
 //! - `data/still.wav`: noise of the same vibrometer with the machine at rest;
-//! - `TRUTH.csv`: turn, time, phase and velocities of every impact, without noise and faults.
+//! - `drill.toml`: the impact unit as a model, for `vibro model drill`;
+//! - `TRUTH.csv`: turn, time, phase and velocities of every impact of the striker, without noise and faults.
 
 mod record;
 mod stroke;
@@ -15,17 +18,22 @@ use vibro_record::{Axis, Meta, Record, Result, Trace};
 
 /// Duration of the record in s.
 const SECONDS: f64 = 20.0;
+/// Duration of the runs of intermediate piston and bit in s.
+const OTHERS: f64 = 4.0;
 
 /// Writes all files.
 pub fn recordings(sink: &mut Sink<'_>) -> Result<()> {
+    sink("drill.toml", include_bytes!("hammer_drill/drill.toml"))?;
     let made = record::record(SECONDS);
     let mut wave = |name: &str, channels: Vec<Record>| {
         let mut bytes = Vec::new();
         write(&channels, Precision::Single, &mut bytes)?;
         sink(name, &bytes)
     };
-    let channels = [("striker", made.striker), ("bit", made.bit), ("pulse", made.pulse)];
-    wave("data/drill.wav", channels.into_iter().map(|(name, values)| volts(name, values)).collect())?;
+    wave("data/drill.wav", vec![volts("striker", made.striker), volts("pulse", made.pulse)])?;
+    for (name, [velocity, pulse]) in [("piston", record::piston(OTHERS)), ("bit", record::bit(OTHERS))] {
+        wave(&format!("data/{name}.wav"), vec![volts(name, velocity), volts("pulse", pulse)])?;
+    }
     wave("data/still.wav", vec![volts("striker", record::still(5.0))])?;
     let mut truth = String::from("turn,time (s),phase (1),before (m/s),after (m/s)\n");
     for i in &made.impacts {

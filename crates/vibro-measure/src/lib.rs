@@ -9,6 +9,7 @@
 //! ```
 
 mod answered;
+pub mod chain;
 pub mod chance;
 mod clipping;
 mod converter;

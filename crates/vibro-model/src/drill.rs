@@ -20,8 +20,11 @@
 //! ```
 
 mod chain;
+mod check;
+mod contact;
 mod crank;
 mod cushion;
+mod draft;
 mod flow;
 mod machine;
 mod motion;
@@ -30,13 +33,15 @@ mod run;
 mod rungs;
 mod turn;
 
+pub use contact::Contact;
 pub use crank::Crank;
 pub use cushion::Cushion;
+pub use draft::MachineDraft;
 pub use flow::{Flow, GAS_CONSTANT, Vent};
-pub use machine::{Bit, Contact, Interface, Machine, SOUND_SPEED, Striker};
+pub use machine::{Bit, Interface, Intermediate, Machine, SOUND_SPEED, Striker};
 pub use run::{Course, Regime, Run, Start, WaveLimit, run};
 pub use rungs::{Ladder, Rung, Step, climb};
-pub use turn::{Blow, Book, Impact, Sample, Turn};
+pub use turn::{Blow, Book, Extremes, Impact, Sample, Turn};
 
 #[cfg(test)]
 mod reference_tests;

@@ -29,6 +29,7 @@ mod excitation;
 mod floquet;
 mod flow;
 mod forcing;
+mod given;
 mod green;
 mod impact;
 pub mod ladder;

@@ -96,3 +96,76 @@ fn energies_cross_at_the_orbits() {
         assert!(crossing[0] <= impulse(orbit) && impulse(orbit) <= crossing[1], "{crossing:?}");
     }
 }
+
+#[test]
+fn a_hammer_drill_shows_the_three_motions_of_the_thesis() {
+    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/hammer_drill/drill.toml");
+    let at =
+        |speed: &str| json(&["model", "drill", file, "--speed", speed, "--turns", "30", "--settle", "30"]);
+    let velocities = |found: &serde_json::Value| -> Vec<f64> {
+        let turn = found["turn"].as_array().unwrap().iter();
+        turn.map(|sample| sample["velocities"][0].as_f64().unwrap()).collect()
+    };
+    // Low speed: about 0.5 m/s towards the bit, no blow.
+    let low = at("7");
+    assert_eq!((&low["regime"], &low["caught"]), (&"no-blow".into(), &serde_json::Value::Null));
+    let fastest = velocities(&low).into_iter().fold(0.0, f64::max);
+    assert!((0.3..0.6).contains(&fastest), "{fastest}");
+    // Medium: it strikes, faster than the piston's 2π·18·0.0113 = 1.3 m/s. Full: near 7.5 m/s.
+    for (speed, range) in [("18", 1.5..4.0), ("45", 6.5..8.5)] {
+        let found = at(speed);
+        assert_eq!(found["regime"], "every-turn");
+        let fastest = velocities(&found).into_iter().fold(0.0, f64::max);
+        assert!(range.contains(&fastest), "{speed}: {fastest}");
+        assert_eq!(found["blow_rate"].as_f64().unwrap().round(), 60.0 * speed.parse::<f64>().unwrap());
+        let energy = found["book"]["piston"].as_f64().unwrap();
+        assert!(found["book"]["residual"].as_f64().unwrap().abs() < 1e-6 * energy, "{}", found["book"]);
+        assert!(found["rungs"].as_array().unwrap().iter().all(|rung| rung["steps"].is_number()));
+        assert!(found["forces"]["pressure"][1].as_f64().unwrap() > 101_325.0);
+    }
+}
+
+#[test]
+fn a_hammer_drill_comes_from_a_file_and_settings() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("drill.toml");
+    std::fs::write(&file, "[drill.striker]\nmass = 0.2\n").unwrap();
+    let found = json(&["model", "drill", text(&file), "--set", "crank.frequency=30", "--rung", "vented"]);
+    assert_eq!(found["machine"]["striker"]["mass"], 0.2);
+    assert_eq!((&found["speed"], &found["rung"]), (&30.0.into(), &"vented".into()));
+    assert!(found["warnings"][0].as_str().unwrap().contains("cushion.length"), "{}", found["warnings"]);
+    for (written, said) in [
+        ("[drill.striker]\nmass = -0.2", "striker.mass is -0.2 kg"),
+        ("[drill.striker]\nmas = 0.2", "did you mean `mass`"),
+        ("[[drill]]\nfile = \"a.wav\"", "this is a campaign"),
+        ("m1 = 1", "no table [drill]"),
+    ] {
+        std::fs::write(&file, written).unwrap();
+        let found = complaint(&["model", "drill", text(&file)], 2);
+        assert!(found.contains(said), "{written}: {found}");
+    }
+    std::fs::write(&file, "[drill]\n").unwrap();
+    let other = complaint(&["model", "orbit", text(&file), "--frequency", "4", "--force", "1"], 2);
+    assert!(other.contains("vibro model drill"), "{other}");
+    for (range, key) in [("speeds", "5:5:3"), ("speeds", "5:60"), ("over", "cushion.size=1:2:3")] {
+        let option = format!("--{range}={key}");
+        let words = ["model", "drill", "--speeds", "5:6:2", &option];
+        let words = if range == "speeds" { vec!["model", "drill", &option] } else { words.to_vec() };
+        complaint(&words, 2);
+    }
+}
+
+#[test]
+fn speeds_and_maps_of_a_hammer_drill_have_their_regimes() {
+    let more = ["--rung", "friction", "--turns", "10", "--settle", "10", "--speeds", "5:45:2"];
+    let found = json(&[&["model", "drill", "--from-rest"], &more[..]].concat());
+    let regimes: Vec<_> = found["speeds"].as_array().unwrap().iter().map(|cell| &cell["regime"]).collect();
+    assert_eq!(regimes, ["no-blow", "every-turn"]);
+    let start = found["start"]["blows"].as_array().unwrap();
+    let first = start.iter().position(serde_json::Value::is_number).unwrap();
+    assert_eq!((start.len(), found["start"]["caught"].as_u64()), (20, Some(first as u64 + 1)));
+    let map = &json(&[&["model", "drill", "--over", "striker.friction=0:40:3"], &more[..]].concat())["map"];
+    assert_eq!((&map["unit"], map["cells"].as_array().unwrap().len()), (&"N".into(), 6));
+    // The second key runs slower than the speed; 40 N hold the striker.
+    assert_eq!((&map["cells"][2]["value"], &map["cells"][5]["regime"]), (&20.0.into(), &"no-blow".into()));
+}

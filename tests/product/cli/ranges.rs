@@ -96,6 +96,7 @@ fn every_number_of_every_command_ends_soon_with_an_answer_or_a_reason() {
         (2, model("sweep --force 0.5 --from 5 --to 15 --steps 21")),
         (2, model("choose --force 0.5 --frequency 11")),
         (2, model("map --force 0.5 --x frequency:5:15:8 --y restitution:0.1:1:4")),
+        (2, model("drill --turns 4 --settle 4 --speeds 10:40:3 --over striker.friction=0:10:3")),
     ];
     let values = ["nan", "inf", "-inf", "-1", "0", "1e-300", "1e300", "4294967295", "1e12"];
     let (mut runs, mut wrong) = (0, Vec::new());

@@ -10,7 +10,7 @@ use tempfile::TempDir;
 use vibroimpact::math::Noise;
 
 /// Commands that write into a folder, each with the example recording that it reads (empty: none).
-const COMMANDS: [(&str, &[&str]); 20] = [
+const COMMANDS: [(&str, &[&str]); 21] = [
     ("bench/BENCH.CSV", &["spectrum", "--channel", "velocity", "--segment", "1024"]),
     ("bench/BENCH.CSV", &["spectrum", "--channel", "velocity", "--reference", "force", "--segment", "1024"]),
     ("bench/BENCH.CSV", &["modal", "--reference", "force", "--segment", "1024"]),
@@ -78,6 +78,7 @@ const COMMANDS: [(&str, &[&str]); 20] = [
         ],
     ),
     ("", &["model", "map", "--x", "frequency:10:12:2", "--y", "gap:1e-3:2e-3:2", "--force", "0.5"]),
+    ("hammer_drill/drill.toml", &["model", "drill", "--speeds", "10:40:2", "--turns", "4", "--from-rest"]),
     ("two_mass_rig/campaign.toml", &["compare"]),
 ];
 

@@ -196,7 +196,7 @@ pub(super) fn groups(
     }
     let group = |(number, (front, own)): (usize, &(bool, Vec<usize>))| {
         let own: Vec<_> = own.iter().map(|i| (&impacts[*i], &residuals[*i])).collect();
-        let mut group = Group::new(&own, *front, gap, options).allowing(offset);
+        let mut group = Group::new(&own, *front, gap, options).allowing(offset, options.mass);
         group.share = group.n as f64 / turns as f64;
         if members.len() > 1 {
             group.findings = group.findings.into_iter().map(|found| found.count("group", number)).collect();
@@ -243,8 +243,8 @@ fn by_phase(impacts: &[Impact], own: Vec<usize>, turns: usize) -> Vec<Vec<usize>
 
 impl Group {
     /// Adds the uncertainty of the offset, which all impacts share. If the offset is larger than that of an
-    /// instrument ([`LARGEST`]), no uncertainty is stated.
-    fn allowing(mut self, offset: &Offset) -> Group {
+    /// instrument ([`LARGEST`]), no uncertainty is stated. The energies are those of a mass in kg.
+    fn allowing(mut self, offset: &Offset, mass: Option<f64>) -> Group {
         let (before, after) = (self.before.value, self.after.value);
         if offset.value.abs() > LARGEST * before.abs().max(after.abs()) {
             let doubt = Finding::doubt(code::DRILL_MEAN_VELOCITY).number("mean", offset.value);
@@ -258,9 +258,9 @@ impl Group {
             estimate.std = estimate.std.map(|std| std.hypot(by));
         };
         // Derivative m v of the energy ½ m v².
-        let momentum = self.energy.as_ref().map_or(0.0, |e| 2.0 * e.value / before);
-        self.energy.iter_mut().for_each(|e| add(e, momentum * unknown));
-        self.energy_given.iter_mut().for_each(|e| add(e, momentum * (1.0 - after / before) * unknown));
+        let mass = mass.unwrap_or(0.0);
+        self.energy.iter_mut().for_each(|e| add(e, mass * before * unknown));
+        self.energy_given.iter_mut().for_each(|e| add(e, mass * (before - after) * unknown));
         self.restitution.iter_mut().for_each(|r| add(r, (1.0 + r.value) * unknown / before.abs()));
         add(&mut self.first_contact, unknown);
         add(&mut self.before, unknown);

@@ -41,8 +41,9 @@ fn dot(a: &[f64; 3], b: &[f64; 3]) -> f64 {
 
 impl Chain {
     pub fn new(machine: &Machine) -> Chain {
-        let masses = [machine.striker.mass, machine.intermediate, machine.bit.mass];
-        let offsets = [0.0, 0.0, machine.strike + machine.clearance, machine.travel - machine.strike];
+        let masses = [machine.striker.mass, machine.intermediate.mass, machine.bit.mass];
+        let strike = machine.striker.strike;
+        let offsets = [0.0, 0.0, strike + machine.bit.clearance, machine.intermediate.travel - strike];
         Chain { masses, offsets }
     }
 

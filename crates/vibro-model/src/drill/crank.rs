@@ -1,15 +1,16 @@
 //! Crank drive: the motion of the driving piston at a constant speed.
 
-use crate::least::{NumberRange, number};
+use super::machine::Machine;
+use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 use vibro_math::border;
 use vibro_math::cis::sin_cos;
-use vibro_record::{Error, Result};
 
 /// Crank and rod that drive the piston at a constant speed.
 ///
 /// With the angle θ = Ωt from top dead centre the piston is at x = r(1 − cos θ) + l − √(l² − r² sin²θ).
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields, expecting = "a table")]
 pub struct Crank {
     /// Radius r of the crank in m.
     pub radius: f64,
@@ -17,6 +18,12 @@ pub struct Crank {
     pub rod: f64,
     /// Turns per second, Ω/2π.
     pub frequency: f64,
+}
+
+impl Default for Crank {
+    fn default() -> Crank {
+        Machine::example().crank
+    }
 }
 
 impl Crank {
@@ -36,6 +43,11 @@ impl Crank {
         1.0 / self.frequency
     }
 
+    /// Largest velocity in m/s of the piston.
+    pub fn top_speed(&self) -> f64 {
+        self.at(self.fastest())[1]
+    }
+
     /// Time in s after top dead centre at which the piston is fastest towards the bit.
     pub fn fastest(&self) -> f64 {
         // Where the acceleration r cos θ + (c² − s² + (sc/q)²)/q, q = √(l² − s²), falls to zero.
@@ -45,15 +57,6 @@ impl Crank {
             let rod = (self.rod * self.rod - s * s).sqrt();
             c + (c * c - s * s + (s * c / rod).powi(2)) / rod > 0.0
         })
-    }
-
-    pub(super) fn check(&self) -> Result<()> {
-        number("crank radius", self.radius, "m", NumberRange::AboveZero)?;
-        number("crank speed", self.frequency, "Hz", NumberRange::AboveZero)?;
-        if self.rod > self.radius {
-            return Ok(());
-        }
-        Err(Error::usage(format!("rod length is {} m", self.rod), "a length above the crank radius"))
     }
 }
 

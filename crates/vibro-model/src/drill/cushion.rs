@@ -1,14 +1,15 @@
 //! Air cushion between the driving piston and the striker.
 
 use super::flow::GAS_CONSTANT;
-use crate::least::{NumberRange, number};
+use super::machine::Machine;
+use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
-use vibro_record::{Error, Result};
 
 /// Air cushion: its length is `L = L₀ + x_s − x_p`, its volume `V = A·L + V_d`.
 ///
 /// A sealed cushion follows the polytrope pVⁿ = p₀V₀ⁿ: n = 1 is isothermal, n = 1.4 adiabatic for air.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields, expecting = "a table")]
 pub struct Cushion {
     /// Area A of piston and striker in m².
     pub area: f64,
@@ -22,6 +23,12 @@ pub struct Cushion {
     pub ambient: f64,
     /// Ambient temperature in K.
     pub temperature: f64,
+}
+
+impl Default for Cushion {
+    fn default() -> Cushion {
+        Machine::example().cushion
+    }
 }
 
 impl Cushion {
@@ -56,21 +63,14 @@ impl Cushion {
     /// ∫(p − pₐ)dV from V to V(p/pₐ)^{1/n}; with x = ln(p/pₐ)/n this is
     /// pV(1 − e^{−(n−1)x})/(n − 1) − pₐV(eˣ − 1).
     pub fn stored(&self, pressure: f64, volume: f64) -> f64 {
-        let n = self.exponent;
-        let x = (pressure / self.ambient).ln() / n;
-        let expansion = if n == 1.0 { x } else { -(-(n - 1.0) * x).exp_m1() / (n - 1.0) };
-        volume * (pressure * expansion - self.ambient * x.exp_m1())
+        let rise = (pressure / self.ambient).ln() / self.exponent;
+        volume * (pressure * self.expansion(pressure) - self.ambient * rise.exp_m1())
     }
 
-    pub(super) fn check(&self) -> Result<()> {
-        number("piston area", self.area, "m²", NumberRange::AboveZero)?;
-        number("cushion length", self.length, "m", NumberRange::AboveZero)?;
-        number("dead volume", self.dead_volume, "m³", NumberRange::Zero)?;
-        number("ambient pressure", self.ambient, "Pa", NumberRange::AboveZero)?;
-        number("ambient temperature", self.temperature, "K", NumberRange::AboveZero)?;
-        if (1.0..=1.4).contains(&self.exponent) {
-            return Ok(());
-        }
-        Err(Error::usage(format!("polytropic exponent is {}", self.exponent), "a value from 1 to 1.4"))
+    /// (1 − (pₐ/p)^{(n−1)/n})/(n − 1), which is ∂E/∂p/V of the energy E of [`Cushion::stored`].
+    pub(super) fn expansion(&self, pressure: f64) -> f64 {
+        let n = self.exponent;
+        let rise = (pressure / self.ambient).ln() / n;
+        if n == 1.0 { rise } else { -(-(n - 1.0) * rise).exp_m1() / (n - 1.0) }
     }
 }

@@ -5,8 +5,8 @@
 //! of them the flow is linear in the pressure difference, and the temperature goes over from one side's to
 //! the other's.
 
-use crate::least::{NumberRange, number};
-use vibro_record::{Error, Result};
+use super::machine::Machine;
+use serde::{Deserialize, Serialize};
 
 /// Gas constant of the standard reference atmosphere in J/(kg K).
 pub const GAS_CONSTANT: f64 = 288.0;
@@ -20,7 +20,8 @@ const LINEAR_RATIO: f64 = 0.995;
 const NOZZLE: f64 = 0.684_731_456_377_270_5;
 
 /// Vent area at a position of the striker.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, expecting = "a table")]
 pub struct Vent {
     /// Position of the striker in m.
     pub position: f64,
@@ -29,7 +30,8 @@ pub struct Vent {
 }
 
 /// Openings of the cushion: a constant leakage, and vents that the striker opens.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields, expecting = "a table")]
 pub struct Flow {
     /// Sonic conductance C of the leakage in m³/(s Pa).
     pub leakage: f64,
@@ -48,6 +50,12 @@ pub(super) enum FlowRegime {
     Even,
     In,
     ChokedIn,
+}
+
+impl Default for Flow {
+    fn default() -> Flow {
+        Machine::example().flow
+    }
 }
 
 impl Flow {
@@ -138,22 +146,6 @@ impl Flow {
             In => [Some((choked, false, ChokedIn)), Some((even, true, Even))],
             ChokedIn => [Some((choked, true, In)), None],
         }
-    }
-
-    pub(super) fn check(&self) -> Result<()> {
-        number("leakage conductance", self.leakage, "m³/(s Pa)", NumberRange::Zero)?;
-        for vent in &self.vents {
-            number("vent position", vent.position, "m", NumberRange::Any)?;
-            number("vent area", vent.area, "m²", NumberRange::Zero)?;
-        }
-        if !(0.01..=0.9).contains(&self.critical_ratio) {
-            let found = format!("critical pressure ratio is {}", self.critical_ratio);
-            return Err(Error::usage(found, "a value from 0.01 to 0.9"));
-        }
-        if self.vents.windows(2).all(|pair| pair[0].position < pair[1].position) {
-            return Ok(());
-        }
-        Err(Error::usage("vent positions that do not rise", "rows in the order of the striker's position"))
     }
 }
 

@@ -1,14 +1,11 @@
 //! Impact unit of a hammer drill: its dimensions, masses and contacts.
 
+use super::contact::{Contact, contacts};
 use super::crank::Crank;
 use super::cushion::Cushion;
 use super::flow::{Flow, Vent};
 use crate::law::Law;
-use crate::least::{NumberRange, number};
-use vibro_record::{Error, Result};
-
-/// Largest ratio of two masses.
-const MOST_RATIO: f64 = 1e6;
+use serde::{Deserialize, Serialize};
 
 /// Speed of sound in a steel rod in m/s.
 pub const SOUND_SPEED: f64 = 5100.0;
@@ -18,7 +15,11 @@ pub const SOUND_SPEED: f64 = 5100.0;
 /// Positions are along the axis in m, positive towards the bit. Piston and striker have their origin where
 /// the cushion is L₀ long. Striker and intermediate piston touch where their positions are equal, so do
 /// intermediate piston and bit.
-#[derive(Debug, Clone, PartialEq)]
+///
+/// As TOML, a table `[drill]` whose keys have the names of the fields; those that are left out are the
+/// example's ([`MachineDraft`](super::MachineDraft)).
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields, expecting = "a table")]
 pub struct Machine {
     /// Drive of the piston.
     pub crank: Crank,
@@ -28,24 +29,26 @@ pub struct Machine {
     pub flow: Flow,
     /// Striker.
     pub striker: Striker,
-    /// Mass of the intermediate piston in kg.
-    pub intermediate: f64,
+    /// Intermediate piston.
+    pub intermediate: Intermediate,
     /// Bit.
     pub bit: Bit,
-    /// Position in m at which the striker meets the intermediate piston at rest on the bit.
-    pub strike: f64,
-    /// Way in m of the intermediate piston from there back to its buffer in the housing.
-    pub travel: f64,
-    /// Way in m of the bit from there to the damper.
-    pub clearance: f64,
     /// Contacts in the order of [`Interface::ALL`].
+    #[serde(with = "contacts")]
     pub contacts: [Contact; 4],
     /// Acceleration in m/s² by gravity towards the bit: g cos β, 9.81 for a machine that drills downwards.
     pub gravity: f64,
 }
 
+impl Default for Machine {
+    fn default() -> Machine {
+        Machine::example()
+    }
+}
+
 /// Striker and its seal.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields, expecting = "a table")]
 pub struct Striker {
     /// Mass in kg.
     pub mass: f64,
@@ -53,15 +56,48 @@ pub struct Striker {
     pub friction: f64,
     /// Viscous friction of the seal in N s/m.
     pub damping: f64,
+    /// Position in m at which it meets the intermediate piston at rest on the bit.
+    pub strike: f64,
+}
+
+impl Default for Striker {
+    fn default() -> Striker {
+        Machine::example().striker
+    }
+}
+
+/// Intermediate piston.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields, expecting = "a table")]
+pub struct Intermediate {
+    /// Mass in kg.
+    pub mass: f64,
+    /// Way in m from its rest on the bit back to its buffer in the housing.
+    pub travel: f64,
+}
+
+impl Default for Intermediate {
+    fn default() -> Intermediate {
+        Machine::example().intermediate
+    }
 }
 
 /// Bit.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields, expecting = "a table")]
 pub struct Bit {
     /// Mass in kg.
     pub mass: f64,
     /// Length in m, for the travel time of waves.
     pub length: f64,
+    /// Way in m from its rest to the damper.
+    pub clearance: f64,
+}
+
+impl Default for Bit {
+    fn default() -> Bit {
+        Machine::example().bit
+    }
 }
 
 impl Bit {
@@ -76,25 +112,9 @@ impl Bit {
     }
 }
 
-/// Contact of two bodies.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Contact {
-    /// Restitution R of a rigid impact.
-    pub restitution: f64,
-    /// Law of the contact that gives way, where it is known. The damper is one where it has a law, on every
-    /// rung; the other contacts are compliant on the rung [`Rung::Compliant`](super::Rung::Compliant).
-    pub law: Option<Law>,
-}
-
-impl Contact {
-    /// Rigid contact with a restitution.
-    pub const fn rigid(restitution: f64) -> Contact {
-        Contact { restitution, law: None }
-    }
-}
-
 /// Interface between two bodies, or a body and the ground.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Interface {
     /// Striker and intermediate piston.
     Striker,
@@ -110,6 +130,16 @@ impl Interface {
     /// All interfaces, in the order in which a blow passes them.
     pub const ALL: [Interface; 4] =
         [Interface::Striker, Interface::Bit, Interface::Damper, Interface::Buffer];
+
+    /// Both sides, in the direction of a blow.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Interface::Striker => "striker on intermediate piston",
+            Interface::Bit => "intermediate piston on bit",
+            Interface::Damper => "bit on damper",
+            Interface::Buffer => "intermediate piston on buffer",
+        }
+    }
 }
 
 impl Machine {
@@ -140,12 +170,9 @@ impl Machine {
                 critical_ratio: 0.5,
                 vents: vec![Vent { position: 0.009, area: 0.0 }, Vent { position: 0.013, area: 1.6e-6 }],
             },
-            striker: Striker { mass: 0.14, friction: 2.0, damping: 0.55 },
-            intermediate: 0.28,
-            bit: Bit { mass: 0.43, length: 0.3 },
-            strike: 0.0202,
-            travel: 0.0055,
-            clearance: 0.0,
+            striker: Striker { mass: 0.14, friction: 2.0, damping: 0.55, strike: 0.0202 },
+            intermediate: Intermediate { mass: 0.28, travel: 0.0055 },
+            bit: Bit { mass: 0.43, length: 0.3, clearance: 0.0 },
             contacts: [
                 contact,
                 contact,
@@ -160,45 +187,5 @@ impl Machine {
     pub fn at_speed(mut self, frequency: f64) -> Machine {
         self.crank.frequency = frequency;
         self
-    }
-
-    /// Checks that the numbers are possible.
-    ///
-    /// # Errors
-    /// If one is not; the error names it.
-    pub fn check(&self) -> Result<()> {
-        self.crank.check()?;
-        self.cushion.check()?;
-        self.flow.check()?;
-        for (name, mass) in [
-            ("striker", self.striker.mass),
-            ("intermediate piston", self.intermediate),
-            ("bit", self.bit.mass),
-        ] {
-            number(&format!("mass of the {name}"), mass, "kg", NumberRange::AboveZero)?;
-        }
-        // Impulses pass the chain by the ratios of its masses.
-        let masses = [self.striker.mass, self.intermediate, self.bit.mass];
-        let (least, most) = masses.iter().fold((f64::INFINITY, 0.0f64), |(a, b), m| (a.min(*m), b.max(*m)));
-        if most > MOST_RATIO * least {
-            let found = format!("masses from {least} kg to {most} kg");
-            return Err(Error::usage(found, "masses within a factor of a million"));
-        }
-        number("seal friction", self.striker.friction, "N", NumberRange::Zero)?;
-        number("seal damping", self.striker.damping, "N s/m", NumberRange::Zero)?;
-        number("bit length", self.bit.length, "m", NumberRange::AboveZero)?;
-        number("strike position", self.strike, "m", NumberRange::Any)?;
-        number("travel of the intermediate piston", self.travel, "m", NumberRange::AboveZero)?;
-        number("clearance of the bit", self.clearance, "m", NumberRange::Zero)?;
-        number("gravity along the axis", self.gravity, "m/s²", NumberRange::Any)?;
-        for contact in &self.contacts {
-            number("restitution", contact.restitution, "", NumberRange::Part)?;
-            contact.law.map_or(Ok(()), |law| law.check())?;
-        }
-        if self.cushion.length + self.strike <= 0.0 {
-            let found = format!("strike position is {} m", self.strike);
-            return Err(Error::usage(found, "a position in front of the piston at top dead centre"));
-        }
-        Ok(())
     }
 }

@@ -5,7 +5,7 @@ use super::machine::{Interface, Machine};
 use super::plant::{GAS, PRESSURE, Plant, SIZE, STRIKER_WORK, Stage, Vector, Watch, halves};
 use super::run::Start;
 use super::rungs::Rung;
-use super::turn::{Book, Impact, Sample, Turn};
+use super::turn::{Book, Extremes, Impact, Sample, Turn};
 use crate::least::{NumberRange, number};
 use std::f64::consts::TAU;
 use vibro_math::border;
@@ -26,6 +26,8 @@ pub(super) const PARTING: f64 = 1e-13;
 /// Most events in a turn, and most impacts in one instant.
 const MOST_EVENTS: usize = 20_000;
 const MOST_SWEEPS: usize = 2_000;
+/// Instants of a step at which a force of a curved contact is looked at.
+const LOOKS: usize = 8;
 /// Nodes and weights on 0 to 1 of the quadrature of Gauss with four nodes, exact for a step's polynomial.
 const GAUSS: [(f64, f64); 4] = [
     (0.069_431_844_202_973_71, 0.173_927_422_568_726_93),
@@ -46,8 +48,9 @@ pub(super) struct Motion {
     tolerance: Tolerance<SIZE>,
     /// First touch of each compliant contact: time since the start, and velocities.
     touched: [(f64, [f64; 2]); 4],
-    /// Accepted steps so far.
+    /// Accepted steps so far, and the most that may be.
     pub steps: usize,
+    pub most_steps: usize,
     turn: Turn,
 }
 
@@ -92,6 +95,7 @@ impl Motion {
             tolerance: Tolerance { relative, floor },
             touched: [(0.0, [0.0; 2]); 4],
             steps: 0,
+            most_steps: usize::MAX,
             turn: Turn::default(),
         };
         motion.collide()?;
@@ -109,19 +113,20 @@ impl Motion {
         self.turns as f64 * self.plant.machine.crank.period() + self.time
     }
 
-    /// Follows a whole turn; `samples` states at even angles are kept.
-    pub fn turn(&mut self, samples: usize) -> Result<Turn> {
+    /// Follows a whole turn; `samples` states at even angles are kept. With `None` impulses, extremes and the
+    /// loss by flow are not computed either.
+    pub fn turn(&mut self, samples: Option<usize>) -> Result<Turn> {
         self.y[STRIKER_WORK..].fill(0.0);
         let (before, air) = (self.energies(), self.stored_air());
         self.fly(samples)?;
         let after = self.energies();
         let [kinetic, potential, elastic] = std::array::from_fn(|i| after[i] - before[i]);
         let air = self.stored_air() - air;
-        let [.., striker, piston, seal, contacts] = self.y;
+        let [.., piston, seal, contacts] = self.y;
         let mut turn = self.take_turn();
         let impacts = turn.book.impacts;
-        let residual = striker - kinetic - potential - elastic - impacts - contacts - seal;
-        let flow = piston - striker - air;
+        let flow = turn.book.flow;
+        let residual = piston - kinetic - potential - elastic - air - impacts - contacts - seal - flow;
         turn.book =
             Book { piston, kinetic, potential, elastic, air, impacts, contacts, seal, flow, residual };
         self.turns += 1;
@@ -133,7 +138,7 @@ impl Motion {
     pub fn take_turn(&mut self) -> Turn {
         let mut turn = std::mem::take(&mut self.turn);
         let (crank, [striker, .., bit]) = (self.plant.machine.crank, self.plant.chain.masses);
-        turn.find_blow(crank.at(crank.fastest())[1], striker, bit);
+        turn.blow = Turn::blow_among(&turn.impacts, crank.top_speed(), striker, bit);
         let [_, v] = halves(&self.y);
         turn.momentum = v.iter().zip(&self.plant.chain.masses).map(|(v, mass)| v * mass).sum();
         turn
@@ -152,7 +157,7 @@ impl Motion {
     }
 
     /// Integrates to the end of the turn, from event to event.
-    fn fly(&mut self, samples: usize) -> Result<()> {
+    fn fly(&mut self, samples: Option<usize>) -> Result<()> {
         let period = self.plant.machine.crank.period();
         for _ in 0..MOST_EVENTS {
             let (y, plant) = (self.y, &self.plant);
@@ -163,10 +168,15 @@ impl Motion {
             while event.is_none() && self.time < period {
                 let step = integrator.step(|t, y| self.plant.rate(t, y), period)?;
                 self.steps += 1;
+                if self.steps > self.most_steps {
+                    return Err(too_many("integration steps", self.most_steps, self.now()));
+                }
                 self.next_step = integrator.next_step();
                 event = self.first_event(&step);
                 let duration = event.map_or(step.duration, |(t, _)| t);
-                self.record(&step, duration, samples);
+                if let Some(samples) = samples {
+                    self.record(&step, duration, samples);
+                }
                 self.y = step.at(duration);
                 self.time = if event.is_none() { integrator.time() } else { step.start + duration };
                 if self.plant.volume(self.time, &self.y) <= self.plant.machine.cushion.dead_volume {
@@ -209,8 +219,8 @@ impl Motion {
         first
     }
 
-    /// Fall of a holding force that depends on a curved contact: it is found where it is below zero at the
-    /// end of the step.
+    /// Fall of a holding force that depends on a curved contact, in the polynomial of the step. It is looked
+    /// for at [`LOOKS`] instants: a contact lasts some twenty steps, so that it is smooth between them.
     fn curved_fall(&self, watch: Watch, step: &Step<SIZE>) -> Option<f64> {
         let reserve = |t: f64| match watch {
             Watch::Slips(direction) => {
@@ -219,15 +229,23 @@ impl Motion {
             Watch::Pulls(k) => self.plant.hold(k, &step.at(t)),
             _ => 0.0,
         };
-        (reserve(step.duration) < 0.0).then(|| border(0.0, step.duration, |t| reserve(t) >= 0.0))
+        let look = |i: usize| step.duration * i as f64 / LOOKS as f64;
+        let fallen = (1..=LOOKS).find(|i| reserve(look(*i)) < 0.0)?;
+        Some(border(look(fallen - 1), look(fallen), |t| reserve(t) >= 0.0))
     }
 
     /// Adds impulses and samples of a step up to `duration` (s).
     fn record(&mut self, step: &Step<SIZE>, duration: f64, samples: usize) {
         for (node, weight) in GAUSS {
             let y = step.at(node * duration);
-            self.turn.handle += weight * duration * self.plant.handle_force(&y);
-            self.turn.damper += weight * duration * self.plant.contact_force(Interface::Damper as usize, &y);
+            let (handle, damper) =
+                (self.plant.handle_force(&y), self.plant.contact_force(Interface::Damper as usize, &y));
+            let turn = &mut self.turn;
+            turn.handle += weight * duration * handle;
+            turn.damper += weight * duration * damper;
+            turn.book.flow += weight * duration * self.plant.flow_loss(step.start + node * duration, &y);
+            let here = Extremes { handle: [handle; 2], damper: [damper; 2], pressure: [y[PRESSURE]; 2] };
+            turn.extremes = turn.extremes.with(&here);
         }
         let period = self.plant.machine.crank.period();
         while self.turn.samples.len() < samples {
@@ -416,5 +434,5 @@ impl Motion {
 
 fn too_many(what: &str, most: usize, time: f64) -> Error {
     Error::refused(format!("more than {most} {what}, at {} s", significant(time, 6)))
-        .hint("give the impacts some loss: restitution below 1")
+        .hint("give the impacts some loss (restitution below 1), or choose a higher speed")
 }

@@ -365,6 +365,32 @@ impl Plant {
         indented.map(energy).sum()
     }
 
+    /// Mass flow ṁ in kg/s into the cushion of this volume (m³), and `RTṁ` of what flows, in W.
+    #[inline]
+    fn flow(&self, volume: f64, y: &Vector) -> [f64; 2] {
+        let [start, slope] = self.conductance;
+        let conductance = start + slope * y[0];
+        if conductance == 0.0 {
+            return [0.0; 2];
+        }
+        let cushion = &self.machine.cushion;
+        let temperature = y[PRESSURE] * volume / (y[GAS] * GAS_CONSTANT);
+        let pressures = [y[PRESSURE], cushion.ambient];
+        let temperatures = [temperature, cushion.temperature];
+        let [flow, at] = self.machine.flow.rate(self.flow, conductance, pressures, temperatures);
+        [flow, GAS_CONSTANT * at * flow]
+    }
+
+    /// Power in W that the air loses by flow, at a time (s) of the turn: `−∂E/∂p (n/V) RTṁ`.
+    pub fn flow_loss(&self, t: f64, y: &Vector) -> f64 {
+        let [_, filled] = self.flow(self.volume(t, y), y);
+        if filled == 0.0 {
+            return 0.0;
+        }
+        let cushion = &self.machine.cushion;
+        -cushion.exponent * cushion.expansion(y[PRESSURE]) * filled
+    }
+
     /// Derivative of the state.
     #[inline]
     pub fn rate(&self, t: f64, y: &Vector) -> Vector {
@@ -397,19 +423,10 @@ impl Plant {
         }
         let volume = cushion.volume(y[0], piston);
         let growth = cushion.area * (y[3] - piston_velocity);
-        let [start, slope] = self.conductance;
         let pressure = y[PRESSURE];
-        let conductance = start + slope * y[0];
-        let mut filling = -pressure * growth;
-        if conductance != 0.0 {
-            let temperature = pressure * volume / (y[GAS] * GAS_CONSTANT);
-            let pressures = [pressure, cushion.ambient];
-            let temperatures = [temperature, cushion.temperature];
-            let [flow, at] = m.flow.rate(self.flow, conductance, pressures, temperatures);
-            rate[GAS] = flow;
-            filling += GAS_CONSTANT * at * flow;
-        }
-        rate[PRESSURE] = cushion.exponent / volume * filling;
+        let [flow, filled] = self.flow(volume, y);
+        rate[GAS] = flow;
+        rate[PRESSURE] = cushion.exponent / volume * (filled - pressure * growth);
         let push = (pressure - cushion.ambient) * cushion.area;
         rate[STRIKER_WORK] = push * y[3];
         rate[PISTON_WORK] = push * piston_velocity;

@@ -3,7 +3,8 @@
 use super::motion::Motion;
 use super::plant::STRIKER_WORK;
 use super::{
-    Bit, Book, Contact, Crank, Cushion, Flow, Impact, Interface, Machine, Rung, Start, Striker, Turn, Vent,
+    Bit, Book, Contact, Crank, Cushion, Flow, Impact, Interface, Intermediate, Machine, Rung, Start, Striker,
+    Turn, Vent,
 };
 use crate::law::Law;
 
@@ -40,12 +41,9 @@ fn machine(rows: &[(&str, Vec<f64>)]) -> (Machine, Start) {
             critical_ratio: m[10],
             vents: vents.map(|pair| Vent { position: pair[0], area: pair[1] }).collect(),
         },
-        striker: Striker { mass: m[11], friction: m[12], damping: m[13] },
-        intermediate: m[14],
-        bit: Bit { mass: m[15], length: 0.3 },
-        strike: m[16],
-        travel: m[17],
-        clearance: m[18],
+        striker: Striker { mass: m[11], friction: m[12], damping: m[13], strike: m[16] },
+        intermediate: Intermediate { mass: m[14], travel: m[17] },
+        bit: Bit { mass: m[15], length: 0.3, clearance: m[18] },
         contacts: contacts.try_into().unwrap(),
         gravity: m[19],
     };
@@ -67,7 +65,7 @@ fn ten_drawn_machines_move_as_in_an_independent_integration() {
     for (index, rows) in machines.into_iter().enumerate() {
         let (machine, start) = machine(rows);
         let mut motion = Motion::new(&machine, Rung::Compliant, &start, 1e-13).unwrap();
-        let turns: Vec<Turn> = (0..2).map(|_| motion.turn(0).unwrap()).collect();
+        let turns: Vec<Turn> = (0..2).map(|_| motion.turn(Some(0)).unwrap()).collect();
         let impacts: Vec<&Impact> = turns.iter().flat_map(|turn| &turn.impacts).collect();
         let expected: Vec<_> = rows.iter().filter(|row| row.0 == "impact").map(|row| &row.1).collect();
         assert_eq!(impacts.len(), expected.len(), "machine {index}");

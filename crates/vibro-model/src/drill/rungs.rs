@@ -2,10 +2,12 @@
 
 use super::machine::Machine;
 use super::run::{Course, Run, run};
+use serde::{Deserialize, Serialize};
 use vibro_record::Result;
 
 /// Rung of the ladder: how much of the machine the model knows. Each has all of the one before.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Rung {
     /// No air, nothing to integrate: in every turn the piston throws the striker at its own largest speed, on
     /// bodies at rest with rigid contacts.
@@ -24,6 +26,17 @@ impl Rung {
     /// All rungs, the simplest first.
     pub const ALL: [Rung; 5] =
         [Rung::Prescribed, Rung::Sealed, Rung::Vented, Rung::Friction, Rung::Compliant];
+
+    /// Name in files and tables.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Rung::Prescribed => "prescribed",
+            Rung::Sealed => "sealed",
+            Rung::Vented => "vented",
+            Rung::Friction => "friction",
+            Rung::Compliant => "compliant",
+        }
+    }
 }
 
 /// A rung with its answer.
@@ -33,6 +46,8 @@ pub struct Step {
     pub rung: Rung,
     /// Its run; `None` where the model has no answer for this machine.
     pub run: Option<Run>,
+    /// Reason why it has none.
+    pub refused: Option<String>,
     /// Largest relative difference from the fullest rung in blow energy, energy of the bit and rate; `None`
     /// without an answer. Infinite where one of the two strikes and the other does not.
     pub error: Option<f64>,
@@ -57,12 +72,15 @@ pub fn climb(machine: &Machine, course: &Course, tolerance: f64) -> Result<Ladde
     let lower = Rung::ALL.into_iter().filter(|rung| *rung != Rung::Compliant);
     let mut steps: Vec<Step> = lower
         .map(|rung| {
-            let run = run(machine, rung, course).ok();
+            let (run, refused) = match run(machine, rung, course) {
+                Ok(run) => (Some(run), None),
+                Err(why) => (None, Some(why.why())),
+            };
             let error = run.as_ref().map(|run| error(run, &fullest));
-            Step { rung, run, error }
+            Step { rung, run, refused, error }
         })
         .collect();
-    steps.push(Step { rung: Rung::Compliant, run: Some(fullest), error: Some(0.0) });
+    steps.push(Step { rung: Rung::Compliant, run: Some(fullest), refused: None, error: Some(0.0) });
     let good = steps.iter().filter(|step| step.error.is_some_and(|error| error <= tolerance));
     let cost = |step: &&Step| step.run.as_ref().map_or(usize::MAX, |run| run.steps);
     let chosen = good.min_by_key(cost).map_or(Rung::Compliant, |step| step.rung);

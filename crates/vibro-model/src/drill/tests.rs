@@ -2,7 +2,9 @@ use super::*;
 
 /// The example without gravity, far from all contacts.
 fn afloat() -> Machine {
-    Machine { strike: 1.0, travel: 0.5, gravity: 0.0, ..Machine::example() }
+    let mut machine = Machine { gravity: 0.0, ..Machine::example() };
+    (machine.striker.strike, machine.intermediate.travel) = (1.0, 0.5);
+    machine
 }
 
 fn course(turns: usize, tolerance: f64) -> Course {
@@ -62,7 +64,7 @@ fn a_sealed_cushion_keeps_its_polytrope_and_gives_back_its_work() {
 #[test]
 fn energy_and_momentum_balance_on_every_rung() {
     let machine = Machine::example();
-    let weight = machine.gravity * (machine.striker.mass + machine.intermediate + machine.bit.mass);
+    let weight = machine.gravity * (machine.striker.mass + machine.intermediate.mass + machine.bit.mass);
     for rung in &Rung::ALL[1..] {
         for speed in [7.0, 20.0, 45.0] {
             let machine = machine.clone().at_speed(speed);
@@ -91,7 +93,7 @@ fn energy_and_momentum_balance_on_every_rung() {
 #[test]
 fn without_flow_the_flow_model_is_the_sealed_one() {
     let mut machine = Machine::example();
-    let start = Some(at([0.0, machine.strike, machine.strike], [0.0; 3]));
+    let start = Some(at([0.0, machine.striker.strike, machine.striker.strike], [0.0; 3]));
     machine.flow.vents.clear();
     let course = Course { start, ..course(4, 1e-12) };
     let sealed = run(&machine, Rung::Sealed, &course).unwrap();
@@ -242,14 +244,15 @@ fn impossible_machines_and_starts_are_refused() {
         run(machine, Rung::Friction, &Course { start, ..Course::turns(2) }).err().unwrap().to_string()
     };
     let mut machine = Machine::example();
-    let overlap = Some(at([machine.strike + 1e-3, machine.strike, machine.strike], [0.0; 3]));
+    let overlap =
+        Some(at([machine.striker.strike + 1e-3, machine.striker.strike, machine.striker.strike], [0.0; 3]));
     let found = refused(&machine, overlap);
     assert!(found.contains("overlap by 0.00100 m"), "{found}");
-    let behind = Some(at([-0.03, machine.strike, machine.strike], [0.0; 3]));
+    let behind = Some(at([-0.03, machine.striker.strike, machine.striker.strike], [0.0; 3]));
     assert!(refused(&machine, behind).contains("behind the piston"));
     machine.crank.rod = 0.01;
-    assert!(refused(&machine, None).contains("rod length is 0.01 m"));
+    assert!(refused(&machine, None).contains("crank.rod is 0.01 m"));
     machine = Machine::example();
     machine.flow.vents.reverse();
-    assert!(refused(&machine, None).contains("vent positions"));
+    assert!(refused(&machine, None).contains("flow.vents with positions"));
 }

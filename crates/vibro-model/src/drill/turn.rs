@@ -1,9 +1,10 @@
 //! One turn of the crank: impacts, blow, energies, impulses and the state at even angles.
 
 use super::machine::Interface;
+use serde::Serialize;
 
 /// Impact of two bodies.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Impact {
     /// Time in s since the start, of the first touch.
     pub time: f64,
@@ -28,7 +29,7 @@ impl Impact {
 }
 
 /// Blow of the striker.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Blow {
     /// Time in s since the start.
     pub time: f64,
@@ -42,7 +43,7 @@ pub struct Blow {
 }
 
 /// Energy book of a turn, in J. Changes are those from the turn's start to its end.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
 pub struct Book {
     /// Work of the piston on the air, against ambient pressure.
     pub piston: f64,
@@ -60,14 +61,14 @@ pub struct Book {
     pub contacts: f64,
     /// Loss in the seal.
     pub seal: f64,
-    /// Loss by flow through leakage and vents.
+    /// Loss by flow through leakage and vents: −∂E/∂p of the air's energy times the pressure that flows in.
     pub flow: f64,
     /// Work of the piston less all other entries; it shows the error of the integration.
     pub residual: f64,
 }
 
 /// State of the machine at an instant.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Sample {
     /// Angle θ of the crank in rad since top dead centre.
     pub angle: f64,
@@ -87,15 +88,47 @@ pub struct Sample {
     pub damper: f64,
 }
 
+/// Smallest and largest values over a turn, without the impulses of rigid impacts.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Extremes {
+    /// Force in N on the housing towards the bit.
+    pub handle: [f64; 2],
+    /// Force in N on the damper.
+    pub damper: [f64; 2],
+    /// Pressure in Pa of the cushion.
+    pub pressure: [f64; 2],
+}
+
+impl Extremes {
+    pub(super) const NONE: [f64; 2] = [f64::INFINITY, f64::NEG_INFINITY];
+
+    /// Extremes of both.
+    pub fn with(&self, other: &Extremes) -> Extremes {
+        let both = |a: [f64; 2], b: [f64; 2]| [a[0].min(b[0]), a[1].max(b[1])];
+        Extremes {
+            handle: both(self.handle, other.handle),
+            damper: both(self.damper, other.damper),
+            pressure: both(self.pressure, other.pressure),
+        }
+    }
+}
+
+impl Default for Extremes {
+    fn default() -> Extremes {
+        Extremes { handle: Extremes::NONE, damper: Extremes::NONE, pressure: Extremes::NONE }
+    }
+}
+
 /// A turn of the crank, from one top dead centre to the next.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct Turn {
     /// Impacts that end in this turn, in the order of their ends.
     pub impacts: Vec<Impact>,
     /// Chatters that were completed: rebounds too small to follow, summed as a geometric series.
     pub chatters: usize,
     /// Blow of the turn: the impact of the fastest striker, if it is faster than the driving piston ever is.
-    /// A slower one is a landing of a striker that follows the piston.
+    /// A slower one is a landing of a striker that follows the piston. [`Run::blows`](super::Run::blows)
+    /// counts blows about top dead centre once.
     pub blow: Option<Blow>,
     /// Energies.
     pub book: Book,
@@ -103,6 +136,8 @@ pub struct Turn {
     pub handle: f64,
     /// Impulse in N s on the damper, with the impulses of rigid impacts.
     pub damper: f64,
+    /// Extremes of forces and pressure.
+    pub extremes: Extremes,
     /// Momentum in kg m/s of striker, intermediate piston and bit at its end.
     pub momentum: f64,
     /// States at even angles; the number is that of [`Course::samples`](super::Course::samples).
@@ -110,17 +145,18 @@ pub struct Turn {
 }
 
 impl Turn {
-    /// The blow among the impacts: the fastest striker, if it reaches `least` (m/s). Masses in kg.
-    pub(super) fn find_blow(&mut self, least: f64, striker: f64, bit: f64) {
-        let of = |interface| self.impacts.iter().filter(move |impact| impact.interface == interface);
+    /// Blow among impacts in the order of their ends: the fastest striker, if it reaches `least` (m/s).
+    /// Masses in kg.
+    pub(super) fn blow_among(impacts: &[Impact], least: f64, striker: f64, bit: f64) -> Option<Blow> {
+        let of = |interface| impacts.iter().filter(move |impact| impact.interface == interface);
         let fastest = of(Interface::Striker).max_by(|a, b| a.before[0].total_cmp(&b.before[0]));
-        let Some(blow) = fastest.filter(|blow| blow.before[0] >= least) else { return };
+        let blow = fastest.filter(|blow| blow.before[0] >= least)?;
         let first = of(Interface::Bit).find(|impact| impact.end() >= blow.time).map(Impact::end);
         let bit_energy = first.map(|end| {
             let same = of(Interface::Bit).filter(|impact| impact.end() == end && impact.end() >= blow.time);
             same.map(|impact| 0.5 * bit * impact.after[1].powi(2)).fold(0.0, f64::max)
         });
         let speed = blow.before[0];
-        self.blow = Some(Blow { time: blow.time, speed, energy: 0.5 * striker * speed * speed, bit_energy });
+        Some(Blow { time: blow.time, speed, energy: 0.5 * striker * speed * speed, bit_energy })
     }
 }

@@ -2,15 +2,16 @@
 
 use super::{Buffer, ContactKeys, Scene, Springs};
 use crate::excitation::{Excitation, Part};
+use crate::given::{Given, leaves};
 use crate::least::{NumberRange, number};
 use crate::parameter::Parameter;
 use crate::rig::Rig;
 use crate::uncertainty::Uncertainty;
 use serde::Deserialize;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use toml::de::DeTable;
-use toml::{Spanned, Table, Value};
-use vibro_record::{Error, Place, Result, Written, nearest};
+use toml::{Table, Value};
+use vibro_record::{Error, Result, Written, nearest};
 
 /// Kinds of excitation, each with its keys.
 const KINDS: [(&str, &[&str]); 4] = [
@@ -57,11 +58,7 @@ struct ExcitationKeys {
 /// ```
 #[derive(Debug, Clone, Default)]
 pub struct Draft {
-    path: Option<PathBuf>,
-    text: String,
-    table: Table,
-    /// Keys that were set after the text was read.
-    later: Vec<String>,
+    given: Given,
 }
 
 impl Draft {
@@ -71,13 +68,9 @@ impl Draft {
     /// If it cannot be read, is not TOML, or holds an unknown key or a value of the wrong kind.
     pub fn from_path(path: impl AsRef<Path>) -> Result<Draft> {
         let path = path.as_ref();
-        let bytes = std::fs::read(path).map_err(|e| Error::io("open", path, e))?;
-        let text = String::from_utf8(bytes).map_err(|e| {
-            let place = Place::byte(path, e.utf8_error().valid_up_to() as u64);
-            Error::input(place, "bytes that are not UTF-8", "a rig as TOML text")
-        })?;
-        let table = table(&text).map_err(|e| campaign(path, &text).unwrap_or(e).in_file(path))?;
-        Ok(Draft { path: Some(path.to_owned()), text, table, later: Vec::new() })
+        let text = Given::read(path, "a rig as TOML text")?;
+        let table = table(&text).map_err(|e| other_file(path, &text).unwrap_or(e).in_file(path))?;
+        Ok(Draft { given: Given::new(Some(path.to_owned()), text, table) })
     }
 
     /// Reads TOML text.
@@ -85,7 +78,7 @@ impl Draft {
     /// # Errors
     /// If it is not TOML, or holds an unknown key or a value of the wrong kind.
     pub fn from_toml(text: &str) -> Result<Draft> {
-        Ok(Draft { path: None, text: text.to_owned(), table: table(text)?, later: Vec::new() })
+        Ok(Draft { given: Given::new(None, text.to_owned(), table(text)?) })
     }
 
     /// Sets one key by the text `key=value`, as it is typed; keys of a table have a dot:
@@ -94,28 +87,10 @@ impl Draft {
     /// # Errors
     /// If the key is unknown or the value of the wrong kind.
     pub fn set(&mut self, assignment: &str) -> Result<()> {
-        let (key, value) = assignment.split_once('=').unwrap_or_default();
-        let (key, value) = (key.trim(), value.trim());
-        if key.is_empty() || value.is_empty() || value.contains('\n') {
-            let expected = "KEY=VALUE, such as gap=0.5e-3 or excitation.force=0.5";
-            return Err(Error::usage(format!("{assignment:?} sets no key"), expected));
-        }
-        // `.3` and `5.` are numbers here, though not in TOML; text that is neither TOML nor a number is a
-        // word.
-        let plain = format!("{key} = {value}");
-        let text = match value.parse::<f64>() {
-            _ if DeTable::parse(&plain).is_ok() => plain,
-            Ok(number) => format!("{key} = {number:?}"),
-            Err(_) => format!("{key} = {value:?}"),
-        };
-        let given = table(&text).map_err(|e| e.aside(format!("in the assignment {assignment}")))?;
-        for (name, value) in given {
-            match value {
-                Value::Table(inner) => {
-                    inner.into_iter().for_each(|(key, value)| self.put(&format!("{name}.{key}"), value));
-                }
-                value => self.put(&name, value),
-            }
+        let mut later = Given::default();
+        later.set(assignment, "", table)?;
+        for (key, value) in leaves("", later.table) {
+            self.put(&key, value);
         }
         Ok(())
     }
@@ -124,28 +99,18 @@ impl Draft {
     /// keys that do not belong to it. [`Draft::set`] checks, and takes text.
     pub fn put(&mut self, key: &str, value: impl Into<Value>) {
         let value = value.into();
-        self.later.push(key.to_owned());
-        let Some((section, inner)) = key.split_once('.') else {
-            self.table.insert(key.to_owned(), value);
-            return;
-        };
-        let section = self.table.entry(section).or_insert_with(|| Value::Table(Table::new()));
-        // A section that is not a table has been refused before.
-        let Value::Table(section) = section else { return };
         if let Some((_, belonging)) =
             KINDS.iter().find(|k| key == "excitation.kind" && value.as_str() == Some(k.0))
+            && let Some(Value::Table(section)) = self.given.table.get_mut("excitation")
         {
             section.retain(|key, _| belonging.contains(&key));
         }
-        section.insert(inner.to_owned(), value);
+        self.given.put(key, value);
     }
 
     /// Whether a key was given.
     pub fn has(&self, key: &str) -> bool {
-        match key.split_once('.') {
-            Some((section, key)) => self.table.get(section).is_some_and(|section| section.get(key).is_some()),
-            None => self.table.contains_key(key),
-        }
+        self.given.get(key).is_some()
     }
 
     /// Keys of the rig that were not given and take the values of [`Rig::thesis`].
@@ -160,11 +125,11 @@ impl Draft {
     /// shows the line in the file.
     pub fn scene(&self) -> Result<Scene> {
         let (sections, rig_keys): (Table, Table) =
-            self.table.clone().into_iter().partition(|(key, _)| Scene::TABLES.contains(&key.as_str()));
+            self.given.table.clone().into_iter().partition(|(key, _)| Scene::TABLES.contains(&key.as_str()));
         let rig = Rig::deserialize(rig_keys).map_err(|e| unread(&e))?;
         let keys = Sections::deserialize(sections).map_err(|e| unread(&e))?;
         if let Some((key, error)) = rig.fault() {
-            return Err(self.at(key, error));
+            return Err(self.given.at(key, error));
         }
         let contact = keys.contact.unwrap_or_default();
         for (key, value, unit, least) in [
@@ -176,16 +141,17 @@ impl Draft {
             ("springs.cubic2", keys.springs.map(|s| s.cubic2), "N/m³", NumberRange::Any),
         ] {
             let checked = value.map_or(Ok(()), |value| number(key, value, unit, least));
-            checked.map_err(|error| self.at(key, error))?;
+            checked.map_err(|error| self.given.at(key, error))?;
         }
-        let contact = contact.resolved().map_err(|(key, e)| self.at(&format!("contact.{key}"), e))?;
-        let excitation_keys = self.table.get("excitation").and_then(Value::as_table);
+        let contact = contact.resolved().map_err(|(key, e)| self.given.at(&format!("contact.{key}"), e))?;
+        let excitation_keys = self.given.table.get("excitation").and_then(Value::as_table);
         let excitation = excitation_keys.map(|section| self.excitation(section.clone())).transpose()?;
         let contact = Some(contact).filter(|c| *c != ContactKeys::default());
         let springs = keys.springs.filter(|s| *s != Springs::default());
         for (parameter, std) in keys.uncertainty.iter().flat_map(Uncertainty::all) {
             let key = format!("uncertainty.{}", parameter.name());
-            number(&key, std, parameter.unit(), NumberRange::Zero).map_err(|error| self.at(&key, error))?;
+            number(&key, std, parameter.unit(), NumberRange::Zero)
+                .map_err(|error| self.given.at(&key, error))?;
         }
         let (buffer, uncertainty) = (keys.buffer, keys.uncertainty);
         Ok(Scene { rig, excitation, contact, buffer, springs, uncertainty })
@@ -200,12 +166,14 @@ impl Draft {
         let kind = kind.unwrap_or(inferred.map_or("sine", |(_, kind)| kind)).to_owned();
         let Some((_, belonging)) = KINDS.iter().find(|k| k.0 == kind) else {
             let found = format!("the excitation {kind:?} is not known");
-            return Err(self.at("excitation.kind", Error::usage(found, "sine, impulse, pulse or sines")));
+            return Err(self
+                .given
+                .at("excitation.kind", Error::usage(found, "sine, impulse, pulse or sines")));
         };
         if let Some(stray) = section.keys().find(|key| *key != "kind" && !belonging.contains(&key.as_ref())) {
             let found = format!("excitation.{stray} does not belong to the excitation {kind:?}");
             let expected = format!("its keys: {}", belonging.join(", "));
-            return Err(self.at(&format!("excitation.{stray}"), Error::usage(found, expected)));
+            return Err(self.given.at(&format!("excitation.{stray}"), Error::usage(found, expected)));
         }
         // Several sines have their own frequencies; `frequency` scales all of them, with their ratios kept.
         let common_frequency = if kind == "sines" { section.remove("frequency") } else { None };
@@ -215,7 +183,7 @@ impl Draft {
         if let Some(key) = belonging.iter().find(missing) {
             let found = format!("the excitation {kind:?} has no {key}");
             let error = Error::usage(found, format!("excitation.{key}")).setting(key);
-            let error = self.at("excitation.kind", error);
+            let error = self.given.at("excitation.kind", error);
             return Err(error.hint(format!("state {key}, in [excitation] of a rig's file")));
         }
         section.insert("kind".to_owned(), Value::String(kind));
@@ -224,27 +192,9 @@ impl Draft {
             common_frequency.map_or_else(|| excitation.clone(), |hz| excitation.at_frequency(hz));
         excitation.check().map_err(|error| {
             let key = error.settings().next().unwrap_or("kind");
-            self.at(&format!("excitation.{key}"), error)
+            self.given.at(&format!("excitation.{key}"), error)
         })?;
         Ok(excitation)
-    }
-
-    /// Adds the line of the file to an error, if the value of the key comes from the file.
-    fn at(&self, key: &str, error: Error) -> Error {
-        let (section, inner) = key.split_once('.').map_or((None, key), |(s, k)| (Some(s), k));
-        let span = DeTable::parse(&self.text).ok().filter(|_| !self.later.iter().any(|k| k == key)).and_then(
-            |all| {
-                let place = match section {
-                    Some(section) => all.get_ref().get(section)?.get_ref().as_table()?,
-                    None => all.get_ref(),
-                };
-                place.keys().find(|name| name.get_ref() == inner).map(Spanned::span)
-            },
-        );
-        match span {
-            Some(span) => self.path.iter().fold(error.excerpt(&self.text, span), Error::in_file),
-            None => error,
-        }
     }
 }
 
@@ -273,9 +223,15 @@ fn unread(error: &toml::de::Error) -> Error {
     Error::usage(error.message(), "")
 }
 
-/// Error for a campaign in place of a rig file; a campaign has the rig in a table, or lists of tables.
-fn campaign(path: &Path, text: &str) -> Option<Error> {
+/// Error for a campaign or a hammer drill in place of a rig file; a campaign has the rig in a table, or lists
+/// of tables.
+fn other_file(path: &Path, text: &str) -> Option<Error> {
     let table: Table = toml::from_str(text).ok()?;
+    if table.get("drill").is_some_and(Value::is_table) {
+        let found = "[drill]: this is the impact unit of a hammer drill, not a rig";
+        let hint = format!("vibro model drill {}", path.display());
+        return Some(Error::usage(found, "the keys of a rig at the top").hint(hint));
+    }
     let (key, _) = table.iter().find(|(key, value)| *key == "rig" || value.is_array())?;
     let expected =
         "the keys of a rig at the top, and [excitation], [contact], [buffer], [springs], [uncertainty]";

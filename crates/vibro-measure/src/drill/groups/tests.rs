@@ -218,7 +218,7 @@ fn a_striker_whose_speed_varies_by_half_still_strikes() {
 fn what_is_not_known_of_an_offset_is_in_all_means_and_a_large_one_leaves_no_uncertainty() {
     let group = |value| {
         let found = grouped(&mut twenty(5.0, -1.0, 0.02), 20, &options(Some((0.1, 0.3))));
-        found.into_iter().next().unwrap().allowing(&Offset { value, std: Some(0.2) })
+        found.into_iter().next().unwrap().allowing(&Offset { value, std: Some(0.2) }, Some(0.1))
     };
     let small = group(0.4);
     let std = |e: &Option<Estimate>| e.as_ref().unwrap().std.unwrap();
