@@ -36,7 +36,7 @@ impl Rational {
             return None;
         }
         let scaled = Scaled::of(measured, part.clone(), starts, others);
-        let fit = scaled.from_starts(&self.weights)?;
+        let fit = scaled.refit(&self.weights)?;
         let others = rivals(measured, part, &scaled, &fit.parameters).into_iter();
         let rivals = others.filter(|(_, named)| *named != self.noise).map(|(noise, _)| noise).collect();
         Some(Again { scaled, fit, noise: self.weights.clone(), rivals })
@@ -52,7 +52,7 @@ impl Again<'_> {
 
 impl Scaled<'_> {
     /// The fit from the first guesses of frequency and damping.
-    pub(super) fn from_starts(&self, noise: &LineNoise) -> Option<Fit> {
+    pub(super) fn refit(&self, noise: &LineNoise) -> Option<Fit> {
         let mut p = vec![0.0; 4 * self.starts.len() + 4];
         (0..self.starts.len()).for_each(|m| p[4 * m + 1] = 1.0);
         self.linear(&mut p, &noise.each)?;

@@ -102,7 +102,7 @@ mod tests {
         let starts = [(100.5, 0.02)];
         let scaled = Scaled::of(&measured, 0..121, &starts, &[]);
         let noise = LineNoise::independent(vec![1.0; 121]);
-        let one = scaled.from_starts(&noise).unwrap();
+        let one = scaled.refit(&noise).unwrap();
         let second: Vec<Complex64> = frequency.iter().map(|f| poles[1].at(*f, 1) / scaled.height).collect();
         let found = scaled.beside(&noise, &one, &DVector::from_vec(noise.column(&second))).unwrap();
         let [f, zeta, constant, phase] = scaled.quantities(&found.parameters).try_into().unwrap();

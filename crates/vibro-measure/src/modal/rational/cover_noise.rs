@@ -12,7 +12,7 @@ impl Rational {
         let Again { scaled, fit, noise, rivals } = again;
         let own = scaled.quantities(&fit.parameters);
         for rival in rivals {
-            let Some(other) = scaled.from_starts(rival) else { continue };
+            let Some(other) = scaled.refit(rival) else { continue };
             let log_weight = 0.5 * (noise.unlikely(&fit.residuals) - rival.unlikely(&other.residuals));
             let variance = other.variance() * self.whiteness.inflation.powi(2);
             let covariance = scaled.covariance(&other.parameters, &other.cofactor, variance);

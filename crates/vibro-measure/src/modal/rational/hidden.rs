@@ -97,8 +97,8 @@ impl Normal {
     }
 }
 
-/// Priors of a height for a structure with real modal constants, and for any other; `highest` is the height of
-/// the highest mode.
+/// Priors of a height for a structure with real modal constants, and for any other; `highest` is the height
+/// of the highest mode.
 fn priors(highest: f64) -> [Vec<Normal>; 2] {
     [[1.0, REAL * REAL], [0.5, 0.5]].map(|parts| {
         let covariance =
@@ -180,8 +180,8 @@ impl Kernels {
 /// number of them.
 const BEYOND: f64 = 0.001;
 
-/// The least standard uncertainty from `least` on of which four hold all but [`BEYOND`] of a mixture of normal
-/// distributions (logarithm of the weight, mean, variance) about 0.
+/// The least standard uncertainty from `least` on of which four hold all but [`BEYOND`] of a mixture of
+/// normal distributions (logarithm of the weight, mean, variance) about 0.
 fn holding(mixture: &[(f64, f64, f64)], least: f64) -> f64 {
     let highest = mixture.iter().map(|part| part.0).fold(f64::NEG_INFINITY, f64::max);
     let total: f64 = mixture.iter().map(|part| (part.0 - highest).exp()).sum();
@@ -371,8 +371,8 @@ mod tests {
     use super::*;
 
     /// A second value with a chance of 1 % at 100 standard deviations: four standard uncertainties reach to
-    /// where 0.1 % lie beyond, a tenth of the second distribution, 1.282 above its mean. One of 0.05 % changes
-    /// nothing.
+    /// where 0.1 % lie beyond, a tenth of the second distribution, 1.282 above its mean. One of 0.05 %
+    /// changes nothing.
     #[test]
     fn four_standard_uncertainties_hold_an_unlikely_value() {
         let with = |chance: f64| holding(&[((1.0 - chance).ln(), 0.0, 1.0), (chance.ln(), 100.0, 1.0)], 2.0);
