@@ -37,6 +37,9 @@ pub const KINDS: &[Kind] = &[
     },
 ];
 
+/// Mass in kg that is stated.
+const MASS: f64 = 0.5;
+
 /// Kinds of pulses by their contact law and instrument.
 #[derive(Clone, Copy, PartialEq)]
 enum Family {
@@ -197,7 +200,8 @@ impl Sensor {
                 // The sensor's mode has a static gain of 1. It is integrated by half a step of x, a step of
                 // v, and half a step of x.
                 x += 0.5 * step * v;
-                v += step * (self.omega * self.omega * (force - x) - 2.0 * self.zeta * self.omega * v);
+                let middle = contact.at(t - 0.5 * step);
+                v += step * (self.omega * self.omega * (middle - x) - 2.0 * self.zeta * self.omega * v);
                 x += 0.5 * step * v;
                 force += self.ringing * (x - force);
             }
@@ -210,8 +214,8 @@ impl Sensor {
 }
 
 /// Draws a contact of a family as the sensor shows it, with noise, hum and rounding of the converter.
-/// Compares restitution, duration and approach velocity with the truth; for spring and damper also damping
-/// ratio and frequency.
+/// Compares restitution, duration, approach velocity, peak force and impulse with the truth; for spring and
+/// damper also damping ratio and frequency.
 fn draw(mix: &mut Mix, family: Family) -> Record {
     let law = draw_law(mix, family);
     let contact = Contact::of(law);
@@ -237,7 +241,8 @@ fn draw(mix: &mut Mix, family: Family) -> Record {
         Ok(low_pass) if sensor.corner > 0.0 => Instrument::LowPass(low_pass),
         _ => Instrument::Flat,
     };
-    let found = pulse(&trace("m/s^2", rate, shown), &PulseOptions { instrument, mass: None }).ok();
+    let mass = Some(MASS);
+    let found = pulse(&trace("m/s^2", rate, shown), &PulseOptions { instrument, mass }).ok();
     let found = found.as_ref();
     let mut record = Record::default();
     if family == Family::SpringDamper {
@@ -249,6 +254,13 @@ fn draw(mix: &mut Mix, family: Family) -> Record {
     record.answers.push(Answer::new("restitution", contact.restitution, found.map(|p| &p.restitution)));
     record.answers.push(Answer::new("duration", duration, found.map(|p| &p.duration)));
     record.answers.push(Answer::new("velocity", velocity, found.and_then(|p| p.initial_velocity.as_ref())));
+    record.answers.push(Answer::new(
+        "peak",
+        MASS * scale * peak(&contact.force),
+        found.and_then(|p| p.peak.as_ref()),
+    ));
+    let impulse = MASS * velocity * (1.0 + contact.restitution);
+    record.answers.push(Answer::new("impulse", impulse, found.and_then(|p| p.impulse.as_ref())));
     record
 }
 

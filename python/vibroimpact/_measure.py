@@ -309,15 +309,17 @@ def pulse(
     file or an argument is not what it should be.
 
     The answer: ``xi`` (damping ratio of the contact), ``frequency`` (undamped, Hz), ``restitution``,
-    ``duration`` (s), ``stiffness`` and ``damping`` with a mass, ``initial_velocity`` (m/s), every model in
-    ``fits``. ``pulse("a.csv", mass=0.125, low_pass="none").duration``. A number has ``.value``, ``.std``,
-    ``.unit`` and ``.interval()``; ``tables`` are printed, ``tables[0].to_pandas()`` is a frame.
+    ``duration`` (s), ``stiffness`` and ``damping`` with a mass, ``initial_velocity`` (m/s), ``peak`` and
+    ``impulse`` of the force (N, N s) and ``peak_read`` of its samples, every model in ``fits``.
+    ``pulse("a.csv", mass=0.125, low_pass="none").duration``. A number has ``.value``, ``.std``, ``.unit``
+    and ``.interval()``; ``tables`` are printed, ``tables[0].to_pandas()`` is a frame.
 
     Arguments:
         time_to_peak: Time from the onset to the largest force in s, instead of a file.
         duration: Time from the onset to the end of the contact, in s.
         std: Standard uncertainty of each of the two times, in s.
-        mass: Decelerated mass in kg, for stiffness and damping.
+        mass: Decelerated mass in kg, for stiffness and damping, of an acceleration also for force and
+            impulse.
         low_pass: Corner (-3 dB) of the instrument's Butterworth low-pass, in Hz, or none [default: not
             known, and no uncertainty].
         order: Order of that low-pass, 1 to 10.

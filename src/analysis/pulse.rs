@@ -34,7 +34,7 @@ pub struct Keys {
     pub duration: Option<f64>,
     /// Standard uncertainty of each of the two times, in s
     pub std: Option<f64>,
-    /// Decelerated mass in kg, for stiffness and damping
+    /// Decelerated mass in kg, for stiffness and damping, of an acceleration also for force and impulse
     pub mass: Option<f64>,
     /// Corner (-3 dB) of the instrument's Butterworth low-pass, in Hz, or none [default: not known, and no
     /// uncertainty]
@@ -136,6 +136,9 @@ fn contact(title: &str, result: &PulseResult) -> Table {
             ("duration", "s", &|r| Cell::from(&r.duration)),
             ("restitution", "1", &|r| Cell::from(&r.restitution)),
             ("initial velocity", "m/s", &|r| r.initial_velocity.as_ref().into()),
+            ("peak force", "N", &|r| r.peak.as_ref().into()),
+            ("peak force as read", "N", &|r| r.peak_read.as_ref().into()),
+            ("impulse", "N s", &|r| r.impulse.as_ref().into()),
             ("stiffness", "N/m", &|r| r.stiffness.as_ref().into()),
             ("damping", "N s/m", &|r| r.damping.as_ref().into()),
         ],
@@ -158,7 +161,7 @@ fn models(title: &str, result: &PulseResult) -> Table {
             p => p.map_or(Cell::Missing, |p| pair(p, None)),
         };
         let known = [
-            Cell::from(figures::called(fit.model)),
+            Cell::from(fit.model.words()),
             pair(fit.residual, None),
             pair(fit.aicc, None),
             whiteness,
@@ -167,8 +170,7 @@ fn models(title: &str, result: &PulseResult) -> Table {
         let own = parameters.keys().map(|name| fit.parameters.get(name).map_or(Cell::Missing, Cell::from));
         table.push(known.into_iter().chain(own));
     }
-    let unfitted =
-        result.unfitted.iter().map(|u| format!(" {}: {}.", capital(figures::called(u.model)), u.reason));
+    let unfitted = result.unfitted.iter().map(|u| format!(" {}: {}.", capital(u.model.words()), u.reason));
     table.note(format!(
         "The lowest AICc fits best. p below 0.01: the residual is not noise, so the model does not describe the pulse.{}",
         unfitted.collect::<String>()

@@ -10,6 +10,7 @@ mod edge;
 mod fit;
 mod instants;
 mod linear;
+mod located;
 mod losses;
 mod low_pass;
 mod normalised;
@@ -27,11 +28,12 @@ use super::residuals::NO_SUPPORT;
 
 use contact::Rebound;
 use fit::{FittedPulse, Samples};
-use normalised::{Located, Normalised, locate};
+use located::{Located, locate};
+use normalised::Normalised;
 use result::{UNKNOWN, contact_estimates, undamped};
 use vibro_record::units::Quantity;
 use vibro_record::units::notation::shortest;
-use vibro_record::{Doubt, Error, Finding, Result, Trace};
+use vibro_record::{Doubt, Error, Finding, Result, Trace, Uncertain};
 
 /// Options: what is known of a pulse beside its record.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -39,7 +41,7 @@ pub struct PulseOptions {
     /// Effect of the instrument on the pulse. Default: unknown, so that no uncertainty is stated.
     pub instrument: Instrument,
     /// Mass in kg that is decelerated, taken as exact. Default: unknown, so that there is no stiffness and
-    /// damping.
+    /// damping, and of an acceleration no force and impulse.
     pub mass: Option<f64>,
 }
 
@@ -97,6 +99,9 @@ impl Instrument {
     }
 }
 
+/// Duration of a contact times the corner of the low-pass below which the shape is mostly the filter's.
+const NEAR_CORNER: f64 = 2.0;
+
 /// Fewest samples above half the height. A half sine is above it for two thirds of its length: five samples
 /// in the pulse, one more than its shape has parameters.
 const FEWEST: f64 = 10.0 / 3.0;
@@ -128,11 +133,8 @@ pub fn pulse(trace: &Trace, options: &PulseOptions) -> Result<PulseResult> {
     let (mut samples, mut level) = scale.window(&mut found, unlike)?;
     let main = samples.fit(ContactModel::KelvinVoigt).map_err(unlike)?;
     let (mut fits, mut unfitted) = rivals(&samples, main);
-    let best = leader(&fits);
-    if samples.rings.is_some() || best.whiteness.rejected() || samples.unexplained(best) {
-        if let Some(rings) = sensor::ringing(&scale, &fits) {
-            (samples, fits, unfitted, level) = (rings.samples, rings.fits, rings.unfitted, None);
-        }
+    if let Some(rings) = sensor::ringing(&scale, &fits) {
+        (samples, fits, unfitted, level) = (rings.samples, rings.fits, rings.unfitted, None);
     }
     let rests = samples.rings.is_none() || level.is_some();
     found.extend((!rests).then(|| Finding::caution("pulse-no-rest-after")));
@@ -149,22 +151,20 @@ pub fn pulse(trace: &Trace, options: &PulseOptions) -> Result<PulseResult> {
     // Reasons against spring and damper; they do not count for a contact that follows another law.
     let impossible = [gains.then(|| gained(&result)), widening.is_none().then(|| Finding::doubt(onset))];
     if gains || widening.is_none() {
-        result = result.refused();
+        result.refuse();
     }
     let xi = result.xi.value;
     let spread = result.xi.std.map_or(UNKNOWN, |s| 2.0 * s);
     let duration = result.duration.value;
-    let mut say = |holds: bool, finding: Finding| found.extend(holds.then_some(finding));
-    say(xi + spread >= 0.5, Finding::caution("pulse-no-inner-peak").number("xi", xi));
-    say(widening.is_some() && whiteness.rejected(), whiteness.coloured("pulse-residuals-coloured"));
-    if let Some(filter) = filter {
+    let no_peak = (xi + spread >= 0.5).then(|| Finding::caution("pulse-no-inner-peak").number("xi", xi));
+    if let Some(filter) = filter.filter(|filter| duration * filter.corner < NEAR_CORNER) {
         let near = Finding::caution("pulse-near-corner").number("duration", duration);
-        say(duration * filter.corner < 2.0, near.number("corner", filter.corner));
+        found.push(near.number("corner", filter.corner));
     }
     result.unfitted = unfitted;
     let best = leader(&fits);
     let unexplained = samples.unexplained(best);
-    let inflation = best.whiteness.inflation.max(1.0);
+    let (of_best, inflation) = (best.whiteness, best.whiteness.inflation.max(1.0));
     let lower = fits[0].aicc() - best.aicc();
     found.extend(samples.mode.map(|_| scale.rings(best)));
     // A power law needs its losses only where spring and damper does not lead.
@@ -177,11 +177,23 @@ pub fn pulse(trace: &Trace, options: &PulseOptions) -> Result<PulseResult> {
     result.fits = fits.iter().map(|f| scale.report(f, options.mass, known && !unexplained)).collect();
     let also = fits.iter().flat_map(|f| &f.also);
     let also: Vec<_> = also.map(|f| scale.report(f, options.mass, known && !unexplained)).collect();
+    let lead = if lower > NO_SUPPORT * inflation.powi(2) { leader(&fits) } else { &fits[0] };
     let led = result.led_by_best(&also, inflation);
+    let noise = samples.noise().0;
+    result.peak_read = scale.peak_read(lead, noise, options.mass);
+    if !known || unexplained || result.restitution.value.is_nan() {
+        result.peak_read.doubt();
+    }
     if led.is_none() || result.restitution.value.is_nan() {
         found.extend(impossible.into_iter().flatten().map(|doubt| doubt.of(&mut result)));
     }
-    found.extend(led);
+    // What is known of ξ does not count for another law.
+    found.extend(no_peak.filter(|_| led.is_none()));
+    let whiteness = if led.is_some() { of_best } else { whiteness };
+    let answered = !result.restitution.value.is_nan();
+    let coloured = answered && whiteness.rejected();
+    found.extend(coloured.then(|| whiteness.coloured("pulse-residuals-coloured")));
+    found.extend(led.filter(|_| answered && !unexplained));
     let restitution = &result.restitution;
     let more = restitution.std.is_some_and(|std| restitution.value - 2.0 * std > 1.0);
     found.extend(more.then(|| gained(&result).of(&mut result)));
@@ -194,7 +206,7 @@ pub fn pulse(trace: &Trace, options: &PulseOptions) -> Result<PulseResult> {
     Ok(result)
 }
 
-/// The fit of the lowest AICc.
+/// The fit of the lowest `AICc`.
 fn leader(fits: &[FittedPulse]) -> &FittedPulse {
     fits.iter().fold(&fits[0], |best, fit| if fit.aicc() < best.aicc() { fit } else { best })
 }
@@ -256,14 +268,17 @@ fn check(trace: &Trace, options: &PulseOptions) -> Result<()> {
     Ok(())
 }
 
-/// Fits all models to the samples, spring and damper first. The power law is skipped where spring and damper
-/// leaves white residuals and is clearly ahead of the other models. The second value has the models without
-/// a fit.
+/// Fits all models to the samples, spring and damper first. The power law is skipped where the shape of the
+/// pulse shows, and spring and damper leaves white residuals and is clearly ahead of the other models. The
+/// second value has the models without a fit.
 fn rivals(samples: &Samples<'_>, main: FittedPulse) -> (Vec<FittedPulse>, Vec<Unfitted>) {
     let (mut fits, mut unfitted) = (vec![main], Vec::new());
     for rival in ContactModel::RIVALS {
         let behind = fits[1..].iter().all(|fit| fit.aicc() - fits[0].aicc() > NO_SUPPORT);
-        if rival == ContactModel::PowerLaw && behind && !fits[0].whiteness.rejected() {
+        let lasts = fits[0].end() - fits[0].fit.parameters[0];
+        // Behind a slow low-pass a law between those of the other models looks like spring and damper.
+        let shown = samples.filter.is_none_or(|filter| filter.corner * lasts > NEAR_CORNER);
+        if rival == ContactModel::PowerLaw && behind && shown && !fits[0].whiteness.rejected() {
             let reason = "not needed, spring and damper is clearly ahead".to_owned();
             unfitted.push(Unfitted { model: rival, reason });
             continue;

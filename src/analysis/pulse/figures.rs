@@ -5,17 +5,6 @@ use crate::report::layout::{lettered, value_axis};
 use crate::report::{AxisSpec, Figure, Ink, Marker, Plot, Series, Stroke};
 use crate::units::notation::significant;
 
-/// A model of the contact in words.
-pub(super) fn called(model: ContactModel) -> &'static str {
-    match model {
-        ContactModel::KelvinVoigt => "spring and damper",
-        ContactModel::Hertz => "Hertz",
-        ContactModel::HuntCrossley => "Hunt and Crossley",
-        ContactModel::PowerLaw => "any exponents",
-        ContactModel::Yielding => "yielding spring",
-    }
-}
-
 /// Number of samples from which single markers would hide the models.
 const DENSE: usize = 120;
 
@@ -63,7 +52,7 @@ pub fn pulse(title: &str, result: &PulseResult) -> Option<Figure> {
             points.iter().map(|p| (p.0 - start, p.1)).unzip()
         };
         let of_linear = if curve.model == ContactModel::KelvinVoigt { rejected } else { "" };
-        let name = format!("{}{of_linear}", called(curve.model));
+        let name = format!("{}{of_linear}", curve.model.words());
         let (t, v) = shifted(&curve.points);
         above = above.with(Series { stroke, ..Series::line(name, t, v).ink(Ink::Nth(i)) });
         let inside: Vec<(f64, f64)> =

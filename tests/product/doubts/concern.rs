@@ -37,7 +37,12 @@ const SCALED: Concern = At(&[
     "tones/*/amplitude",
     "value_std",
     "initial_velocity",
+    "peak",
+    "peak_read",
+    "impulse",
     "fits/*/parameters/initial_velocity",
+    "fits/*/parameters/peak",
+    "fits/*/parameters/impulse",
     "points/*/force_std",
     "points/*/amplitude",
     "points/*/receptance",
@@ -56,7 +61,7 @@ const SCALED: Concern = At(&[
 ]);
 
 /// Every code of a doubt.
-pub const CONCERNS: [(&str, Concern); 76] = [
+pub const CONCERNS: [(&str, Concern); 75] = [
     ("rig-left-out", Nothing(MODEL)),
     ("drill-left-out", Nothing(MODEL)),
     ("decay-unexplained", MODE),
@@ -127,7 +132,6 @@ pub const CONCERNS: [(&str, Concern); 76] = [
     ("pulse-gains-energy", Whole),
     ("pulse-unexplained", Whole),
     // The other numbers are those of the model that fits better.
-    ("pulse-other-model", At(&["xi", "frequency", "stiffness", "damping", "fits/0"])),
     ("pulse-low-pass-alone", Whole),
     ("pulse-ratio-near-zero", Whole),
     ("drop-flights-grow", Whole),

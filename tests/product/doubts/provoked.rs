@@ -2,7 +2,7 @@
 
 use crate::cli::rig;
 use crate::drill::{record, volts, wav};
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::TAU;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use vibroimpact::math::Noise;
@@ -219,7 +219,6 @@ fn pulses(folder: &Path) -> Vec<Case> {
             Some(*y)
         })
         .collect();
-    let hertz = |i: usize| 3e4 * ((seconds(i) - 150e-6) / 60e-6 * PI).clamp(0.0, PI).sin().powf(1.5);
     let ringing = |i: usize| {
         let rings = own(i) != 0.0;
         own(i) + if rings { 3e3 * (TAU * 2e5 * seconds(i)).sin() } else { 0.0 }
@@ -236,7 +235,6 @@ fn pulses(folder: &Path) -> Vec<Case> {
         ),
         pulse("a drooping sensor", none, &|i| drooping[i], &["pulse-level-changes"]),
         pulse("a pulse backwards in time", none, &|i| own(399 - i), &["pulse-gains-energy"]),
-        pulse("a contact of spheres", none, &hertz, &["pulse-other-model"]),
         pulse("a ringing sensor", none, &ringing, &["pulse-unexplained"]),
         times(
             "an early peak",

@@ -215,7 +215,8 @@ fn samples(n: usize, time: f64, span: &Range<f64>) -> Range<usize> {
 pub struct PulseShape {
     start: f64,
     step: f64,
-    coefficients: DVector<f64>,
+    /// Coefficients of the cubic between each two knots, in rising powers of the part of the way.
+    pieces: Vec<[f64; 4]>,
 }
 
 impl PulseShape {
@@ -227,9 +228,9 @@ impl PulseShape {
         for (x, y) in points {
             let Some((first, weights)) = basis((x - start) / step, knots) else { continue };
             for (i, a) in weights.iter().enumerate() {
-                right[first + i] += a.0 * y;
+                right[first + i] += a * y;
                 for (j, b) in weights.iter().enumerate() {
-                    normal[(first + i, first + j)] += a.0 * b.0;
+                    normal[(first + i, first + j)] += a * b;
                 }
             }
         }
@@ -239,7 +240,14 @@ impl PulseShape {
             let mut part = normal.view_mut((first, first), (3, 3));
             part += &penalty;
         }
-        Some(PulseShape { start, step, coefficients: normal.cholesky()?.solve(&right) })
+        let coefficients = normal.cholesky()?.solve(&right);
+        // The sum of the four basis functions of an interval, as one polynomial.
+        let piece = |c: &[f64]| {
+            let (even, odd) = (c[0] + c[2], c[2] - c[0]);
+            let cubic = c[3] - c[0] + 3.0 * (c[1] - c[2]);
+            [(even + 4.0 * c[1]) / 6.0, 0.5 * odd, 0.5 * even - c[1], cubic / 6.0]
+        };
+        Some(PulseShape { start, step, pieces: coefficients.as_slice().windows(4).map(piece).collect() })
     }
 
     /// The shape of a recorded pulse whose samples lie `spacing` samples of the trace apart, scaled to unit
@@ -262,15 +270,12 @@ impl PulseShape {
     /// Value and slope at `x`. Beyond its ends the shape continues straight, since a break would keep a match
     /// from converging.
     pub fn at(&self, x: f64) -> (f64, f64) {
-        let knots = self.coefficients.len() - 3;
         let u = (x - self.start) / self.step;
-        let inside = u.clamp(0.0, knots as f64);
-        let Some((first, weights)) = basis(inside, knots) else { return (0.0, 0.0) };
-        let sum = |f: &dyn Fn(&(f64, f64)) -> f64| {
-            weights.iter().zip(&self.coefficients.as_slice()[first..]).map(|(w, c)| f(w) * c).sum::<f64>()
-        };
-        let slope = sum(&|w| w.1);
-        (sum(&|w| w.0) + slope * (u - inside), slope / self.step)
+        let inside = u.clamp(0.0, self.pieces.len() as f64);
+        let piece = (inside as usize).min(self.pieces.len() - 1);
+        let (x, [a, b, c, d]) = (inside - piece as f64, self.pieces[piece]);
+        let slope = b + x * (2.0 * c + x * 3.0 * d);
+        (a + x * (b + x * (c + x * d)) + slope * (u - inside), slope / self.step)
     }
 
     /// Time and height of the pulse near time `t` in samples, by Gauss-Newton on the samples that the shape
@@ -279,7 +284,7 @@ impl PulseShape {
     /// In white noise of variance σ² the time has the variance σ² × `cofactor`, which is the Cramér–Rao
     /// bound. `None` where fewer than three samples are covered or the steps do not converge.
     pub fn matched(&self, values: &[f64], t: f64, height: f64) -> Option<Matched> {
-        let span = self.start..self.start + self.step * (self.coefficients.len() - 3) as f64;
+        let span = self.start..self.start + self.step * self.pieces.len() as f64;
         let (mut time, mut height) = (t, height);
         let window = samples(values.len(), t, &span);
         if window.len() < 3 {
@@ -287,14 +292,16 @@ impl PulseShape {
         }
         for _ in 0..50 {
             // Normal equations of (time, height): J = (−h s', s).
-            let (mut normal, mut right, mut rr) = (Matrix2::zeros(), Vector2::zeros(), 0.0);
+            let (mut slopes, mut both, mut squares) = (0.0, 0.0, 0.0);
+            let (mut right, mut rr) = (Vector2::zeros(), 0.0);
             for i in window.clone() {
                 let (s, slope) = self.at(i as f64 - time);
-                let (j, r) = (Vector2::new(-height * slope, s), values[i] - height * s);
-                normal += j * j.transpose();
-                right += j * r;
+                let (j, r) = (-height * slope, values[i] - height * s);
+                (slopes, both, squares) = (slopes + j * j, both + j * s, squares + s * s);
+                right += Vector2::new(j * r, s * r);
                 rr += r * r;
             }
+            let normal = Matrix2::new(slopes, both, both, squares);
             let det = normal.determinant();
             if det <= 1e-12 * normal[(0, 0)] * normal[(1, 1)] || !det.is_finite() {
                 return None;
@@ -315,24 +322,16 @@ impl PulseShape {
     }
 }
 
-/// First coefficient, and values and slopes of the four basis functions, at `u` knots from the start; `None`
-/// outside.
-fn basis(u: f64, knots: usize) -> Option<(usize, [(f64, f64); 4])> {
+/// First coefficient, and values of the four basis functions, at `u` knots from the start; `None` outside.
+fn basis(u: f64, knots: usize) -> Option<(usize, [f64; 4])> {
     if !(0.0..=knots as f64).contains(&u) {
         return None;
     }
     let first = (u as usize).min(knots - 1);
     let x = u - first as f64;
     let y = 1.0 - x;
-    Some((
-        first,
-        [
-            (y * y * y / 6.0, -0.5 * y * y),
-            ((3.0 * x - 6.0) * x * x / 6.0 + 2.0 / 3.0, (1.5 * x - 2.0) * x),
-            ((3.0 * y - 6.0) * y * y / 6.0 + 2.0 / 3.0, -(1.5 * y - 2.0) * y),
-            (x * x * x / 6.0, 0.5 * x * x),
-        ],
-    ))
+    let inner = |x: f64| (3.0 * x - 6.0) * x * x / 6.0 + 2.0 / 3.0;
+    Some((first, [y * y * y / 6.0, inner(x), inner(y), x * x * x / 6.0]))
 }
 
 #[cfg(test)]

@@ -52,6 +52,11 @@ impl KelvinVoigt {
         (self.xi() < 0.5).then(|| angle / (self.omega * self.theta.cos()))
     }
 
+    /// Largest deceleration in m/s² for each m/s of approach: that at the onset for ξ ≥ 1/2.
+    pub(super) fn peak(&self) -> f64 {
+        self.unbounded(self.time_to_peak().unwrap_or(0.0))
+    }
+
     /// Velocity after over velocity before: exp(−(π − 2θ) tan θ).
     pub fn restitution(&self) -> f64 {
         (-(PI - 2.0 * self.theta) * self.theta.tan()).exp()
@@ -215,6 +220,13 @@ impl Rebound {
             *value /= scale;
         }
         values
+    }
+
+    /// Largest deceleration of a contact that lasts `duration` seconds, in m/s² for each m/s of approach.
+    pub(super) fn peak(&self, duration: f64) -> f64 {
+        let rise = (0..self.rise.len()).map(|i| self.between(i as f64 / PARTS as f64));
+        let most = self.deceleration.iter().copied().chain(rise).fold(0.0, f64::max);
+        most * self.duration / duration
     }
 
     fn between(&self, place: f64) -> f64 {

@@ -64,6 +64,9 @@ const DIGITS: f64 = 3e-4;
 /// A variance counts as larger than another if it exceeds it by this many standard deviations of chance.
 const SURE: f64 = 4.0;
 
+/// A contact counts as patterned at the usual level over this: its test comes beside those of other faults.
+const TESTS: usize = 10;
+
 /// Step of the coarse grid of onsets, in durations of the contact.
 const LEAD: f64 = 0.08;
 
@@ -257,8 +260,8 @@ impl Samples<'_> {
         (scatter.hypot(hidden).max(DIGITS), hidden)
     }
 
-    /// Whether the residuals within the contact exceed those before it by more than chance: then the contact
-    /// follows another law, or something else moved.
+    /// Whether the residuals within the contact exceed those before it by more than chance, or have a pattern
+    /// that those outside of it have not: then the contact follows another law, or something else moved.
     pub fn unexplained(&self, fitted: &FittedPulse) -> bool {
         let fit = &fitted.fit;
         let onset = fit.parameters[0];
@@ -279,7 +282,21 @@ impl Samples<'_> {
         let chance = SURE * colour * (2.0 / free.max(1.0) + 2.0 / before.1).sqrt();
         let shown = before.0 / before.1;
         let noise = shown + self.noise().1.powi(2) + concealed(shown.sqrt(), before.1, self.quantum).powi(2);
-        free >= 1.0 && before.1 >= 8.0 && inside.0 / free > (1.0 + chance) * noise
+        let more = free >= 1.0 && before.1 >= 8.0 && inside.0 / free > (1.0 + chance) * noise;
+        more || self.patterned(fitted)
+    }
+
+    /// Whether neighbouring residuals within the contact are alike, so that their density at low frequency is
+    /// more than twice that of white noise, and those outside are white.
+    fn patterned(&self, fitted: &FittedPulse) -> bool {
+        let residuals = &fitted.fit.residuals;
+        let place = |time: f64| self.times.partition_point(|t| *t < time);
+        let onset = place(fitted.fit.parameters[0]);
+        let end = place(fitted.end() + self.delay()).max(onset);
+        let outside = Whiteness::of(&[&residuals[..onset], &residuals[end..]]);
+        let white = outside.p_value.is_some() && !outside.rejected();
+        let inside = Whiteness::of(&[&residuals[onset..end]]);
+        white && inside.alike_among(TESTS) && inside.inflation.powi(2) > 2.0
     }
 
     /// Whether the residuals around the onset have more than twice the variance of the others, and more than

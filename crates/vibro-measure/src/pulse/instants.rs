@@ -101,8 +101,8 @@ fn behind(filter: &LowPass, times: &[f64; 2], std: Option<f64>, mass: Option<f64
     if times[0] <= peak + reach || times[1] <= end + reach {
         // No filtered pulse is shorter than the impulse response of the low-pass.
         let mut found = estimated(times, f64::NAN, |t| KelvinVoigt::lasting(t[1], 0.0), mass, &method)
-            .ok_or_else(|| Error::refused("the two times belong to no contact"))?
-            .refused();
+            .ok_or_else(|| Error::refused("the two times belong to no contact"))?;
+        found.refuse();
         let alone = Finding::doubt("pulse-low-pass-alone").number("corner", filter.corner);
         found.findings = vec![alone.number("peak", peak).number("end", end).of(&mut found)];
         return Ok(found);

@@ -18,8 +18,8 @@ pub(super) struct Linear {
 const DAMPING: std::ops::Range<f64> = -0.05..0.7;
 
 impl Linear {
-    /// A sensor that has one mode, behind it the `filter`. The share a of the signal passes through the mode of
-    /// the frequency f = ω/2π with the damping ratio ζ, whose static gain is one:
+    /// A sensor that has one mode, behind it the `filter`. The share a of the signal passes through the mode
+    /// of the frequency f = ω/2π with the damping ratio ζ, whose static gain is one:
     /// H(s) = 1 − a + aω²/(s² + 2ζωs + ω²). `None` for a frequency not above 0 and for a ζ that is no mode's.
     pub fn sensor([share, frequency, zeta]: [f64; 3], filter: Option<&LowPass>) -> Option<Linear> {
         if !(frequency > 0.0 && DAMPING.contains(&zeta) && share.is_finite()) {

@@ -40,8 +40,9 @@ const GAIN: f64 = 1e-4;
 /// Least first guess of the exponent of the loss: far below it no residual depends on its logarithm.
 const LEAST_EXPONENT: f64 = 0.02;
 
-/// A small loss, and exponents on either side of n − 1: first guesses beside the free fits.
-const GUESSES: [(f64, f64); 2] = [(0.05, 0.4), (0.05, 1.5)];
+/// A small loss, and exponents on either side of n − 1, and one whose force nearly jumps: first guesses
+/// beside the free fits.
+const GUESSES: [(f64, f64); 3] = [(0.05, 0.4), (0.05, 1.5), (0.05, 0.03)];
 
 /// Series whose exponents of the loss differ by less than this at one loss are one.
 const APART: f64 = 0.1;

@@ -20,7 +20,7 @@ pub enum ContactModel {
     Hertz,
     /// Two curved bodies with losses that grow with the indentation.
     HuntCrossley,
-    /// Any exponents of spring and loss.
+    /// A power law with any exponents of spring and loss.
     PowerLaw,
     /// A spring that yields, and is stiffer on unloading.
     Yielding,
@@ -34,6 +34,11 @@ impl ContactModel {
     /// Its name, as in JSON.
     pub fn name(self) -> &'static str {
         ["kelvin-voigt", "hertz", "hunt-crossley", "power-law", "yielding"][self as usize]
+    }
+
+    /// Its name in sentences and tables.
+    pub fn words(self) -> &'static str {
+        ["spring and damper", "Hertz", "Hunt–Crossley", "power law", "yielding spring"][self as usize]
     }
 
     /// Number of parameters of its shape.
@@ -71,8 +76,8 @@ pub(super) const LIKELY: [(f64, f64); 2] = [(1.5, 0.5), (1.0, 0.75)];
 /// Damping ratio and frequency of a contact, the quantities derived from them, and the fitted models.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct PulseResult {
-    /// Damping ratio of a contact of spring and damper. It and all values derived from it are null where the
-    /// record is no such contact.
+    /// Damping ratio of a contact of spring and damper. It, frequency, stiffness and damping are null where
+    /// the record is no such contact.
     pub xi: Estimate,
     /// Its undamped natural frequency in Hz.
     pub frequency: Estimate,
@@ -88,6 +93,13 @@ pub struct PulseResult {
     pub initial_velocity: Option<Estimate>,
     /// Duration of the contact in s.
     pub duration: Estimate,
+    /// Largest force of the contact in N, without the effect of low-pass and sensor; `None` unless the record
+    /// is a force, or an acceleration of a known mass. Like `impulse`, of the leading models.
+    pub peak: Option<Estimate>,
+    /// Largest force that the record shows, in N: noise adds to it, and a low-pass takes from it.
+    pub peak_read: Option<Estimate>,
+    /// Impulse of the contact, ∫F dt, in N s. A low-pass and a sensor keep it.
+    pub impulse: Option<Estimate>,
     /// The models fitted to the whole pulse; the first is the one of spring and damper.
     pub fits: Vec<PulseFit>,
     /// The models without a fit.
@@ -108,7 +120,7 @@ impl Uncertain for PulseFit {
     }
 
     fn doubt_scale(&mut self) {
-        for name in ["baseline", "initial_velocity"] {
+        for name in ["baseline", "initial_velocity", "peak", "impulse"] {
             self.parameters.get_mut(name).doubt();
         }
     }
@@ -121,7 +133,9 @@ impl Uncertain for PulseResult {
     }
 
     fn doubt_scale(&mut self) {
-        self.initial_velocity.doubt();
+        for scaled in [&mut self.initial_velocity, &mut self.peak, &mut self.peak_read, &mut self.impulse] {
+            scaled.doubt();
+        }
         self.fits.doubt_scale();
     }
 }
@@ -130,27 +144,28 @@ impl PulseResult {
     fn estimates(&mut self) -> impl Iterator<Item = &mut Estimate> {
         let contact = [&mut self.xi, &mut self.frequency, &mut self.restitution, &mut self.duration];
         let more = [&mut self.stiffness, &mut self.damping, &mut self.initial_velocity];
-        contact.into_iter().chain(more.into_iter().flatten())
+        let force = [&mut self.peak, &mut self.peak_read, &mut self.impulse];
+        contact.into_iter().chain(more.into_iter().chain(force).flatten())
     }
 
-    /// The result with all values null: the record is no contact of spring and damper.
-    pub(super) fn refused(mut self) -> PulseResult {
+    /// Makes all values null, since the record is no contact of spring and damper.
+    pub(super) fn refuse(&mut self) {
         for estimate in self.estimates() {
             (estimate.value, estimate.std) = (f64::NAN, None);
             estimate.method.push_str(", refused: see the findings");
         }
-        self
     }
 
     /// Adds the relative standard uncertainty `clock` of the sampling rate: once to frequency, duration,
-    /// damping and velocity, twice to stiffness, which grows with the square of the rate. Ratios do not
-    /// depend on it.
+    /// damping, velocity and impulse, twice to stiffness, which grows with the square of the rate. Ratios do
+    /// not depend on it.
     pub(super) fn by_clock(mut self, clock: f64) -> PulseResult {
         let once = [
             Some(&mut self.frequency),
             Some(&mut self.duration),
             self.damping.as_mut(),
             self.initial_velocity.as_mut(),
+            self.impulse.as_mut(),
         ];
         let all = once.into_iter().map(|of| (of, 1.0)).chain([(self.stiffness.as_mut(), 2.0)]);
         for (estimate, power) in all.filter_map(|(of, power)| Some((of?, power))) {
@@ -161,7 +176,7 @@ impl PulseResult {
 
     /// Adds the spread between the supported models to the uncertainties of restitution, duration and
     /// velocity of approach. Where the record prefers another model than spring and damper, they are means
-    /// over these models, a finding says so, and the values of spring and damper lose their uncertainties.
+    /// over these models, a finding says so, and there are no values of spring and damper.
     /// `inflation` enlarges uncertainties for correlated residuals of the best model: its square divides
     /// differences of the criterion (Burnham & Anderson 2002, 2.5). `also` are further minima of the models.
     pub(super) fn led_by_best(&mut self, also: &[PulseFit], inflation: f64) -> Option<Finding> {
@@ -189,23 +204,24 @@ impl PulseResult {
             let std = variance.sqrt().hypot(mean - value).max(led.std.unwrap_or(f64::NAN));
             let own = own.filter(|_| !other).map(|own| own.method.clone());
             let averaged =
-                || format!("{}, mean over the likely models, best {}", led.method, lead.model.name());
+                || format!("{}, mean over the likely models, best {}", led.method, lead.model.words());
             let method = own.unwrap_or_else(averaged);
             Some(Estimate::new(value, Some(std), led.unit, led.n, method))
         };
         let restitution = stated("restitution", Some(&self.restitution));
         let duration = stated("duration", Some(&self.duration));
         let velocity = stated("initial_velocity", self.initial_velocity.as_ref());
-        let model = lead.model.name();
-        let doubt = Finding::doubt("pulse-other-model").name("model", model).number("ahead", lower);
-        // The numbers by spring and damper, and its fit, which is the first.
+        let [peak, impulse] = ["peak", "impulse"].map(|name| stated(name, Some(&self.duration)));
+        let law = lead.model.words();
         let found = other.then(|| {
-            self.estimates().for_each(Uncertain::doubt);
-            doubt.of(&mut self.fits[0])
+            self.refuse();
+            self.fits[0].doubt();
+            Finding::note("pulse-other-model").name("model", law).number("ahead", lower)
         });
         self.restitution = restitution.unwrap_or_else(|| self.restitution.clone());
         self.duration = duration.unwrap_or_else(|| self.duration.clone());
         self.initial_velocity = velocity.or(self.initial_velocity.take());
+        (self.peak, self.impulse) = (peak, impulse);
         found
     }
 }
@@ -311,6 +327,9 @@ pub(super) fn contact_estimates(
         damping: mass.and_then(|m| estimate("N s/m", &|c| 2.0 * c.xi() * m * omega(c))),
         initial_velocity: None,
         duration: estimate("s", &|c| c.duration())?,
+        peak: None,
+        peak_read: None,
+        impulse: None,
         fits: Vec::new(),
         unfitted: Vec::new(),
         findings: Vec::new(),

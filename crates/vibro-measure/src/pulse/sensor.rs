@@ -34,18 +34,27 @@ pub(super) struct Ringing<'a> {
 
 /// The fits with a mode of the sensor, where they leave only noise and have more support than those without,
 /// `bare`. Uses the samples behind the pulse, too.
+///
+/// The mode of each of M frequencies may be the best one by chance, which takes 2 ln M of the gain. What is
+/// left without a mode has a colour, by whose square the gain is divided, so that 1/f noise is no mode.
 pub(super) fn ringing<'a>(scale: &'a Normalised<'_>, bare: &[FittedPulse]) -> Option<Ringing<'a>> {
     let best = bare.iter().min_by(|a, b| a.aicc().total_cmp(&b.aicc()))?;
     let samples = |mode| Samples { mode, ..scale.ringing(best.end()) };
     let without = samples(None);
-    let alone = without.fit(best.model).map_or(f64::INFINITY, |fit| fit.aicc());
-    for mode in without.modes(best) {
+    let alone = without.fit(best.model).ok()?;
+    let colour = alone.whiteness.inflation.max(1.0).powi(2);
+    let chance = 2.0 * without.frequencies().max(1.0).ln();
+    for (gain, mode) in without.modes(&alone) {
+        if gain < NO_SUPPORT * colour {
+            return None;
+        }
         let samples = samples(Some(mode));
         let Ok(main) = samples.fit(ContactModel::KelvinVoigt) else { continue };
         let (fits, unfitted) = rivals(&samples, main);
         let Some(best) = fits.iter().min_by(|a, b| a.aicc().total_cmp(&b.aicc())) else { continue };
-        let inflation = best.whiteness.inflation.max(1.0);
-        if alone - best.aicc() > NO_SUPPORT * inflation.powi(2) && !samples.unexplained(best) {
+        let share = best.fit.parameters[3 + best.model.parameters()];
+        let gain = (alone.aicc() - best.aicc()) / colour;
+        if gain > NO_SUPPORT + chance && (0.0..1.0).contains(&share) && !samples.unexplained(best) {
             return Some(Ringing { samples, fits, unfitted });
         }
     }
@@ -53,23 +62,39 @@ pub(super) fn ringing<'a>(scale: &'a Normalised<'_>, bare: &[FittedPulse]) -> Op
 }
 
 impl Samples<'_> {
-    /// First guesses of a mode whose response to the contact `fitted` explains the samples best, the best first.
-    fn modes(&self, fitted: &FittedPulse) -> Vec<[f64; 3]> {
-        let (Some(first), Some(last)) = (self.times.first(), self.times.last()) else { return Vec::new() };
-        let (length, fastest) = (last - first, FASTEST.min(0.5 / self.step));
+    /// Highest frequency of a mode, in cycles per length of the pulse.
+    fn fastest(&self) -> f64 {
+        FASTEST.min(0.5 / self.step)
+    }
+
+    /// Duration of the samples, in lengths of the pulse.
+    fn duration(&self) -> f64 {
+        self.times.last().zip(self.times.first()).map_or(0.0, |(last, first)| last - first)
+    }
+
+    /// Number of frequencies of a mode that the samples tell apart.
+    fn frequencies(&self) -> f64 {
+        (self.fastest() - SLOWEST) * self.duration()
+    }
+
+    /// First guesses of a mode whose response to the contact `fitted` explains the samples best, the best
+    /// first, each with about twice the logarithm of the likelihood that it gains.
+    fn modes(&self, fitted: &FittedPulse) -> Vec<(f64, [f64; 3])> {
+        let (length, fastest) = (self.duration(), self.fastest());
         let stride = (self.times.len() as f64 / (ENOUGH * fastest * length)).max(1.0) as usize;
         let thin = |all: &[f64]| all.iter().copied().step_by(stride).collect::<Vec<f64>>();
         let (times, values) = (thin(&self.times), thin(&self.values));
         let mut p = fitted.fit.parameters.clone();
         let contact = p.len();
         let Some(bare) = fitted.at(self, &times) else { return Vec::new() };
+        let without: f64 = bare.iter().zip(&values).map(|(b, v)| (v - b).powi(2)).sum();
         let mut line = |frequency: f64, zeta: f64| {
             p.truncate(contact);
             p.extend([1.0, frequency, zeta]);
             let rings = self.model(fitted.model, &p, &times, None)?;
             share([&bare, &rings], &values, fitted.fit.parameters[1])
         };
-        let steps = ((fastest - SLOWEST) * STEPS * length).ceil().max(1.0) as usize;
+        let steps = (STEPS * self.frequencies()).ceil().max(1.0) as usize;
         let frequency = |i: usize| SLOWEST + (fastest - SLOWEST) * i as f64 / steps as f64;
         let best: Vec<(f64, [f64; 3])> = (0..=steps)
             .filter_map(|i| {
@@ -84,12 +109,13 @@ impl Samples<'_> {
         let is_least = |i: &usize| lower(*i, best.get(i.wrapping_sub(1))) && lower(*i, best.get(i + 1));
         let mut least: Vec<_> = (0..best.len()).filter(is_least).map(|i| best[i]).collect();
         least.sort_by(|a, b| a.0.total_cmp(&b.0));
-        least.into_iter().take(GUESSES).map(|(_, mode)| mode).collect()
+        let gain = |left: f64| self.times.len() as f64 * (without / left).ln();
+        least.into_iter().take(GUESSES).map(|(left, mode)| (gain(left), mode)).collect()
     }
 }
 
-/// Sum of squares left of the `values` by the best sum of a baseline, the bare contact and what rings, and the
-/// share of the latter. Both contacts have the baseline `level`.
+/// Sum of squares left of the `values` by the best sum of a baseline, the bare contact and what rings, and
+/// the share of the latter. Both contacts have the baseline `level`.
 fn share([bare, rings]: [&[f64]; 2], values: &[f64], level: f64) -> Option<(f64, f64)> {
     let row = |(b, r): (&f64, &f64)| Vector3::new(1.0, b - level, r - level);
     let rows = || bare.iter().zip(rings).map(row);

@@ -307,8 +307,7 @@ fn the_contact_of_hunt_and_crossley_is_preferred_where_it_is_one() {
     assert!(result.xi.std.is_none() && result.frequency.std.is_none(), "{result:?}");
 }
 
-/// Neither contact is spring and damper, or Hunt and Crossley. Its restitution is found, and the only doubt
-/// is that another model leads.
+/// Neither contact is spring and damper, or Hunt and Crossley. Its restitution is found without a doubt.
 #[test]
 fn contacts_of_a_yielding_spring_and_of_other_exponents_keep_their_restitution() {
     for contact in [Rebound::yielding(0.7).unwrap(), Rebound::power_law(0.4, 2.0, 1.0).unwrap()] {
@@ -322,7 +321,7 @@ fn contacts_of_a_yielding_spring_and_of_other_exponents_keep_their_restitution()
             .filter(|f| f.severity() == Severity::Doubt)
             .map(|f| f.code.as_ref())
             .collect();
-        assert_eq!(doubts, ["pulse-other-model"]);
+        assert!(doubts.is_empty(), "{doubts:?}");
     }
 }
 
@@ -396,6 +395,82 @@ fn a_force_needs_the_mass_and_a_voltage_has_no_velocity() {
     assert!(bare.initial_velocity.is_none());
     let volts = pulse(&trace(record(), "V"), &PulseOptions::default()).unwrap();
     assert!(volts.initial_velocity.is_none());
+}
+
+/// A half sine of the force F and the duration T has the impulse 2FT/π; half of it where a mass is stated
+/// whose acceleration is 2F.
+#[test]
+fn a_force_has_a_peak_and_an_impulse() {
+    let (force, lasts) = (120.0, 50e-6);
+    let mut noise = Noise::new(3);
+    let value = |i: i32| {
+        let t = f64::from(i) * DT - 80.4e-6;
+        let half = if (0.0..lasts).contains(&t) { (std::f64::consts::PI * t / lasts).sin() } else { 0.0 };
+        -5.0 + force * half + 0.2 * noise.normal()
+    };
+    let values: Vec<f64> = (0..200).map(value).collect();
+    let of = |unit: &str, sign: f64, mass: Option<f64>| {
+        let options = PulseOptions { instrument: Instrument::Flat, mass };
+        pulse(&trace(values.iter().map(|v| sign * v).collect(), unit), &options).unwrap()
+    };
+    let cases =
+        [(of("N", 1.0, None), 1.0), (of("N", -1.0, Some(0.3)), 1.0), (of("m/s²", 1.0, Some(0.5)), 0.5)];
+    for (result, part) in cases {
+        let (peak, impulse) = (result.peak.unwrap(), result.impulse.unwrap());
+        for (found, truth, unit) in
+            [(&peak, part * force, "N"), (&impulse, part * 2.0 * force * lasts / std::f64::consts::PI, "N s")]
+        {
+            let std = found.std.unwrap();
+            // Forty samples of noise of 0.2 % of the peak leave less than 1 %.
+            assert!((found.value - truth).abs() < 5.0 * std && std < 0.01 * truth, "{truth} {found:?}");
+            assert_eq!(found.unit, unit);
+        }
+        let read = result.peak_read.unwrap();
+        // Of the samples near the top the largest has up to three deviations of noise.
+        assert!((read.value - part * force).abs() < 4.0 * read.std.unwrap(), "{read:?}");
+    }
+    assert!(of("m/s²", 1.0, None).impulse.is_none() && of("V", 1.0, Some(0.5)).peak.is_none());
+}
+
+/// A half sine to the power of 1.5 is no contact of any model. Where a number has an uncertainty, it holds.
+#[test]
+fn a_pulse_of_no_contact_law_is_doubted_or_covered() {
+    for (part, seed) in [(3e-4, 1), (1e-3, 2), (3e-3, 3), (3e-3, 4), (1e-2, 5), (1e-2, 6)] {
+        let mut noise = Noise::new(seed);
+        let value = |i: i32| {
+            let t = (f64::from(i) * DT - 80.4e-6) / 60e-6;
+            let sine = (std::f64::consts::PI * t.clamp(0.0, 1.0)).sin().max(0.0);
+            1e4 * (sine.powf(1.5) + part * noise.normal())
+        };
+        let options = PulseOptions { instrument: Instrument::Flat, mass: None };
+        let result = pulse(&trace((0..240).map(value).collect(), "m/s²"), &options).unwrap();
+        let duration = &result.duration;
+        let off = duration.std.map_or(0.0, |std| (duration.value - 60e-6).abs() / std);
+        assert!(off < 4.0, "{part} {off} {duration:?} {:?} {:?}", result.findings, result.fits);
+    }
+}
+
+/// A low-pass lowers the peak that the record shows; the contact keeps its own, and its impulse.
+#[test]
+fn the_peak_is_that_of_the_contact_behind_a_low_pass() {
+    let contact = KelvinVoigt::new(0.15, 6e3).unwrap();
+    let filter = LowPass::new(15e3, 2).unwrap();
+    let mut noise = Noise::new(4);
+    let values = (0..400)
+        .map(|i| 2.0 * contact.filtered(&filter, f64::from(i) * DT - 150.4e-6) + 60.0 * noise.normal());
+    let instrument = Instrument::LowPass(filter.clone());
+    let options = PulseOptions { instrument, mass: Some(0.5) };
+    let result = pulse(&trace(values.collect(), "m/s²"), &options).unwrap();
+    let (peak, impulse) = (result.peak.unwrap(), result.impulse.unwrap());
+    for (found, truth) in [(&peak, contact.peak()), (&impulse, 1.0 + contact.restitution())] {
+        let std = found.std.unwrap();
+        assert!((found.value - truth).abs() < 5.0 * std && std < 0.02 * truth, "{truth} {found:?}");
+    }
+    // The largest value that the record shows, on a grid of a tenth of a sample: off by 1e-4 at most.
+    let shown = |i: i32| contact.filtered(&filter, f64::from(i) * 0.1 * DT);
+    let shown = (0..2000).map(shown).fold(0.0, f64::max);
+    let read = result.peak_read.unwrap();
+    assert!((read.value - shown).abs() < 4.0 * read.std.unwrap() && shown < 0.99 * peak.value, "{read:?}");
 }
 
 #[test]
