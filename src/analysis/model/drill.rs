@@ -51,8 +51,8 @@ pub struct Keys {
     pub from_rest: bool,
 }
 
-/// Most turns of a run.
-const MOST_TURNS: usize = 5000;
+/// Most turns of a run; their samples take 100 kB each.
+const MOST_TURNS: usize = 1000;
 /// Samples of a drawn turn.
 const SAMPLES: usize = 720;
 /// Turns drawn of a start.

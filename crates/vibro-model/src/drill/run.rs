@@ -13,7 +13,7 @@ use vibro_record::{Error, Result};
 /// Most turns of a run: half a minute of work.
 const MOST_TURNS: usize = 100_000;
 
-/// Most integration steps of a run beside those of each turn, which takes some hundred in an ordinary machine.
+/// Most integration steps of a run, and further ones of each turn; an ordinary turn takes some hundred.
 const MOST_STEPS: [usize; 2] = [100_000, 5000];
 
 /// State of the bodies at the start, with the piston at top dead centre and the air at ambient pressure; a
