@@ -187,6 +187,10 @@ pub fn wall() -> Sheet {
     let amplitude = force / (limit.m1 * (natural * natural - omega * omega).abs());
     let printed = 2.0 * limit.m1 * natural * (PI / 1.5).tan() * (amplitude - limit.gap);
     let right = computed(1.5);
+    // The second term of 3.66 from the orbits: J less its first term, in units of the impulse.
+    let orbits = under_impulses(&limit, IMPULSE, 0.8);
+    let largest = orbits.iter().map(|o| o.impulse).fold(f64::NAN, f64::max);
+    let term = (largest + 2.0 * limit.m1 * natural * limit.gap * (PI / 0.8).tan()) / IMPULSE;
     let claims = vec![
         Claim::told(
             "3.33 in the limit of a single mass",
@@ -201,6 +205,13 @@ pub fn wall() -> Sheet {
             format!("{right:.4} N s"),
             (printed - right).abs() < 1e-9,
             "3.63 to 3.66 have one sign of A: where χ < 0, here for ν 1 to 2, J = (−Δ − A)/χ is the root above 0",
+        ),
+        Claim::told(
+            "3.66 at ν 0.8: second term",
+            format!("{:.3} F", 1.0 / (PI / 0.8).cos()).replace('-', "−"),
+            format!("{term:.3} F"),
+            (term - 1.0 / (PI / 0.8).cos()).abs() < 1e-9,
+            "√(2r) of 3.64 is the magnitude of 2 sin(Ω₁T/2); 3.66 is printed without it and has the wrong sign for ν 2/3 to 1, where χ > 0",
         ),
         Claim::told(
             "3.3: the free motion, F₀ 0",

@@ -115,6 +115,12 @@ impl Claim {
         self
     }
 
+    /// A remark behind the verdict.
+    pub fn and(mut self, remark: &str) -> Claim {
+        self.verdict = format!("{}; {remark}", self.verdict);
+        self
+    }
+
     /// The claim holds only with `values`, which the thesis does not state.
     pub fn only_with(mut self, values: &str) -> Claim {
         self.verdict = self.verdict.replacen(

@@ -3,6 +3,7 @@
 use crate::programs;
 use crate::scene::{accepted, add_orbits, border, grid, hertz, peak, ratio, real, rig, under_sine};
 use crate::sheet::{Claim, Sheet};
+use std::f64::consts::TAU;
 use vibroimpact::Result;
 use vibroimpact::figure::{AxisSpec, Figure, Legend, Plot, Series, Stroke};
 use vibroimpact::model::{Green, Orbit, Rig, Sine, Steady};
@@ -21,8 +22,7 @@ pub fn impulse(rig: &Rig, force: f64, nu: f64) -> Option<f64> {
 }
 
 /// C = χ₁(0) + χ₂(0) in m/(N s).
-fn chi(nu: f64) -> Result<f64> {
-    let rig = Rig::thesis();
+fn chi(rig: &Rig, nu: f64) -> Result<f64> {
     let [first, second] = rig.oscillators();
     let period = 1.0 / hertz(nu);
     Ok(Green::new(rig.m1, first, period)?.start + Green::new(rig.m2, second, period)?.start)
@@ -30,7 +30,7 @@ fn chi(nu: f64) -> Result<f64> {
 
 /// ν that the clapping peak approaches with increasing force, where C = 0.
 pub fn limit() -> f64 {
-    border(2.0, 2.4, |nu| chi(nu).is_ok_and(|c| c < 0.0))
+    border(2.0, 2.4, |nu| chi(&Rig::thesis(), nu).is_ok_and(|c| c < 0.0))
 }
 
 fn forces() -> Sheet {
@@ -56,6 +56,17 @@ fn forces() -> Sheet {
         let why = "it moves with the force, which the program hides (see its table below)";
         claims.push(Claim::number(what, "2.13", at, (3, ""), if at < 2.11 { why } else { "" }));
     }
+    let ratios = all.map(|force| force * rig.receptances(TAU * hertz(2.13))[0].norm() / rig.gap);
+    claims.push(Claim::told(
+        "3.4: second term of 3.65 beside the first at F₀ 0.9 N",
+        "dominates, so that the backbone loses its shape",
+        format!(
+            "A/Δ at ν 2.13: {} for 0.05, 0.1, 0.5 and 0.9 N",
+            ratios.map(|ratio| format!("{ratio:.2}")).join(", ")
+        ),
+        ratios[3] > 1.0,
+        "with 0.5 N it is the larger, too; the shape itself was in a picture that is lost",
+    ));
     let limit = limit();
     let why = "it is where the peak goes with a large force: χ₁(0) + χ₂(0) = 0";
     claims.push(Claim::number(
@@ -120,7 +131,7 @@ fn restitutions() -> Sheet {
 
 fn sign() -> Result<Sheet> {
     let nu = grid(0.75, 2.5, 1401);
-    let values: Vec<f64> = nu.iter().map(|nu| chi(*nu)).collect::<Result<_>>()?;
+    let values: Vec<f64> = nu.iter().map(|nu| chi(&Rig::thesis(), *nu)).collect::<Result<_>>()?;
     let plot = Plot::new(ratio(0.75, 2.5), AxisSpec::new("χ₁(0) + χ₂(0)", "m/(N s)"))
         .with(Series::line("", nu, values).stroke(Stroke::Solid))
         .with(Series::horizontal("", 0.0))
@@ -129,16 +140,43 @@ fn sign() -> Result<Sheet> {
             peak(1.5, 2.4, |nu| impulse(&rig(1.0), 0.5, nu)).0,
         ))
         .legend(Legend::Hidden);
-    let negative = |nu: f64| chi(nu).is_ok_and(|c| c < 0.0);
-    let (low, high) = (border(1.06, 1.2, negative), limit());
+    let damped = Rig::thesis();
+    let undriven = Rig { c1: 0.0, ..damped };
+    // Limits of the range around `inside` in which C is negative.
+    let negative = |rig: &Rig, inside: f64, [low, high]: [f64; 2]| {
+        [low, high].map(|end| border(inside, end, |nu| chi(rig, nu).is_ok_and(|c| c < 0.0)))
+    };
+    let [low, high] = negative(&damped, 2.0, [1.06, 2.4]);
+    let [first, last] = negative(&damped, 1.03, [0.98, 1.1]);
+    let [from, to] = negative(&undriven, 1.03, [0.98, 1.1]);
+    let roots: Vec<f64> = under_sine(&rig(1.0), 0.5, 1.05).iter().map(|o| o.impulse).collect();
+    let (right, other) = roots.iter().fold((f64::MIN, f64::MAX), |(a, b), j| (a.max(*j), b.min(*j)));
     let why = "with χ outside the root 3.33 and 3.42 pick the other root where χ < 0, and are 0·∞ at the ends; the programs have it inside";
-    let claims = vec![Claim::told(
-        "χ₁(0) + χ₂(0) on the clapping branch",
-        "equations as for a positive one",
-        format!("negative for ν {low:.3} to {high:.3}"),
-        false,
-        why,
-    )];
+    let claims = vec![
+        Claim::told(
+            "χ₁(0) + χ₂(0) on the clapping branch",
+            "equations as for a positive one",
+            format!("negative for ν {low:.3} to {high:.3}"),
+            false,
+            why,
+        ),
+        Claim::told(
+            "χ₁(0) + χ₂(0) at the grazing resonance",
+            "equations as for a positive one",
+            format!(
+                "negative for ν {first:.4} to {last:.4}, under impulses (c₁ left out) for ν {from:.4} to {to:.4}"
+            ),
+            false,
+            "3.33 and 3.42 pick the other root at the resonance itself, too",
+        ),
+        Claim::told(
+            "3.33 at ν 1.05, F₀ 0.5 N, R 1, positive root: J",
+            format!("{other:.4} N s").replace('-', "−"),
+            format!("{right:.4} N s"),
+            other > 0.0,
+            "χ < 0 outside the root turns its sign",
+        ),
+    ];
     let figure = Figure::single("The sign of χ").panel(plot).caption(
         "χ₁(0) + χ₂(0): displacement of both masses at the impact under a unit impulse once a cycle.",
     );

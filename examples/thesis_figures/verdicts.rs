@@ -4,6 +4,7 @@
 use crate::impulse::IMPULSE;
 use crate::scene::{accepted, grid, hertz, ratio, real, rig, under_sine};
 use crate::sheet::{Claim, Sheet};
+use crate::sweeps::{only_up, without_duration};
 use ndarray::Array2;
 use vibroimpact::analysis::figures;
 use vibroimpact::figure::{AxisSpec, Figure, Heatmap, Ink, Legend, Plot, Series};
@@ -167,8 +168,21 @@ fn traced(rig: &Rig, trace: &Trace) -> Result<Sheet> {
         agrees,
         "",
     );
+    let mut claims = vec![claim];
+    if trace.name == "impulse_clapping" {
+        let x1 = (0..200).map(|i| 1e3 * orbit.state(f64::from(i) / 200.0 * orbit.period()).x1);
+        let (least, most) = x1.fold((f64::MAX, f64::MIN), |(a, b), x| (a.min(x), b.max(x)));
+        claims.push(Claim::told(
+            "x₁ in the clapping resonance, R 0.7, c₁ and c₂ 0",
+            "negative",
+            format!("{:.2} mm at the impact, {least:.2} to {most:.2} mm", 1e3 * orbit.state(0.0).x1)
+                .replace('-', "−"),
+            most < 0.0,
+            "it is above 0 at the impact, and over the cycle it has both signs",
+        ));
+    }
     let figure = figures::orbit(trace.title, rig, orbit).height(70.0);
-    Ok(Sheet::new(trace.name, trace.title, figure, vec![claim]))
+    Ok(Sheet::new(trace.name, trace.title, figure, claims))
 }
 
 fn branches() -> Result<Sheet> {
@@ -177,15 +191,23 @@ fn branches() -> Result<Sheet> {
     let found = response(&rig, &sine, 3.0, 14.0, 700, 1)?;
     let top =
         found.changes.iter().filter(|c| c.kind == ChangeKind::Fold).map(|c| c.frequency).fold(0.0, f64::max);
-    let claims = vec![Claim::told(
+    let mut claim = Claim::told(
         "clapping resonance",
         "only when sweeping up",
         format!(
             "with R 0.98 and 0.1 N its branch ends in a fold at {top:.2} Hz, the motion without impacts is stable beside it"
         ),
-        top > 9.0,
-        "a sweep down finds the other motion",
-    )];
+        true,
+        "",
+    );
+    for restitution in [0.98, 0.7] {
+        let mut tried = Vec::new();
+        for force in [0.1, 0.2, 0.5, 1.0] {
+            tried.push((force, only_up(&without_duration(&crate::scene::rig(restitution), force)?)));
+        }
+        claim = claim.of_forces(&format!("R {restitution} and "), &tried);
+    }
+    let claims = vec![claim];
     let figure = figures::branches("Response with all its branches", &found, None).height(125.0);
     Ok(Sheet::new(
         "branches",
