@@ -200,11 +200,11 @@ test("a value is typed with its unit, its meaning is shown, and a record is meas
   await height.press("Enter");
   await ran(page, before + 2);
   const card = page.locator(".card", { hasText: "BOUNCE.CSV" }), text = await page.locator("#text").inputValue();
-  await card.locator("select").selectOption("impacts");
+  await card.locator(".kind select").selectOption("impacts");
   await ran(page, before + 3);
   assert.match(await page.locator("#text").inputValue(), /\[\[impacts\]\]\nname = "lively ball"\nfile = "BOUNCE\.CSV"\n# height = 0\.57  # of \[\[drop\]\]/);
   // Back as it was, and taken back once more.
-  await card.locator("select").selectOption("drop");
+  await card.locator(".kind select").selectOption("drop");
   await page.waitForFunction((text) => document.getElementById("text").value === text, text);
   await page.click("#undo");
   const isImpacts = () => document.getElementById("text").value.includes('[[impacts]]\nname = "lively ball"');
