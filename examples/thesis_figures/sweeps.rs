@@ -133,7 +133,7 @@ fn sine_force() -> Result<Sheet> {
             "",
         )
         .of_forces("", &larger),
-        clapping(&swept, 0.1, &OTHERS, &with)?,
+        clapping(&swept, 0.1, &OTHERS, with)?,
     ];
     let figure = picture(
         &swept,

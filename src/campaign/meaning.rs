@@ -37,7 +37,9 @@ impl KeyMeaning {
             all.extend(KeyMeaning::in_row(line).filter(|_| sections > 0).map(|key| (sections, key)));
         }
         let most = all.iter().map(|(sections, _)| *sections).max();
-        all.iter_mut().for_each(|(sections, key)| key.shared = *sections > 2 && Some(*sections) == most);
+        for (sections, key) in &mut all {
+            key.shared = *sections > 2 && Some(*sections) == most;
+        }
         all.sort_by_key(|(sections, _)| *sections);
         all.into_iter().map(|(_, key)| key)
     }
