@@ -1,8 +1,8 @@
 /** An error without the line of the text at which it stands: that is shown in the text. */
-const inShort = (message) => message.split("\n").filter((line) => !/^\s*(\d+\s*)?\|/.test(line)).join("\n").replace(/^\S*campaign\.toml, (line \d+), column \d+: /, "$1: ");
+const inShort = (message) => message.split("\n").filter((line) => !/^\s*(\d+\s*)?\|/.test(line)).join("\n").replaceAll(/\S*campaign\.toml, (line \d+), column \d+: /g, "$1: ");
 
 /** An error at its field. */
-const here = (message) => inShort(message).replace(/^line \d+: /, "");
+const here = (message) => inShort(message).replaceAll(/\bline \d+: /g, "");
 
 /** Parts and multiples of a unit. */
 const STEPS = { µ: 1e-6, u: 1e-6, m: 1e-3, c: 1e-2, "": 1, k: 1e3, M: 1e6 };
@@ -125,7 +125,7 @@ class Tables {
     card.append(make("h3", { textContent: table.files || table.section }));
     card.append(this.kindOf(table, id));
     const name = fromToml(valueOf(table, "name")), said = table.refused && !table.line ? [table.refused] : [];
-    said.push(...(table.line ? this.refused : []).filter(([record]) => record === name || record === table.files).map(([, why]) => why));
+    said.push(...(table.line ? this.refused : []).filter(([record]) => record === name || record === table.files).map(([, why]) => here(why)));
     const wrong = problems.filter(({ line }) => line && table.line && line >= table.line && line < (next ?? Infinity));
     // An error of a value stands below its field.
     const atKey = ({ line }) => table.keys.some((row) => row.line === line);

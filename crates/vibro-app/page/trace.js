@@ -15,6 +15,13 @@ const NEAR = 5;
 const rounded = (value, step) => String(Number(value.toFixed(Math.min(Math.max(Math.ceil(-Math.log10(step || 1)), 0) + 1, 12))));
 const pairOf = (value) => (value ?? "").match(/[-+\d.eE]+/g)?.map(Number) ?? null;
 
+/** Multiples of 1, 2 or 5 times a power of ten, three to eight of them. */
+function roundSteps(from, to) {
+  const size = 10 ** Math.floor(Math.log10((to - from) / 3 || 1)), step = [5, 2, 1].map((k) => k * size).find((one) => one <= (to - from) / 3) ?? size;
+  const first = Math.ceil(from / step - 1e-9), n = Math.floor(to / step + 1e-9) - first;
+  return Array.from({ length: Math.max(n, 0) + 1 }, (_, k) => Number(((first + k) * step).toPrecision(12)));
+}
+
 /** The raw trace of a table, with what was detected, and lines that the mouse drags. */
 class TraceView {
   constructor(host, { ask, set, events }) {
@@ -161,10 +168,10 @@ class TraceView {
     drawBand(pen, picture, this.across, this.up);
     pen.fillStyle = colour("--soft");
     pen.font = "11px sans-serif";
-    for (let k = 0; k <= 5; k++) {
-      const t = picture.from + k / 5 * this.wide();
-      pen.textAlign = k === 0 ? "left" : k === 5 ? "right" : "center";
-      pen.fillText(quantity(t, "s") || "0 s", this.across(t), height - 4);
+    for (const t of roundSteps(picture.from, picture.to)) {
+      const x = this.across(t);
+      pen.textAlign = x < 30 ? "left" : x > width - 30 ? "right" : "center";
+      pen.fillText(quantity(t, "s") || "0 s", x, height - 4);
     }
     pen.textAlign = "left";
     pen.fillText(quantity(high - room, unit), 4, 12);
@@ -269,10 +276,10 @@ class TraceView {
     drawBand(pen, spectrum, across, (v) => (height - 16) * (1 - (Math.max(v, shown) - shown) / (high - shown || 1)));
     pen.fillStyle = colour("--soft");
     pen.font = "11px sans-serif";
-    for (let k = 0; k <= 4; k++) {
-      const f = spectrum.from + k / 4 * (spectrum.to - spectrum.from);
-      pen.textAlign = k === 0 ? "left" : k === 4 ? "right" : "center";
-      pen.fillText(quantity(f, "Hz") || "0 Hz", across(f), height - 3);
+    for (const f of roundSteps(spectrum.from, spectrum.to)) {
+      const x = across(f);
+      pen.textAlign = x < 30 ? "left" : x > width - 30 ? "right" : "center";
+      pen.fillText(quantity(f, "Hz") || "0 Hz", x, height - 3);
     }
     const band = pairOf(this.value("band"));
     if (!band) return;

@@ -92,14 +92,20 @@ impl SeenTable {
         all
     }
 
-    /// Adds what the keys mean, and the further keys that the section knows.
+    /// Adds what the keys mean, and the further keys that the section knows. A table that runs lacks only
+    /// what is required.
     fn explain(&mut self) {
+        let runs = self.line.is_some();
         for meaning in KeyMeaning::of(&self.section) {
+            let required = meaning.left_out == "required";
             if let Some(row) = self.keys.iter_mut().find(|row| row.key == meaning.key) {
                 row.meaning = Some(meaning);
+                if runs && row.known == "missing" && !required {
+                    (row.known, row.why) = ("open", String::new());
+                }
                 continue;
             }
-            let known = if meaning.left_out == "required" { "missing" } else { "possible" };
+            let known = if required { "missing" } else { "possible" };
             let key = SeenKey::stated(meaning.key, "");
             self.keys.push(SeenKey { known, meaning: Some(meaning), ..key });
         }

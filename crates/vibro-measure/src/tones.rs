@@ -188,12 +188,13 @@ impl HannLines {
 
     /// Frequency in Hz of the sine that acts most on the sines at `frequencies`, if any acts on one by more
     /// than `least`. A sine of height h at d lines from another shifts its amplitude by up to h/(πd), the
-    /// side lobe of a record that is cut off (sinc); frequency and phase are shifted alike.
+    /// side lobe of a record that is cut off (sinc); frequency and phase are shifted alike. A nearer one may
+    /// be the skirt of a sine that wanders: see [`Tone::widened`].
     fn acting(&self, frequencies: &[f64], least: f64) -> Option<f64> {
         let shift = |k: &usize| {
-            let near = |f: &f64| (*k as f64 - f / self.spacing).abs().max(1.0);
-            let nearest = frequencies.iter().map(near).fold(f64::INFINITY, f64::min);
-            self.magnitudes[*k] / (PI * nearest)
+            let away = |f: &f64| (*k as f64 - f / self.spacing).abs();
+            let nearest = frequencies.iter().map(away).fold(f64::INFINITY, f64::min);
+            if nearest < FAR { 0.0 } else { self.magnitudes[*k] / (PI * nearest) }
         };
         let n = self.magnitudes.len().saturating_sub(1);
         let is_peak = |k: &usize| self.magnitudes[*k] >= self.magnitudes[k - 1].max(self.magnitudes[k + 1]);

@@ -218,7 +218,7 @@ fn of_uneven_samples_the_rate_that_interpolates_is_named_and_taken() {
     }
     fs::write(root.path().join("uneven.csv"), table).unwrap();
     let said = complaint(&["init", text(root.path())], 2);
-    let rate = said.split("--resample ").nth(1).expect(&said).split(' ').next().unwrap();
+    let rate = said.split("--resample ").nth(1).expect(&said).split([' ', ')']).next().unwrap();
     json(&["init", text(root.path()), "--resample", rate]);
     let written = fs::read_to_string(root.path().join("campaign.toml")).unwrap();
     assert!(written.contains(&format!("resample = {rate}")), "{written}");
