@@ -310,9 +310,9 @@ def pulse(
 
     The answer: ``xi`` (damping ratio of the contact), ``frequency`` (undamped, Hz), ``restitution``,
     ``duration`` (s), ``stiffness`` and ``damping`` with a mass, ``initial_velocity`` (m/s), ``peak`` and
-    ``impulse`` of the force (N, N s) and ``peak_read`` of its samples, every model in ``fits``.
-    ``pulse("a.csv", mass=0.125, low_pass="none").duration``. A number has ``.value``, ``.std``, ``.unit``
-    and ``.interval()``; ``tables`` are printed, ``tables[0].to_pandas()`` is a frame.
+    ``impulse`` of the force (N, N s) and ``peak_read`` and ``impulse_read`` of its samples, every model in
+    ``fits``. ``pulse("a.csv", mass=0.125, low_pass="none").duration``. A number has ``.value``, ``.std``,
+    ``.unit`` and ``.interval()``; ``tables`` are printed, ``tables[0].to_pandas()`` is a frame.
 
     Arguments:
         time_to_peak: Time from the onset to the largest force in s, instead of a file.

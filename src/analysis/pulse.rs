@@ -9,6 +9,7 @@ use super::kind::Analysis;
 use super::source::Source;
 use crate::campaign::{Entry, KeyRange, LowPass};
 use crate::error::{Error, Result};
+use crate::measure::Estimate;
 use crate::measure::pulse::{Instrument, PulseOptions, PulseResult, pulse, two_times};
 use crate::record::doubt_with_record;
 use crate::report::files::Names;
@@ -116,6 +117,8 @@ fn shown(name: &str, found: &PulseResult) -> Result<Answer> {
             ("damping ratio ξ", "", &|f| Cell::from(&f.xi)),
             ("restitution", "", &|f| Cell::from(&f.restitution)),
             ("duration", "s", &|f| Cell::from(&f.duration)),
+            ("peak force", "N", &|f| f.peak.as_ref().into()),
+            ("impulse", "N s", &|f| known_impulse(f).into()),
         ],
     ));
     answer.table("pulse", contact(name, found));
@@ -123,6 +126,11 @@ fn shown(name: &str, found: &PulseResult) -> Result<Answer> {
         answer.table("pulse_fits", models(name, found));
     }
     Ok(answer)
+}
+
+/// The impulse of the contact; where that has no uncertainty, the one that the samples show.
+fn known_impulse(found: &PulseResult) -> Option<&Estimate> {
+    found.impulse.as_ref().filter(|impulse| impulse.std.is_some()).or(found.impulse_read.as_ref())
 }
 
 /// Quantities of a contact from its pulse, one column each, in SI units.
@@ -139,6 +147,7 @@ fn contact(title: &str, result: &PulseResult) -> Table {
             ("peak force", "N", &|r| r.peak.as_ref().into()),
             ("peak force as read", "N", &|r| r.peak_read.as_ref().into()),
             ("impulse", "N s", &|r| r.impulse.as_ref().into()),
+            ("impulse as read", "N s", &|r| r.impulse_read.as_ref().into()),
             ("stiffness", "N/m", &|r| r.stiffness.as_ref().into()),
             ("damping", "N s/m", &|r| r.damping.as_ref().into()),
         ],

@@ -8,6 +8,7 @@
 mod contact;
 mod edge;
 mod fit;
+mod impulse;
 mod instants;
 mod linear;
 mod located;
@@ -138,6 +139,7 @@ pub fn pulse(trace: &Trace, options: &PulseOptions) -> Result<PulseResult> {
     }
     let rests = samples.rings.is_none() || level.is_some();
     found.extend((!rests).then(|| Finding::caution("pulse-no-rest-after")));
+    let has_level = level.is_none();
     doubts.extend(level);
     // No model of a pulse in doubt has an uncertainty, also where it only decides on another finding.
     let known = doubts.is_empty();
@@ -199,6 +201,9 @@ pub fn pulse(trace: &Trace, options: &PulseOptions) -> Result<PulseResult> {
     found.extend(more.then(|| gained(&result).of(&mut result)));
     found.extend(unexplained.then(|| Finding::doubt("pulse-unexplained").of(&mut result)));
     found.extend(undamped(&result.xi));
+    // It rests on no model of contact or instrument, but on the level around the pulse.
+    let force = scale.force_of_unit(options.mass).filter(|_| has_level);
+    result.impulse_read = force.and_then(|force| impulse::read(&trace.values, rate, &located, force));
     result = result.by_clock(trace.meta.clock);
     result.findings = found;
     result.picture = Some(scale.picture(&samples, &fits));

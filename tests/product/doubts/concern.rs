@@ -6,6 +6,8 @@ use serde_json::Value;
 pub enum Concern {
     /// Everywhere.
     Whole,
+    /// Everywhere but at this key.
+    WholeBut(&'static str),
     /// At these paths; `*` is every item of a list.
     At(&'static [&'static str]),
     /// In one item of a list, whose number at a path is the frequency of the finding, at these paths.
@@ -16,7 +18,7 @@ pub enum Concern {
     /// Nowhere, for this reason.
     Nothing(#[allow(dead_code, reason = "it is read in the table")] &'static str),
 }
-use Concern::{At, Group, Item, Nothing, Whole};
+use Concern::{At, Group, Item, Nothing, Whole, WholeBut};
 
 const MODEL: &str = "of a model: what it computes has no uncertainty";
 const FIT: Concern = At(&["fit/parameters/*/estimate", "fit/parameters/*/interval", "fit/profile/interval"]);
@@ -28,6 +30,8 @@ const STEP: Concern =
     Item("points", "excitation", &["amplitude", "phase", "receptance", "harmonics", "subharmonics"]);
 const VELOCITIES: Concern =
     Group(&["first_contact", "before", "after", "energy", "energy_given", "restitution"]);
+// The sum of the samples of a pulse rests on no model.
+const SAMPLES: Concern = WholeBut("impulse_read");
 // What grows with the values of the record.
 const SCALED: Concern = At(&[
     "modes/*/amplitude",
@@ -40,6 +44,7 @@ const SCALED: Concern = At(&[
     "peak",
     "peak_read",
     "impulse",
+    "impulse_read",
     "fits/*/parameters/initial_velocity",
     "fits/*/parameters/peak",
     "fits/*/parameters/impulse",
@@ -124,13 +129,13 @@ pub const CONCERNS: [(&str, Concern); 75] = [
     ("spring-beyond-force", Nothing(MODEL)),
     ("spring-curvature-matters", Nothing(MODEL)),
     ("springs-together-matter", Nothing(MODEL)),
-    ("pulse-instrument-unknown", Whole),
-    ("pulse-corner-above-half-rate", Whole),
-    ("pulse-low-pass-missing", Whole),
-    ("pulse-onset-unlike", Whole),
+    ("pulse-instrument-unknown", SAMPLES),
+    ("pulse-corner-above-half-rate", SAMPLES),
+    ("pulse-low-pass-missing", SAMPLES),
+    ("pulse-onset-unlike", SAMPLES),
     ("pulse-level-changes", Whole),
-    ("pulse-gains-energy", Whole),
-    ("pulse-unexplained", Whole),
+    ("pulse-gains-energy", SAMPLES),
+    ("pulse-unexplained", SAMPLES),
     // The other numbers are those of the model that fits better.
     ("pulse-low-pass-alone", Whole),
     ("pulse-ratio-near-zero", Whole),
@@ -168,6 +173,10 @@ impl Concern {
         };
         match self {
             Whole => vec![(String::new(), answer)],
+            WholeBut(but) => {
+                let all = answer.as_object().into_iter().flatten().filter(|(key, _)| key != but);
+                all.map(|(key, value)| (format!("/{key}"), value)).collect()
+            }
             Nothing(_) => Vec::new(),
             At(paths) => below("", answer, paths),
             Item(list, key, paths) => {

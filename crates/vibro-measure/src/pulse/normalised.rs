@@ -166,9 +166,14 @@ impl<'a> Normalised<'a> {
 
     /// Factor from a scaled value to N, where the record is a force, or an acceleration of a known mass.
     pub(crate) fn to_force(&self, mass: Option<f64>) -> Option<f64> {
+        Some(self.height * self.force_of_unit(mass)?)
+    }
+
+    /// Force in N for one unit of the record.
+    pub(crate) fn force_of_unit(&self, mass: Option<f64>) -> Option<f64> {
         match self.trace.meta.quantity {
-            Quantity::Force => Some(self.height),
-            Quantity::Acceleration => mass.map(|mass| self.height * mass),
+            Quantity::Force => Some(1.0),
+            Quantity::Acceleration => mass,
             _ => None,
         }
     }

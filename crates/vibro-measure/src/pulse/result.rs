@@ -100,6 +100,9 @@ pub struct PulseResult {
     pub peak_read: Option<Estimate>,
     /// Impulse of the contact, ∫F dt, in N s. A low-pass and a sensor keep it.
     pub impulse: Option<Estimate>,
+    /// Impulse of the pulse in the record in N s, by its samples alone: it holds for any law of contact and
+    /// any instrument.
+    pub impulse_read: Option<Estimate>,
     /// The models fitted to the whole pulse; the first is the one of spring and damper.
     pub fits: Vec<PulseFit>,
     /// The models without a fit.
@@ -133,9 +136,9 @@ impl Uncertain for PulseResult {
     }
 
     fn doubt_scale(&mut self) {
-        for scaled in [&mut self.initial_velocity, &mut self.peak, &mut self.peak_read, &mut self.impulse] {
-            scaled.doubt();
-        }
+        let read = [&mut self.peak_read, &mut self.impulse_read];
+        let scaled = [&mut self.initial_velocity, &mut self.peak, &mut self.impulse];
+        scaled.into_iter().chain(read).for_each(Uncertain::doubt);
         self.fits.doubt_scale();
     }
 }
@@ -144,7 +147,7 @@ impl PulseResult {
     fn estimates(&mut self) -> impl Iterator<Item = &mut Estimate> {
         let contact = [&mut self.xi, &mut self.frequency, &mut self.restitution, &mut self.duration];
         let more = [&mut self.stiffness, &mut self.damping, &mut self.initial_velocity];
-        let force = [&mut self.peak, &mut self.peak_read, &mut self.impulse];
+        let force = [&mut self.peak, &mut self.peak_read, &mut self.impulse, &mut self.impulse_read];
         contact.into_iter().chain(more.into_iter().chain(force).flatten())
     }
 
@@ -166,6 +169,7 @@ impl PulseResult {
             self.damping.as_mut(),
             self.initial_velocity.as_mut(),
             self.impulse.as_mut(),
+            self.impulse_read.as_mut(),
         ];
         let all = once.into_iter().map(|of| (of, 1.0)).chain([(self.stiffness.as_mut(), 2.0)]);
         for (estimate, power) in all.filter_map(|(of, power)| Some((of?, power))) {
@@ -330,6 +334,7 @@ pub(super) fn contact_estimates(
         peak: None,
         peak_read: None,
         impulse: None,
+        impulse_read: None,
         fits: Vec::new(),
         unfitted: Vec::new(),
         findings: Vec::new(),
