@@ -128,9 +128,9 @@ pub fn each(trace: &mut Trace, f: impl Fn(f64, f64) -> f64) {
 }
 
 /// Records of a setting, in a full and a quick run: more take longer, fewer scatter more.
-const RECORDS: [usize; 2] = [128, 8];
+const RECORDS: [usize; 2] = [128, 3];
 /// Records of a setting that are also timed, in a full and a quick run.
-const TIMED: [usize; 2] = [24, 3];
+const TIMED: [usize; 2] = [24, 1];
 /// Distance of the seeds of two settings of a scene: each setting has its own records, the same for all
 /// methods.
 const SEED_DISTANCE: usize = 1_000_000;
