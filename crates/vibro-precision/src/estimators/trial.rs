@@ -128,7 +128,7 @@ pub fn each(trace: &mut Trace, f: impl Fn(f64, f64) -> f64) {
 }
 
 /// Records of a setting, in a full and a quick run: more take longer, fewer scatter more.
-const RECORDS: [usize; 2] = [128, 3];
+const RECORDS: [usize; 2] = [128, 4];
 /// Records of a setting that are also timed, in a full and a quick run.
 const TIMED: [usize; 2] = [24, 1];
 /// Distance of the seeds of two settings of a scene: each setting has its own records, the same for all

@@ -198,8 +198,12 @@ fn holding(mixture: &[(f64, f64, f64)], least: f64) -> f64 {
 }
 
 impl Rational {
-    /// Widens the uncertainties to cover a further mode that the noise may hide.
+    /// Widens the uncertainties of modes that were fitted together to cover a further one that the noise may
+    /// hide. A mode on its own has none: beside it, what the noise may hide counted too much in single modes.
     pub fn cover_hidden(&mut self, again: &Again<'_>) {
+        if self.modes.len() < 2 {
+            return;
+        }
         let odds = self.modes.len() as f64 - 0.5;
         let Some(hidden) = Hidden::of(again, self.whiteness.inflation) else { return };
         let (draws, log_weights) = hidden.draws(odds);
