@@ -22,6 +22,15 @@ function roundSteps(from, to) {
   return Array.from({ length: Math.max(n, 0) + 1 }, (_, k) => Number(((first + k) * step).toPrecision(12)));
 }
 
+/** Writes round values of the abscissa of a picture below it. */
+function writeSteps(pen, { from, to }, across, unit, width, foot) {
+  for (const value of roundSteps(from, to)) {
+    const x = across(value);
+    pen.textAlign = x < 30 ? "left" : x > width - 30 ? "right" : "center";
+    pen.fillText(quantity(value, unit) || `0 ${unit}`, x, foot);
+  }
+}
+
 /** The raw trace of a table, with what was detected, and lines that the mouse drags. */
 class TraceView {
   constructor(host, { ask, set, events }) {
@@ -168,11 +177,7 @@ class TraceView {
     drawBand(pen, picture, this.across, this.up);
     pen.fillStyle = colour("--soft");
     pen.font = "11px sans-serif";
-    for (const t of roundSteps(picture.from, picture.to)) {
-      const x = this.across(t);
-      pen.textAlign = x < 30 ? "left" : x > width - 30 ? "right" : "center";
-      pen.fillText(quantity(t, "s") || "0 s", x, height - 4);
-    }
+    writeSteps(pen, picture, this.across, "s", width, height - 4);
     pen.textAlign = "left";
     pen.fillText(quantity(high - room, unit), 4, 12);
     pen.fillText(quantity(low + room, unit), 4, height - foot - 4);
@@ -276,11 +281,7 @@ class TraceView {
     drawBand(pen, spectrum, across, (v) => (height - 16) * (1 - (Math.max(v, shown) - shown) / (high - shown || 1)));
     pen.fillStyle = colour("--soft");
     pen.font = "11px sans-serif";
-    for (const f of roundSteps(spectrum.from, spectrum.to)) {
-      const x = across(f);
-      pen.textAlign = x < 30 ? "left" : x > width - 30 ? "right" : "center";
-      pen.fillText(quantity(f, "Hz") || "0 Hz", x, height - 3);
-    }
+    writeSteps(pen, spectrum, across, "Hz", width, height - 3);
     const band = pairOf(this.value("band"));
     if (!band) return;
     pen.fillStyle = colour("--edge");

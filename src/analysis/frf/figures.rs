@@ -19,11 +19,13 @@ const SMOOTH_CIRCLE: usize = 3000;
 /// The part of the frequencies that is drawn, in units of that up to the last line of a mode.
 const SHOWN: f64 = 2.5;
 
-/// Frequency at which the figures of a function end: its last line, unless all modes lie in its lower part.
-fn end_of(f: &[f64], modes: &[Mode]) -> f64 {
+/// Frequency at which the figures of a function end, and the number of lines up to there: its last line,
+/// unless all modes lie in its lower part.
+fn end_of(f: &[f64], modes: &[Mode]) -> (f64, usize) {
     let last = f.last().copied().unwrap_or(f64::NAN);
     let of_modes = modes.iter().map(|mode| SHOWN * mode.lines.1.max(mode.frequency.value));
-    of_modes.reduce(f64::max).map_or(last, |end| end.min(last))
+    let end = of_modes.reduce(f64::max).map_or(last, |end| end.min(last));
+    (end, f.partition_point(|at| *at <= end))
 }
 
 /// The caption, with what is not drawn of a function.
@@ -58,8 +60,7 @@ fn broken(f: &[f64], y: &[f64]) -> (Vec<f64>, Vec<f64>) {
 /// Magnitude (logarithmic) over phase in degrees, with the fitted response over the lines of each mode.
 pub fn frf(title: &str, meta: &Meta, measured: &Measured, modes: &[Mode]) -> Figure {
     let f = &measured.frequency;
-    let end = end_of(f, modes);
-    let part = f.partition_point(|at| *at <= end);
+    let (end, part) = end_of(f, modes);
     let (f, coherence) = (&f[..part], measured.coherence.as_deref().map(|c| &c[..part]));
     let magnitude: Vec<f64> = measured.values[..part].iter().map(|v| v.norm()).collect();
     let lines = if f.len() <= DOTS {
@@ -129,8 +130,7 @@ pub fn stabilisation(
     poles: &[OrderedPole],
     modes: &[Mode],
 ) -> Option<Figure> {
-    let end = end_of(&measured.frequency, modes);
-    let part = measured.frequency.partition_point(|at| *at <= end);
+    let (end, part) = end_of(&measured.frequency, modes);
     let (f, values) = (&measured.frequency[..part], &measured.values[..part]);
     let (first, last) = (*f.first()?, *f.last()?);
     let x = || AxisSpec::frequency().limits(first, last);
