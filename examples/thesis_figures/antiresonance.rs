@@ -56,7 +56,7 @@ pub fn sheet() -> Result<Sheet> {
     let [from, to] = without(&rig);
     claims.push(Claim::told(
         "R 0.7, c₁ and c₂ 0.1: ν without a motion of one impact a cycle",
-        "none",
+        "drawn over all ν",
         format!("{from:.4} to {to:.4}"),
         from > to,
         "",
@@ -70,6 +70,13 @@ pub fn sheet() -> Result<Sheet> {
         near.is_none(),
         why,
     ));
+    claims.push(Claim::told(
+        "the same: x₂ beside x₁",
+        "x₂ the larger",
+        near.map_or_else(String::new, |s| format!("{:.1} times x₁", s.largest[1] / s.largest[0])),
+        near.is_some_and(|s| s.largest[1] > s.largest[0]),
+        "",
+    ));
     // x₁ changes with ν faster than the points of the figure show.
     let fine = grid(1.6, 1.7, 101).iter().map(|nu| settled(&rig, *nu)).collect::<Result<Vec<Settled>>>()?;
     let least = fine.iter().min_by(|a, b| a.largest[0].total_cmp(&b.largest[0]));
@@ -82,7 +89,7 @@ pub fn sheet() -> Result<Sheet> {
     );
     let here = least.map_or_else(String::new, |s| in_words(s, 3));
     claims.push(
-        Claim::told("the same: least x₁ between the resonances", "ν 1.75", here, true, "")
+        Claim::told("the same: least x₁ between the resonances", "about ν 1.75", here, true, "")
             .against("1.75", at, &why),
     );
     claims.push(of_sine());
@@ -174,7 +181,7 @@ fn of_sine() -> Claim {
         "x₂ larger there",
         format!("ν {at:.2}: x₁ {:.2} mm, x₂ {:.2} mm", 1e3 * first, 1e3 * second),
         second > first,
-        "under a sine the orbits exist",
+        "under a sine the orbits exist; jsdnew draws x₂ raised by the gap",
     )
 }
 

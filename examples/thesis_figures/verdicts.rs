@@ -2,7 +2,7 @@
 //! look like.
 
 use crate::impulse::IMPULSE;
-use crate::scene::{accepted, grid, hertz, ratio, real, rig, under_sine};
+use crate::scene::{self, accepted, grid, hertz, ratio, real, rig, under_impulses, under_sine};
 use crate::sheet::{Claim, Sheet};
 use crate::sweeps::{only_up, without_duration};
 use ndarray::Array2;
@@ -147,6 +147,12 @@ fn traces() -> Result<Vec<Sheet>> {
     all.into_iter().map(|trace| traced(&rig, &trace)).collect()
 }
 
+/// Least and largest x₁ in mm of an orbit, from 200 instants of its period.
+fn x1_of(orbit: &Orbit) -> (f64, f64) {
+    let x1 = (0..200).map(|i| 1e3 * orbit.state(f64::from(i) / 200.0 * orbit.period()).x1);
+    x1.fold((f64::MAX, f64::MIN), |(a, b), x| (a.min(x), b.max(x)))
+}
+
 fn traced(rig: &Rig, trace: &Trace) -> Result<Sheet> {
     let found = orbits_of(rig, &trace.excitation, 1)?.orbits;
     let orbit = accepted(&found).ok_or_else(|| Error::refused(format!("no motion at ν {}", trace.nu)))?;
@@ -170,15 +176,25 @@ fn traced(rig: &Rig, trace: &Trace) -> Result<Sheet> {
     );
     let mut claims = vec![claim];
     if trace.name == "impulse_clapping" {
-        let x1 = (0..200).map(|i| 1e3 * orbit.state(f64::from(i) / 200.0 * orbit.period()).x1);
-        let (least, most) = x1.fold((f64::MAX, f64::MIN), |(a, b), x| (a.min(x), b.max(x)));
+        let (least, most) = x1_of(orbit);
         claims.push(Claim::told(
-            "x₁ in the clapping resonance, R 0.7, c₁ and c₂ 0",
+            "3.14: x₁ in the clapping resonance, R 0.7, c₁ and c₂ 0",
             "negative",
             format!("{:.2} mm at the impact, {least:.2} to {most:.2} mm", 1e3 * orbit.state(0.0).x1)
                 .replace('-', "−"),
+            -least > most,
+            "its larger side is, which jidnew draws; at the impact x₁ is above 0",
+        ));
+        let rig = Rig { c2: 0.0, ..scene::rig(1.0) };
+        let found = under_impulses(&rig, IMPULSE, 2.13);
+        let orbit = accepted(&found).ok_or_else(|| Error::refused("no motion at ν 2.13 with R 1"))?;
+        let (least, most) = x1_of(orbit);
+        claims.push(Claim::told(
+            "3.13: x₁ in the clapping resonance, R 1, c₁ 0.1, c₂ 0",
+            "negative",
+            format!("{least:.1} to {most:.2} mm").replace('-', "−"),
             most < 0.0,
-            "it is above 0 at the impact, and over the cycle it has both signs",
+            "throughout",
         ));
     }
     let figure = figures::orbit(trace.title, rig, orbit).height(70.0);
@@ -203,7 +219,7 @@ fn branches() -> Result<Sheet> {
     for restitution in [0.98, 0.7] {
         let mut tried = Vec::new();
         for force in [0.1, 0.2, 0.5, 1.0] {
-            tried.push((force, only_up(&without_duration(&crate::scene::rig(restitution), force)?)));
+            tried.push((force, only_up(&without_duration(&scene::rig(restitution), force)?)));
         }
         claim = claim.of_forces(&format!("R {restitution} and "), &tried);
     }

@@ -172,7 +172,8 @@ fn of_detected(trace: &Trace, options: &ImpactsOptions, detected: Detected) -> R
     let counted = count(&times, &steps, options.complete || pattern.is_some());
     let kept: Vec<f64> = counted.kept.iter().map(|i| times[*i]).collect();
     let even = pattern.map_or_else(|| kept.clone(), |length| evened(&kept, length));
-    let known = options.complete || options.excitation.is_some() || options.reference.is_some();
+    let excited = options.excitation.is_some() || options.reference.is_some();
+    let known = options.complete || excited;
     if !known && pattern.is_none() && irregular(&steps) {
         return Err(without_period(times.len(), options));
     }
@@ -185,6 +186,10 @@ fn of_detected(trace: &Trace, options: &ImpactsOptions, detected: Detected) -> R
     let mostly_missed = counted.missed > times.len();
     let missed = Finding::doubt("impacts-mostly-missed").count("n", times.len());
     doubts.extend(mostly_missed.then(|| missed.count("missed", counted.missed)));
+    let median_interval = median(&steps);
+    let regular = spread(&even, &counted).is_some_and(|s| s < REGULAR * median_interval);
+    // A mean interval of a body that bounces is no property of it.
+    doubts.extend((!regular && !excited && bounces(&times)).then(|| Finding::doubt("impacts-bounce")));
     let intervals = counted.index.last().copied().unwrap_or(0);
     let std = widened(fitted.std, even.len(), pattern).hypot(within_sample(resolution, intervals));
     let mut std = Some(std).filter(|s| s.is_finite());
@@ -197,7 +202,6 @@ fn of_detected(trace: &Trace, options: &ImpactsOptions, detected: Detected) -> R
     };
     let method = format!("{interval_by}; {method}");
     let of = |value, std, unit| Estimate::new(value, std, unit, kept.len(), method.as_str());
-    let median_interval = median(&steps);
     let mut answer = Impacts {
         n: times.len(),
         interval: of(fitted.mean, std, "s").with_relative(trace.meta.clock),
@@ -212,7 +216,7 @@ fn of_detected(trace: &Trace, options: &ImpactsOptions, detected: Detected) -> R
         excitation: None,
         per_cycle: None,
         beat: None,
-        regular: spread(&even, &counted).is_some_and(|s| s < REGULAR * median_interval),
+        regular,
         phases: Vec::new(),
         onset_std,
         heights,
@@ -316,7 +320,6 @@ fn of_train(found: &Impacts) -> Vec<Finding> {
             .then(|| Finding::caution("impacts-missed").count("n", found.missed)),
         (found.doubled > 0).then(|| Finding::caution("impacts-doubled").count("n", found.doubled)),
         irregular.map(|s| Finding::caution("impacts-irregular").number("spread", s / found.median_interval)),
-        irregular.filter(|_| bounces(&found.times)).map(|_| Finding::caution("impacts-bounce")),
     ];
     all.into_iter().flatten().collect()
 }

@@ -116,6 +116,7 @@ pub const CONCERNS: [(&str, Concern); 75] = [
     ("parameter-in-combination", PARAMETER),
     ("parameter-too-uncertain", PARAMETER),
     ("impacts-or-echoes", INTERVAL),
+    ("impacts-bounce", INTERVAL),
     // Also of a drop, whose numbers are all of its impacts.
     ("impacts-lost-in-noise", Whole),
     ("impacts-mostly-missed", INTERVAL),

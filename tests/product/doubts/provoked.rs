@@ -183,7 +183,10 @@ fn impacts(folder: &Path) -> Vec<Case> {
     let echoes = regular(40).flat_map(|(t, _)| [(t, 1.0), (t + 4.1e-3, 0.3), (t + 9.7e-3, 0.21)]);
     // A pause of 60 intervals amid 24 impacts.
     let paused = (0..24).map(|k| (0.05 + 0.02 * f64::from(if k < 12 { k } else { k + 60 }), 1.0));
+    // Flights of a body with R = 0.8, the first of 0.4 s.
+    let bounces = (0..8).map(|k| (0.1 + 0.4 * (1.0 - 0.8f64.powi(k)) / 0.2, 1.0));
     vec![
+        train("bounces", "impacts", &bursts(bounces, 2e-3), &["impacts-bounce"]),
         train("echoes", "impacts", &bursts(echoes, 2e-3), &["impacts-or-echoes"]),
         train("noise", "impacts --threshold 0.1", &bursts(regular(40), 0.1), &["impacts-lost-in-noise"]),
         train("a long pause", "impacts", &bursts(paused, 2e-3), &["impacts-mostly-missed"]),
