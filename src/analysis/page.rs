@@ -30,6 +30,10 @@ pub fn page(
 ) -> Page {
     let mut page = Page::new(job.title.as_str()).heading("Answers");
     page = page.answers(&shortened(&all.headlines));
+    if !all.headlines.is_empty() {
+        page =
+            page.paragraph("± is one standard uncertainty: twice as much holds the truth 95 times in 100.");
+    }
     // Each finding is listed once: doubts beside the answers, all others at the records.
     let mut doubts = graded(&all.findings, Voice::Campaign);
     doubts.retain(|(severity, _)| *severity > Severity::Note);

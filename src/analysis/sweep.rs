@@ -261,7 +261,9 @@ fn read_responses(
     progress: &dyn Progress,
 ) -> Vec<(String, Result<SweptResponse>)> {
     let entries = per_response(entries);
-    progress.start("reading sweeps", entries.len());
+    if !entries.is_empty() {
+        progress.start("reading sweeps", entries.len());
+    }
     let read = |entry: &Entry<Keys>| {
         let listed = Listed::of(campaign, entry)?;
         let compute = &campaign.compute;

@@ -1,5 +1,8 @@
 const at = (id) => document.getElementById(id);
 
+/** Words of the button that keeps the files, whenever what is kept is not what there is. */
+const KEEP = "keep in this browser";
+
 /** Script of the report in its frame: a link to a file saves it, and the place on the page outlives a new report. */
 const IN_REPORT = `<script>
 addEventListener("click", (event) => {
@@ -96,8 +99,10 @@ class App {
 
   /** The report alone on the page, or below the files. */
   read(alone) {
+    if (alone) this.place = scrollY;
     document.body.classList.toggle("reading", alone);
-    at(alone ? "report" : "to-report").focus({ preventScroll: alone });
+    at(alone ? "report" : "to-report").focus({ preventScroll: true });
+    if (!alone) scrollTo(0, this.place);
   }
 
   /** Kept files are taken up only if the person says so. */
@@ -171,7 +176,7 @@ class App {
     this.drawn.clear();
     this.trace.close();
     [at("bench").hidden, at("drop").hidden] = [false, true];
-    at("keep").textContent = "keep in this browser";
+    at("keep").textContent = KEEP;
     if (known === null) [this.results, this.edited, this.unsaved, this.history, this.undone, at("report").srcdoc] = [null, false, false, [], [], ""];
     this.recordings.show(listed.recordings);
     const found = await this.work("looking at files", () => this.program.ask("propose", { known }));
@@ -241,6 +246,7 @@ class App {
         this.history.push(before);
         this.undone.length = 0;
         [this.edited, this.unsaved] = [true, true];
+        at("keep").textContent = KEEP;
       }
       [this.text, this.tables] = [after.text, after.tables];
       return after;
@@ -274,7 +280,7 @@ class App {
     try {
       do {
         this.again = false;
-        at("stale").hidden = !at("report").srcdoc;
+        this.stale(true, "The answers to the last change are being computed: the report is still the one before.");
         done = await this.work("running", () => this.program.ask("run").then((found) => this.report().then(() => found)), true);
         if (done) this.cards.refused = done.refused;
         // Without an answer no mark stands for the campaign as it is.
@@ -284,9 +290,14 @@ class App {
     } finally {
       this.running = false;
     }
-    at("stale").hidden = done !== null || !at("report").srcdoc;
+    this.stale(done === null, "The last change gave no report: this one is of the campaign before it.", "troubles");
     await this.trace.refresh(this.tables);
     document.body.dataset.runs = String(1 + Number(document.body.dataset.runs ?? 0));
+  }
+
+  /** Says that the report is not of the campaign as it is, and why. */
+  stale(is, why, className = "soft") {
+    Object.assign(at("stale"), { textContent: why, className, hidden: !is || !at("report").srcdoc });
   }
 
   async report() {

@@ -97,16 +97,33 @@ class Tables {
     const nameOf = (fold) => `${fold.parentElement.dataset.table}\n${fold.className}`;
     const open = new Set(Array.from(this.host.querySelectorAll("details[open]"), nameOf));
     this.host.replaceChildren(...tables.map((table, k) => this.card(table, identity(tables, k), tables[k + 1]?.line, problems)));
-    const waits = tables.flatMap((table, k) => table.keys.filter(({ known }) => known === "missing").map(({ key }) => this.toField(identity(tables, k), table, key)));
-    if (waits.length) this.host.prepend(make("p", { className: "waits" }, waits.length === 1 ? "One value is missing: " : `${waits.length} values are missing: `, ...waits.flatMap((link, k) => (k ? [", ", link] : [link]))));
+    this.tables = tables;
+    this.head = make("div");
+    this.host.prepend(this.head);
+    this.listed();
     for (const fold of this.host.querySelectorAll("details")) fold.open = open.has(nameOf(fold));
-    const none = problems.length ? "The campaign has an error, which its text below names: put right, the tables come back." : "Nothing is measured yet. A table can be written below, in the campaign.";
+    const none = problems.length ? "The text of the campaign, below, has an error. Once it is put right the tables come back." : "Nothing is measured yet. Choose “measure it as …” at a file, or write a table into the campaign below.";
     if (!tables.length) this.host.append(make("p", { textContent: none }));
     const input = field && this.host.querySelector(`[data-field="${CSS.escape(field)}"]`);
     if (!input) return;
     input.value = value;
     input.focus();
     input.setSelectionRange?.(selectionStart, selectionEnd);
+  }
+
+  /** Lists the values that are missing, and those that were typed and refused, as links. */
+  listed() {
+    const linked = (of, one, more) => {
+      const links = this.tables.flatMap((table, k) => {
+        const id = identity(this.tables, k);
+        return table.keys.filter((row) => of(row, id)).map(({ key }) => this.toField(id, table, key));
+      });
+      const words = links.length === 1 ? `One value ${one}: ` : `${links.length} values ${more}: `;
+      return links.length ? [make("p", { className: "waits" }, words, ...links.flatMap((link, k) => (k ? [", ", link] : [link])))] : [];
+    };
+    const missing = linked(({ known }) => known === "missing", "is missing", "are missing");
+    const refused = linked(({ key }, id) => this.wrong.has(`field-${id}-${key}`), "is not taken, the report has the one before", "are not taken, the report has those before");
+    this.head.replaceChildren(...missing, ...refused);
   }
 
   /** A link to a field. */
@@ -130,9 +147,11 @@ class Tables {
     // An error of a value stands below its field.
     const atKey = ({ line }) => table.keys.some((row) => row.line === line);
     said.push(...wrong.filter((one) => !atKey(one)).map(({ text }) => here(text)));
-    for (const text of new Set(said)) card.append(make("p", { className: "refused", textContent: text }));
+    // The same reason may stand in a longer sentence.
+    const whole = (text, k) => said.every((other, i) => i === k || !other.includes(text) || (other === text && i > k));
+    for (const text of said.filter(whole)) card.append(make("p", { className: "refused", textContent: text }));
     // Keys that an error names stand with those that are in use; the title names the file.
-    const named = namedIn(said), isTitle = (row) => row.key === "file" && fromToml(row.value) === table.files;
+    const named = namedIn([...said, ...wrong.map(({ text }) => text)]), isTitle = (row) => row.key === "file" && fromToml(row.value) === table.files;
     const shown = (row) => (isTitle(row) || (row.known === "possible" && row.shared && !named.includes(row.key)) ? "reading" : named.includes(row.key) && ["open", "possible"].includes(row.known) ? "named" : row.known);
     const rows = (...known) => table.keys.filter((row) => known.includes(shown(row))).map((row) => this.row(row, id, table));
     card.append(...rows("missing"), ...rows("named"), ...rows("guessed", "stated", "found"));
@@ -195,6 +214,7 @@ class Tables {
         wrong.textContent = here(error.message);
         this.wrong.set(id, { value: input.value, why: wrong.textContent });
         input.setAttribute("aria-invalid", "true");
+        this.listed();
       }
     };
     // A field that was drawn anew while it was typed in has not changed for the browser.

@@ -225,10 +225,18 @@ impl Workbench {
         Ok((text, seen.section, number.ok_or_else(no_table)?))
     }
 
-    /// Sets a key of a table.
+    /// Sets a key of a table, unless its value is none that the key takes, so that no table could be read.
     fn set(&mut self, table: usize, key: &str, value: &str) -> Result<()> {
         let (text, section, number) = self.with_table(table)?;
-        self.text = Campaign::text_with(&text, (&section, number), key, value)?;
+        let text = Campaign::text_with(&text, (&section, number), key, value)?;
+        let before = std::mem::replace(&mut self.text, text);
+        if let Err(error) = self.campaign() {
+            let after = std::mem::replace(&mut self.text, before);
+            if self.campaign().is_ok() {
+                return Err(error);
+            }
+            self.text = after;
+        }
         Ok(())
     }
 

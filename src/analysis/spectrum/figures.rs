@@ -30,7 +30,7 @@ pub fn together(results: &[(String, SpectralResult)]) -> Option<Figure> {
         let (lines, group_size) = resolved(drawn(result).1);
         plot = plot.with(Series::line(name.as_str(), lines.0, lines.1));
         if group_size > 1 {
-            caption.push(format!("{name}: of {group_size} lines side by side the largest is drawn."));
+            caption.push(format!("{name}: each point is the largest of {group_size} neighbouring lines."));
         }
     }
     let names: Vec<&str> = results.iter().map(|(name, _)| name.as_str()).collect();
@@ -79,7 +79,7 @@ fn spectrum_figure(title: &str, drawn: (Plot, (Vec<f64>, Vec<f64>)), result: &Sp
         caption.push("Circles mark the sines that were fitted.".to_owned());
     }
     if group_size > 1 {
-        caption.push(format!("Of {group_size} lines side by side the largest is drawn."));
+        caption.push(format!("Each point is the largest of {group_size} neighbouring lines."));
     }
     Figure::double(format!("Spectrum, {title}")).panel(plot).caption(caption.join(" "))
 }

@@ -97,6 +97,7 @@ pub const CONCERNS: [(&str, Concern); 75] = [
     ("unit-head-differs", SCALED),
     ("unit-row-differs", SCALED),
     ("quantity-row-differs", Whole),
+    ("quantity-name-differs", Whole),
     ("axis-row-differs", Whole),
     ("sheet-in-percent", SCALED),
     ("missing-marked", Whole),

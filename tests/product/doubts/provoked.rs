@@ -86,6 +86,7 @@ fn readers(folder: &Path) -> Vec<Case> {
         text("grouped digits", "Sampling rate: 1000 Hz\na [m]", &grouped, &["digits-may-be-grouped"]),
         text("unit of the head", "Unit: mm\ntime [s],a [m]", &timed, &["unit-head-differs"]),
         text("unit of the row", "time [s],a [mm]\n[s],[m]", &timed, &["unit-row-differs"]),
+        text("quantity of the name", "time [s],Displacement [mm/s]", &timed, &["quantity-name-differs"]),
         text("quantity of the row", "time [s],a [m]\n[s],[m/s]", &timed, &["quantity-row-differs"]),
         text("unit of the times", "time [ms],a [m]\n[s],[m]", &timed, &["axis-row-differs"]),
         text("a missing value", "time [s],a [m]", &marked, &["missing-marked"]),

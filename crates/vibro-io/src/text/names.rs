@@ -251,6 +251,20 @@ impl Name {
         if count { Some("count") } else { (warm && quantity == Quantity::Angle).then_some("temperature") }
     }
 
+    /// Finding if the name says another motion than the unit: `Acceleration [mm/s]`.
+    pub fn motion_differs(&self) -> Option<Finding> {
+        let used = self.unit.as_deref()?;
+        let name = self.name.to_lowercase();
+        let mut said = MOTIONS.iter().filter(|(word, _)| name.contains(word)).map(|(_, motion)| *motion);
+        let (motion, quantity) = (said.next()?, Unit::parse(amplitude(used).0)?.quantity());
+        let moves = MOTIONS.iter().any(|(_, motion)| *motion == quantity);
+        // A name with several motions tells none.
+        let differs = moves && motion != quantity && said.all(|other| other == motion);
+        let found = Finding::doubt("quantity-name-differs").name("column", self.name.as_str());
+        let found = found.name("word", motion.name()).name("used", used).name("quantity", quantity.name());
+        differs.then(|| found.without_estimate())
+    }
+
     /// Factor to rad of a phase column, which follows its magnitude; `None` for other columns.
     pub fn phase(&self) -> Option<f64> {
         let key = self.name.to_lowercase();
@@ -337,6 +351,16 @@ pub(super) const NATURAL: &str = "N";
 
 /// Words that begin or end the name of a phase.
 const PHASES: [&str; 5] = ["phase", "phasenwinkel", "fase", "angle", "фаза"];
+
+/// Words in the names of columns, and the motion that they say.
+const MOTIONS: [(&str, Quantity); 6] = [
+    ("acceleration", Quantity::Acceleration),
+    ("beschleunigung", Quantity::Acceleration),
+    ("velocity", Quantity::Velocity),
+    ("geschwindigkeit", Quantity::Velocity),
+    ("displacement", Quantity::Displacement),
+    ("auslenkung", Quantity::Displacement),
+];
 
 /// Words in the name of a force: the unit N is then newton.
 const FORCES: [&str; 3] = ["force", "load", "kraft"];

@@ -235,7 +235,8 @@ impl<'a> RecordContext<'a> {
         let head_differs = self.head_differs(&column.name).filter(|_| self.options.unit.is_none());
         let whole = || column.reals().iter().all(|v| v.fract() == 0.0);
         let against = column.name.against_unit(self.naturals, whole).filter(|_| self.options.unit.is_none());
-        let differs = column.name.unit_differs(false).filter(|_| self.options.unit.is_none());
+        let differs = column.name.unit_differs(false).or_else(|| column.name.motion_differs());
+        let differs = differs.filter(|_| self.options.unit.is_none());
         let Column { at, name: Name { name, unit }, mut values, sparse } = column;
         let mut meta = self.meta(i, at, name);
         let unit = unit.as_deref().or(self.stated.unit.as_deref()).map(amplitude);

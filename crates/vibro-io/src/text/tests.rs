@@ -1163,6 +1163,17 @@ fn a_row_of_units_that_contradicts_a_name_is_said() {
     assert!(has_finding(&times.all_findings(), "axis-row-differs", &["head=s", "used=ms"]));
     let other = of(format!("Time [s],Acc [m/s²]\ns,mm/s\n{rows}"));
     assert!(has_finding(&other.all_findings(), "quantity-row-differs", &["head=m/s²", "used=mm/s"]));
+    let motion = of(format!("Time [s],Acceleration [mm/s]\n{rows}"));
+    let said = ["word=acceleration", "used=mm/s", "quantity=velocity"];
+    assert!(
+        has_finding(&motion.all_findings(), "quantity-name-differs", &said),
+        "{:?}",
+        motion.all_findings()
+    );
+    for name in ["Velocity [mm/s]", "Acceleration of velocity [mm/s]", "Force at acceleration [N]"] {
+        let found = of(format!("Time [s],{name}\n{rows}"));
+        assert!(!has_finding(&found.all_findings(), "quantity-name-differs", &[]), "{name}");
+    }
     let same = of(format!("Time [s],Acc [m/s²]\ns,m/s²\n{rows}"));
     assert!(same.all_findings().is_empty(), "{:?}", same.all_findings());
     assert_eq!(same.records[0].meta().name, "Acc");

@@ -8,6 +8,7 @@ use super::{ContactModel, KelvinVoigt, LowPass, Rebound};
 use crate::Estimate;
 use crate::converter::rounding;
 use crate::mean::{average, mixture};
+use crate::residuals::widened;
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -178,6 +179,30 @@ impl<'a> Normalised<'a> {
         }
     }
 
+    /// Standard uncertainty of the level under the contact, over the height of the pulse, that drift, hum and
+    /// 1/f noise leave beyond white noise: stretches of the record as long as the contact scatter by it about
+    /// the fitted baseline. The white part is that of the differences of neighbours.
+    fn level_std(&self, fitted: &FittedPulse) -> f64 {
+        let (onset, end) = (fitted.fit.parameters[0], fitted.end());
+        let delay = self.filter.as_ref().map_or(0.0, LowPass::delay);
+        let values = &self.trace.values;
+        let n = ((end - onset) * self.length / self.step).ceil().max(1.0);
+        let before = values[..self.index(onset - 2.0 * self.step / self.length)].rchunks_exact(n as usize);
+        // Behind the contact a sensor with a mode rings.
+        let rings = fitted.fit.parameters.len() > 3 + fitted.model.parameters();
+        let rest = if rings { values.len() } else { self.index(end + TAIL * delay) };
+        let after = values[rest..].chunks_exact(n as usize);
+        let (mut count, mut squares, mut steps) = (0.0, 0.0, 0.0);
+        for stretch in before.chain(after).filter(|stretch| stretch.iter().all(|v| v.is_finite())) {
+            let level = average(stretch) / self.height - fitted.fit.parameters[1];
+            let neighbours = stretch.windows(2).map(|w| ((w[1] - w[0]) / self.height).powi(2)).sum::<f64>();
+            (count, squares, steps) = (count + 1.0, squares + level * level, steps + neighbours);
+        }
+        let white = steps / (2.0 * count * (n - 1.0).max(1.0)) / n;
+        let beyond = (squares / count - white).max(0.0).sqrt();
+        if count > 0.0 { beyond * widened(count as usize) } else { 0.0 }
+    }
+
     /// The largest sample above the baseline of a fit, in N; without an uncertainty where the top is clipped.
     pub fn peak_read(&self, fitted: &FittedPulse, noise: f64, mass: Option<f64>) -> Option<Estimate> {
         let factor = self.to_force(mass)?;
@@ -227,16 +252,16 @@ impl<'a> Normalised<'a> {
         mass: Option<f64>,
         known: bool,
     ) -> BTreeMap<&'static str, Estimate> {
-        let FittedPulse { model, fit, widening, .. } = fitted;
+        let FittedPulse { model, fit, .. } = fitted;
         let n = fit.residuals.len();
-        let widened = widening.filter(|_| known).unwrap_or(f64::NAN);
+        let widening = fitted.widening.filter(|_| known).unwrap_or(f64::NAN);
         let estimate = |value: f64, std: f64, unit| {
-            let value = widening.map_or(f64::NAN, |_| value);
+            let value = fitted.widening.map_or(f64::NAN, |_| value);
             Estimate::new(value, Some(std), unit, n, "least squares")
         };
         let mut parameters = BTreeMap::new();
         let mut put = |name, i: usize, factor: f64, shift: f64, unit| {
-            let std = factor.abs() * fit.std(i) * widened;
+            let std = factor.abs() * fit.std(i) * widening;
             parameters.insert(name, estimate(shift + factor * fit.parameters[i], std, unit));
         };
         put("onset", 0, self.length, self.seconds(0.0), "s");
@@ -266,7 +291,7 @@ impl<'a> Normalised<'a> {
             put(name, i, *factor, 0.0, unit);
         }
         let shape = &fit.parameters[3..3 + model.parameters()];
-        let variance = |i: usize, j: usize| fit.covariance(3 + i, 3 + j) * widened.powi(2);
+        let variance = |i: usize, j: usize| fit.covariance(3 + i, 3 + j) * widening.powi(2);
         let kelvin_voigt = |p: &[f64]| KelvinVoigt::new(p[0], p[1]);
         // All but spring and damper are integrated, and smooth only to 1e-5: differences need larger steps.
         let scale = vec![if *model == ContactModel::KelvinVoigt { 1.0 } else { 1e3 }; shape.len()];
@@ -280,18 +305,20 @@ impl<'a> Normalised<'a> {
                 )
             };
             // From the velocity on.
-            let of_all = |i: usize, j: usize| fit.covariance(2 + i, 2 + j) * widened.powi(2);
+            let of_all = |i: usize, j: usize| fit.covariance(2 + i, 2 + j) * widening.powi(2);
             let p = &fit.parameters[2..3 + model.parameters()];
             let steps = [&[scale[0]], &scale[..]].concat();
-            let mut put = |name, factor: f64, unit, of: &dyn Fn(&[f64]) -> Option<f64>| {
+            let level = self.level_std(fitted);
+            let mut put = |name, factor: f64, unit, level: f64, of: &dyn Fn(&[f64]) -> Option<f64>| {
                 if let Some((value, std)) = propagated(p, &steps, of_all, of) {
-                    parameters.insert(name, estimate(factor * value, factor.abs() * std, unit));
+                    parameters.insert(name, estimate(factor * value, factor.abs() * std.hypot(level), unit));
                 }
             };
-            put("peak", force, "N", &|p| of(p, &|c| c.peak(), &|c| c.peak(p[1])));
+            put("peak", force, "N", level, &|p| of(p, &|c| c.peak(), &|c| c.peak(p[1])));
             let gained = |restitution: f64| 1.0 + restitution;
             let impulse = |p: &[f64]| of(p, &|c| gained(c.restitution()), &|c| gained(c.restitution));
-            put("impulse", force * self.length, "N s", &impulse);
+            let level = level * (fitted.end() - fit.parameters[0]);
+            put("impulse", force * self.length, "N s", level, &impulse);
         }
         let mut follow = |name, factor: f64, unit, of: &dyn Fn(&[f64]) -> Option<f64>| {
             if let Some((value, std)) = propagated(shape, &scale, variance, of) {

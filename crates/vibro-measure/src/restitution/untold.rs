@@ -34,9 +34,8 @@ pub(super) struct Untold {
 impl Untold {
     /// Adds to an error the first advice that finds the bounces when tried.
     pub fn advise(&self, refused: Error, read: Read<'_>) -> Error {
-        const QUIETER: &str = "a threshold that leaves one of them, if what is quieter is no bounce";
-        const SOONER: &str =
-            "a pause that leaves one of them, if what follows an impact within it is its echo";
+        const QUIETER: &str = "a threshold above what is no bounce";
+        const SOONER: &str = "a pause within which an echo counts with its impact";
         let pause = self.pause(read).map(|pause| format!("{pause:.2}"));
         let threshold = self.threshold(read).map(|threshold| format!("{threshold:.2}"));
         match (threshold, pause) {
