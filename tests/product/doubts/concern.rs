@@ -66,7 +66,7 @@ const SCALED: Concern = At(&[
 ]);
 
 /// Every code of a doubt.
-pub const CONCERNS: [(&str, Concern); 75] = [
+pub const CONCERNS: [(&str, Concern); 77] = [
     ("rig-left-out", Nothing(MODEL)),
     ("drill-left-out", Nothing(MODEL)),
     ("decay-unexplained", MODE),
