@@ -1,7 +1,7 @@
 //! Codes of findings that one part of the program adds and another part searches for.
 
 /// Doubts of the readers, about the times, the unit or single values of a record.
-pub const READER_DOUBTS: [&str; 17] = [
+pub const READER_DOUBTS: [&str; 18] = [
     "last-number-cut-off",
     "no-closing-line",
     "decibels-overruled",
@@ -14,6 +14,7 @@ pub const READER_DOUBTS: [&str; 17] = [
     "digits-may-be-grouped",
     "unit-head-differs",
     "unit-row-differs",
+    "quantity-name-differs",
     "quantity-row-differs",
     "axis-row-differs",
     "sheet-in-percent",
