@@ -64,7 +64,7 @@ trait Guess: DeserializeOwned + Clone + 'static {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Change {
     /// What is changed.
-    pub change: String,
+    pub what: String,
     /// Mean factor on the uncertainties of the answers, on a logarithmic scale.
     pub factor: f64,
     /// The answers after the change.
@@ -109,18 +109,22 @@ const POWERS: std::ops::RangeInclusive<i32> = -4..=4;
 /// # Errors
 /// If the plan cannot be read, has an impossible key, or a test allows no answer.
 pub fn answer(folder: &Folder, path: &Path, progress: &dyn Progress) -> Result<Answer> {
-    let plan = Campaign::from_path(folder, path, &SECTIONS)?;
-    let instrument = Instrument::of(&plan)?;
+    of(&Campaign::from_path(folder, path, &SECTIONS)?, progress)
+}
+
+/// What each test of a plan will tell.
+fn of(plan: &Campaign, progress: &dyn Progress) -> Result<Answer> {
+    let instrument = Instrument::of(plan)?;
     let mut all = Vec::new();
-    of_kind::<decay::Guess>(&plan, &instrument, &mut all, progress)?;
-    of_kind::<pulse::Guess>(&plan, &instrument, &mut all, progress)?;
-    of_kind::<drop::Guess>(&plan, &instrument, &mut all, progress)?;
-    of_kind::<drill::Guess>(&plan, &instrument, &mut all, progress)?;
+    of_kind::<decay::Guess>(plan, &instrument, &mut all, progress)?;
+    of_kind::<pulse::Guess>(plan, &instrument, &mut all, progress)?;
+    of_kind::<drop::Guess>(plan, &instrument, &mut all, progress)?;
+    of_kind::<drill::Guess>(plan, &instrument, &mut all, progress)?;
     let mut suggested = Vec::new();
     for (entry, checked) in
         plan.entries::<sweep::Guess>(sweep::Guess::SECTION, false, sweep::Guess::RANGES)?
     {
-        let planned = checked.and_then(|()| sweep::planned(&plan, &entry.keys, &instrument, entry.number));
+        let planned = checked.and_then(|()| sweep::planned(plan, &entry.keys, &instrument, entry.number));
         let (forecast, points) = planned.map_err(|error| plan.fault(&entry, error))?;
         suggested.push((forecast.title.clone(), points));
         all.push(forecast);
@@ -129,7 +133,7 @@ pub fn answer(folder: &Folder, path: &Path, progress: &dyn Progress) -> Result<A
         let tables =
             SECTIONS[1..].iter().map(|section| format!("[[{section}]]")).collect::<Vec<_>>().join(", ");
         let error = Error::usage("a plan without a test", format!("one of the tables {tables}"));
-        return Err(error.hint("docs/commands.md shows a plan under `vibro plan`").in_file(path));
+        return Err(error.hint("docs/commands.md shows a plan under `vibro plan`").in_file(plan.path()));
     }
     let mut answer = Answer::default();
     for forecast in &all {
@@ -160,7 +164,7 @@ pub fn answer(folder: &Folder, path: &Path, progress: &dyn Progress) -> Result<A
 fn changed(change: &Change) -> serde_json::Value {
     let std: Map<String, serde_json::Value> =
         change.answers.iter().map(|(name, answer)| (name.clone(), json!(answer.std))).collect();
-    json!({ "change": change.change, "factor": change.factor, "std": std })
+    json!({ "change": change.what, "factor": change.factor, "std": std })
 }
 
 /// Adds the forecasts of all tables of a kind.
@@ -201,7 +205,7 @@ fn forecast<G: Clone>(
     let knobs = || knobs.iter().copied();
     let change = |knob: Knob<G>| {
         let (factor, answers) = after(&knob, knob.better)?;
-        (factor < 1.0 - WORTH).then(|| Change { change: knob.change.to_owned(), factor, answers })
+        (factor < 1.0 - WORTH).then(|| Change { what: knob.change.to_owned(), factor, answers })
     };
     let mut changes: Vec<Change> = knobs().filter_map(change).collect();
     crate::record::sort_by_number(&mut changes, |change| change.factor);
@@ -223,11 +227,14 @@ fn forecast<G: Clone>(
     })
 }
 
-/// Geometric mean of the ratios of the uncertainties of the same answers; `None` where none can be compared.
+/// Geometric mean of the ratios of the relative uncertainties of the same answers; `None` where none can be
+/// compared.
 fn ratio(before: &[(String, Estimate)], after: &[(String, Estimate)]) -> Option<f64> {
+    let relative =
+        |answer: &Estimate| Some(answer.std? / if answer.value == 0.0 { 1.0 } else { answer.value.abs() });
     let both = before.iter().filter_map(|(name, old)| {
         let (_, new) = after.iter().find(|(known, _)| known == name)?;
-        let logarithm = (new.std? / old.std?).ln();
+        let logarithm = (relative(new)? / relative(old)?).ln();
         logarithm.is_finite().then_some(logarithm)
     });
     let all: Vec<f64> = both.collect();

@@ -1,7 +1,7 @@
 //! Figures of a plan.
 
 use super::Forecast;
-use super::sweep::{Suggested, Suggestion};
+use super::sweep::{CoursePoint, Suggested, Suggestion};
 use crate::report::layout::{lettered, line};
 use crate::report::{AxisSpec, Figure, Ink, Plot, Stroke};
 
@@ -34,13 +34,13 @@ pub fn courses(all: &[Forecast]) -> Option<Figure> {
 
 /// Uncertainty over the number of points, and what one more point is worth over frequency.
 pub fn points(title: &str, suggested: &Suggested) -> Figure {
-    let course = |of: fn(&(usize, Option<f64>, Option<f64>)) -> Option<f64>| {
-        let known = suggested.course.iter().filter_map(|row| Some((row.0 as f64, 100.0 * of(row)?)));
+    let course = |of: fn(&CoursePoint) -> Option<f64>| {
+        let known = suggested.course.iter().filter_map(|point| Some((point.n as f64, 100.0 * of(point)?)));
         known.collect::<Vec<_>>()
     };
     let above = Plot::new(AxisSpec::new("Points", ""), AxisSpec::new("Relative uncertainty", "%").log());
-    let above = line(above, "even grid", course(|row| row.2), Ink::Grey, Stroke::Solid);
-    let above = line(above, "suggested points", course(|row| row.1), Ink::Nth(0), Stroke::Solid);
+    let above = line(above, "even grid", course(|point| point.even), Ink::Grey, Stroke::Solid);
+    let above = line(above, "suggested points", course(|point| point.suggested), Ink::Nth(0), Stroke::Solid);
     let below = Plot::new(AxisSpec::frequency(), AxisSpec::new("Gain of one more point", "%"));
     let mut forces: Vec<f64> = suggested.gains.iter().map(|gain| gain.1).collect();
     forces.dedup();

@@ -73,15 +73,28 @@ pub struct Suggested {
     pub aim: String,
     /// The points, the first to be measured first.
     pub points: Vec<Suggestion>,
-    /// Number of points, relative uncertainty with those suggested and with an even grid.
-    pub course: Vec<(usize, Option<f64>, Option<f64>)>,
+    /// Uncertainty over the number of points.
+    pub course: Vec<CoursePoint>,
     /// Frequency in Hz, force in N, and part by which a point there lowers the uncertainty.
     #[serde(skip)]
     pub gains: Vec<(f64, f64, f64)>,
 }
 
+/// Relative standard uncertainty with a number of points; `None` where they determine nothing.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct CoursePoint {
+    /// Number of points.
+    pub n: usize,
+    /// With those suggested.
+    pub suggested: Option<f64>,
+    /// With an even grid.
+    pub even: Option<f64>,
+}
+
 /// Candidates for points at each force.
 const CANDIDATES: usize = 121;
+/// Candidates on either side that must show the same motion as a point that is suggested.
+const MARGIN: usize = 2;
 /// Points that are suggested unless their number is stated.
 const NEXT: usize = 3;
 /// Most points in the comparison with an even grid.
@@ -165,7 +178,14 @@ pub fn planned(
     };
     let aim = aim(guess, &task)?;
     let now = information(instrument)?;
-    let candidates: Vec<usize> = (first..places.len()).collect();
+    // Beside a change of motion a sweep of a slightly different rig would jump.
+    let safe = |place: &usize| {
+        let at = (place - first) % CANDIDATES;
+        let near = place - at.min(MARGIN)..=place + MARGIN.min(CANDIDATES - 1 - at);
+        let kinds = &reached.kinds()[near];
+        kinds.iter().all(|kind| kind.is_some() && *kind == kinds[0])
+    };
+    let candidates: Vec<usize> = (first..places.len()).filter(safe).collect();
     let next = now.next(&chosen, &candidates, guess.next.unwrap_or(NEXT), &aim.1);
     let suggestion = |(i, place): (usize, &usize)| {
         let all = [&chosen[..], &next[..=i]].concat();
@@ -177,7 +197,7 @@ pub fn planned(
     let longest = now.next(&chosen, &candidates, COMPARED, &aim.1);
     let course = (1..=COMPARED).map(|n| {
         let with = |more: &[usize]| now.uncertainty(&[&chosen[..], more].concat(), &aim.1);
-        (chosen.len() + n, with(&longest[..n]), with(&even(n)))
+        CoursePoint { n: chosen.len() + n, suggested: with(&longest[..n]), even: with(&even(n)) }
     });
     let gains = now.gains(&chosen, &candidates, &aim.1);
     let gains = candidates.iter().zip(gains).map(|(place, gain)| (places[*place].0, places[*place].1, gain));
@@ -216,9 +236,9 @@ pub fn planned(
     };
     let title = format!("Sweep {number}");
     let mut found = forecast((Guess::SECTION, title), guess, instrument, &Instrument::knobs(), &expected)?;
-    let lost = candidates.iter().filter(|place| reached.kinds()[**place].is_none()).count();
-    let blind = Finding::note("plan-points-without-form").count("n", lost).count("all", candidates.len());
-    found.findings.extend((lost > 0).then_some(blind));
+    let all = places.len() - first;
+    let blind = Finding::note("plan-points-left-out").count("n", all - candidates.len()).count("all", all);
+    found.findings.extend((candidates.len() < all).then_some(blind));
     found.findings.extend(rig_left_out("[rig]", &plan.rig_left_out()));
     Ok((found, suggested))
 }

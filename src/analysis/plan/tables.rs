@@ -22,7 +22,7 @@ pub fn forecast(forecast: &Forecast) -> Table {
     };
     let row = |table: Table, change: &Change| {
         let left = Cell::from(percent(change.factor));
-        table.row([Cell::from(change.change.clone()), left].into_iter().chain(cells(&change.answers)))
+        table.row([Cell::from(change.what.clone()), left].into_iter().chain(cells(&change.answers)))
     };
     let planned = [Cell::from("as planned"), Cell::from("100")];
     let table = table.row(planned.into_iter().chain(cells(&forecast.answers)));
@@ -59,7 +59,7 @@ pub fn all(forecasts: &[Forecast]) -> Table {
     let mut table = headed("Plan", &columns);
     for forecast in forecasts {
         let planned = ("as planned", &forecast.answers);
-        let changes = forecast.changes.iter().map(|change| (change.change.as_str(), &change.answers));
+        let changes = forecast.changes.iter().map(|change| (change.what.as_str(), &change.answers));
         for (change, answers) in std::iter::once(planned).chain(changes) {
             for (name, answer) in answers {
                 table.push([

@@ -204,7 +204,7 @@ impl SineGroup {
     }
 
     /// Frequency and damping of sine `m`: indices among the parameters, and names with this ending.
-    pub fn shapes(&self, m: usize, ending: &str) -> [(usize, String); 2] {
+    pub fn shapes(m: usize, ending: &str) -> [(usize, String); 2] {
         [(OWN * m, format!("frequency{ending}")), (OWN * m + 1, format!("zeta{ending}"))]
     }
 

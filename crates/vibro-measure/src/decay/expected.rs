@@ -64,7 +64,7 @@ pub fn expected(modes: &[GuessedMode], recorder: &Recorder, unit: &'static str) 
             found.put(format!("frequency{of}"), &one.frequency);
             found.put(format!("zeta{of}"), &one.zeta);
             found.put(format!("amplitude{of}"), &one.amplitude);
-            names.extend(group.shapes(m, &of));
+            names.extend(SineGroup::shapes(m, &of));
         }
         found.tie(&group.fit, &names);
     }

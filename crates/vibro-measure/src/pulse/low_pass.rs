@@ -48,7 +48,7 @@ impl LowPass {
         Ok(LowPass { corner, order, linear: Linear { direct: 0.0, parts } })
     }
 
-    /// Magnitude of the response at `frequency` in Hz, 1/√(1 + (f/f_c)^2N).
+    /// Magnitude of the response at `frequency` in Hz, `1/√(1 + (f/f_c)^2N)`.
     pub fn gain(&self, frequency: f64) -> f64 {
         1.0 / (1.0 + (frequency / self.corner).powi(2 * self.order as i32)).sqrt()
     }
