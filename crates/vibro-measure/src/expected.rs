@@ -9,11 +9,14 @@ use crate::Estimate;
 use crate::converter::rounding;
 use crate::pulse::LowPass;
 use vibro_math::Fit;
-use vibro_record::Finding;
+use vibro_record::{Error, Finding, Result};
 
 /// Correlation beyond which two parameters are known only in combination: to know one would divide the
 /// uncertainty of the other by 1/√(1 − r²) = 5.
 pub const TIED: f64 = 0.98;
+
+/// Most values of a planned fit.
+const MOST: f64 = 2e4;
 
 /// The instrument of a planned record, in the unit of that record.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -63,6 +66,15 @@ impl Recorder {
     /// Number of samples of a record.
     pub fn samples(&self) -> usize {
         (self.rate * self.duration) as usize
+    }
+
+    /// Refuses a fit of more than [`MOST`] samples or lines, whose covariance would take too long.
+    pub(crate) fn check_work(samples: f64) -> Result<()> {
+        if samples <= MOST {
+            return Ok(());
+        }
+        let why = format!("a fit of {samples:.0} values: a plan takes {MOST:.0} at most");
+        Err(Error::refused(why).hint("plan with a lower sampling rate, or a shorter record").setting("rate"))
     }
 }
 

@@ -41,6 +41,7 @@ impl super::Guess for Guess {
         KeyRange::from_zero("m", &["height_std"]),
         KeyRange::above_zero("s", &["first_flight"]).times(),
         KeyRange::above_zero("", &["restitution"]).within(1e-9, 1.0),
+        KeyRange::count(1e3, &["impacts"]),
         KeyRange::above_zero("s", &["onset_std"]).times(),
         KeyRange::from_zero("s", &["contact_time_std"]).times(),
     ];

@@ -37,10 +37,10 @@ impl Instrument {
 
     const RANGES: &'static [KeyRange] = &[
         KeyRange::above_zero("s", &["duration"]).times(),
-        KeyRange::count(64.0, &["bits"]),
+        KeyRange::above_zero("", &["bits"]).within(1.0, 64.0),
         KeyRange::above_zero("", &["range"]),
         KeyRange::from_zero("", &["noise", "noise_density"]),
-        KeyRange::count(1e9, &["averages"]),
+        KeyRange::above_zero("", &["averages"]).within(1.0, 1e4),
     ];
 
     /// The instrument of a plan; without a table it has no keys.

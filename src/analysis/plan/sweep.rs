@@ -106,7 +106,7 @@ impl Guess {
         KeyRange::above_zero("Hz", &["from", "to", "at"]),
         KeyRange::above_zero("N", &["forces"]),
         KeyRange::above_zero("", &["measured"]),
-        KeyRange::count(1e3, &["points", "next"]),
+        KeyRange::count(100.0, &["points", "next"]),
     ];
 
     /// Frequencies from low to high, in the order of the sweep, at one force.

@@ -3,8 +3,10 @@
 //!
 //! A point adds `JᵀC⁻¹J` to the information of the fit of [`problem`](super::problem): J the derivative of
 //! its amplitudes by the parameters, C the covariance of their errors. Errors of the calibrations, which all
-//! points share, are further unknowns with a prior. The next point is the one with which the determinant of
-//! the parameters' covariance is least (D-optimal), or the variance of a prediction (c-optimal).
+//! points share, are further unknowns with a prior. The next point is the one with which the sum of the
+//! parameters' relative variances is least (A-optimal), or the variance of a prediction (c-optimal). The
+//! determinant of the covariance (D-optimal) leaves the least certain parameter uncertain for longer: on five
+//! drawn rigs it took as many points as an even grid, and the sum half of them.
 
 use super::problem::Problem;
 use super::{ASSUMED, Data, MotionKind, Pace, Setting, StepAmplitude, SweepStep, Unknown};
@@ -163,7 +165,7 @@ pub struct PointInformation {
 /// The aim of a design.
 #[derive(Debug, Clone)]
 pub enum Aim {
-    /// All parameters: the determinant of their covariance.
+    /// All parameters: the sum of their relative variances, which the least certain rules.
     Parameters,
     /// One prediction, with its relative derivatives by the parameters.
     Prediction(DVector<f64>),
@@ -193,15 +195,11 @@ impl PointInformation {
         Some(inverse.view((0, 0), (n, n)).into_owned())
     }
 
-    /// What a design is to make small: half the logarithm of the determinant, a parameter, or that of the
-    /// variance of the prediction.
+    /// Half the logarithm of what a design is to make small.
     fn cost(&self, chosen: &[usize], aim: &Aim) -> f64 {
         let Some(covariance) = self.covariance(chosen, true) else { return f64::INFINITY };
-        let n = self.parameters.len() as f64;
         match aim {
-            Aim::Parameters => covariance.cholesky().map_or(f64::INFINITY, |root| {
-                root.l_dirty().diagonal().iter().map(|d| d.ln()).sum::<f64>() / n
-            }),
+            Aim::Parameters => 0.5 * covariance.trace().ln(),
             Aim::Prediction(slopes) => 0.5 * (slopes.transpose() * covariance * slopes)[(0, 0)].ln(),
         }
     }

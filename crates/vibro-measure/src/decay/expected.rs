@@ -50,6 +50,7 @@ pub fn expected(modes: &[GuessedMode], recorder: &Recorder, unit: &'static str) 
     let mut found = Expected::default();
     for near in sines.chunk_by(SineGroup::near) {
         let lines = range(near, n / 2 + 1);
+        Recorder::check_work(lines.end as f64)?;
         let spectrum: Vec<Complex64> =
             (0..lines.end).map(|k| near.iter().map(|sine| sine.line(k, n)).sum()).collect();
         let starts: Vec<(f64, f64)> = near.iter().map(|sine| (sine.periods, sine.decay)).collect();

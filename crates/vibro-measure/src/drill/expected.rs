@@ -63,6 +63,7 @@ pub fn expected(guess: &GuessedBlows, recorder: &Recorder) -> Result<Expected> {
         let why = format!("{} s hold fewer than two blows", recorder.duration);
         return Err(Error::refused(why).hint("record longer").setting("duration"));
     }
+    Recorder::check_work(options.lengths(recorder.rate).1)?;
     let few = || Error::refused("too few samples for a parabola").hint("sample faster, or a longer fit");
     let weights = weights(&options, recorder.rate).ok_or_else(few)?;
     // Both sides have mirrored weights, and samples so far apart that their noise is independent.

@@ -51,6 +51,7 @@ impl GuessedPulse {
         };
         let filter = recorder.low_pass.as_ref();
         let seen = contact.duration() + filter.map_or(0.0, |filter| 3.0 * filter.delay());
+        Recorder::check_work(3.0 * BESIDE * seen * recorder.rate)?;
         let before = (BESIDE * seen * recorder.rate).ceil();
         let n = 2 * before as usize + (seen * recorder.rate) as usize + 2;
         let onset = before + phase;
@@ -111,8 +112,12 @@ fn at(guess: &GuessedPulse, recorder: &Recorder, phase: f64) -> Result<Expected>
         fitted.fit.clone().of_covariance(covariance)
     } else {
         let all: Vec<f64> = (0..trace.values.len()).map(covariance).collect();
-        let c = DMatrix::from_fn(n, n, |i, j| all[places[i].abs_diff(places[j])]);
-        fitted.fit.clone().under_noise(|gain| &c * gain)
+        let c = |i: usize, k: usize| all[places[i].abs_diff(places[k])];
+        let times_c = |gain: &DMatrix<f64>| {
+            let product = |i: usize, j: usize| (0..n).map(|k| c(i, k) * gain[(k, j)]).sum();
+            DMatrix::from_fn(n, gain.ncols(), product)
+        };
+        fitted.fit.clone().under_noise(times_c)
     };
     let fitted = FittedPulse { fit, widening: Some(1.0), ..fitted };
     let result = spring_and_damper(&fitted, (&scale, n), 1.0, &options)?;

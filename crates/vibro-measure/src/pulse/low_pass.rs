@@ -135,7 +135,8 @@ mod tests {
         }
         for order in [2, 5, 8] {
             let filter = LowPass::new(100.0, order).unwrap();
-            // Gain² falls as (f/f_c)^−4 or faster: beyond 10⁴ Hz lie 10⁻⁶·f_c/3; the midpoint rule errs by less.
+            // Gain² falls as (f/f_c)^−4 or faster: beyond 10⁴ Hz lie 10⁻⁶·f_c/3. The midpoint rule errs by
+            // less.
             let sum: f64 = (0..100_000).map(|i| 0.1 * filter.gain(0.1 * (f64::from(i) + 0.5)).powi(2)).sum();
             assert!((filter.autocovariance(0.0) / sum - 1.0).abs() < 1e-6, "{order}");
         }

@@ -83,8 +83,8 @@ pub(super) fn misfit(trains: &[Timed], log: f64, noise: FlightNoise) -> f64 {
     trains.iter().filter_map(node).map(|own| (own.log_r - log).powi(2) / own.variance).sum()
 }
 
-/// ln R of trains and its variance where the variances of ln R from bounce to bounce and of an onset are known.
-/// `None` without a ratio.
+/// ln R of trains and its variance, for known variances of ln R from bounce to bounce and of an onset. `None`
+/// without a ratio.
 pub(super) fn known(trains: &[Vec<Flight>], fall: bool, [scatter, onset]: [f64; 2]) -> Option<(f64, f64)> {
     let flights: Vec<&[Flight]> = trains.iter().map(Vec::as_slice).collect();
     let node = Ratios::new(&flights, &vec![1.0; flights.len()], fall).node(scatter, onset, false)?;
