@@ -93,8 +93,6 @@ pub struct CoursePoint {
 
 /// Candidates for points at each force.
 const CANDIDATES: usize = 121;
-/// Candidates on either side that must show the same motion as a point that is suggested.
-const MARGIN: usize = 2;
 /// Points that are suggested unless their number is stated.
 const NEXT: usize = 3;
 /// Most points in the comparison with an even grid.
@@ -178,14 +176,7 @@ pub fn planned(
     };
     let aim = aim(guess, &task)?;
     let now = information(instrument)?;
-    // Beside a change of motion a sweep of a slightly different rig would jump.
-    let safe = |place: &usize| {
-        let at = (place - first) % CANDIDATES;
-        let near = place - at.min(MARGIN)..=place + MARGIN.min(CANDIDATES - 1 - at);
-        let kinds = &reached.kinds()[near];
-        kinds.iter().all(|kind| kind.is_some() && *kind == kinds[0])
-    };
-    let candidates: Vec<usize> = (first..places.len()).filter(safe).collect();
+    let candidates: Vec<usize> = reached.candidates().into_iter().filter(|place| *place >= first).collect();
     let next = now.next(&chosen, &candidates, guess.next.unwrap_or(NEXT), &aim.1);
     let suggestion = |(i, place): (usize, &usize)| {
         let all = [&chosen[..], &next[..=i]].concat();

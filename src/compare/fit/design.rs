@@ -3,10 +3,10 @@
 //!
 //! A point adds `JᵀC⁻¹J` to the information of the fit of [`problem`](super::problem): J the derivative of
 //! its amplitudes by the parameters, C the covariance of their errors. Errors of the calibrations, which all
-//! points share, are further unknowns with a prior. The next point is the one with which the sum of the
-//! parameters' relative variances is least (A-optimal), or the variance of a prediction (c-optimal). The
-//! determinant of the covariance (D-optimal) leaves the least certain parameter uncertain for longer: on five
-//! drawn rigs it took as many points as an even grid, and the sum half of them.
+//! points share, are further unknowns with a prior. The next point is the one with which the largest relative
+//! variance of a parameter is least, or the variance of a prediction (c-optimal). The determinant of the
+//! covariance (D-optimal) leaves one parameter uncertain for longer: on five drawn rigs it needed about as
+//! many points as an even grid.
 
 use super::problem::Problem;
 use super::{ASSUMED, Data, MotionKind, Pace, Setting, StepAmplitude, SweepStep, Unknown};
@@ -46,6 +46,8 @@ const SAME: f64 = 0.05;
 /// Standard uncertainty of ln θ before any point is measured: a person knows a rig to within a factor of 1.5.
 /// It only ranks points while they are too few for all parameters.
 const GUESSED: f64 = 0.4;
+/// Neighbours on either side that must show the same motion as a point that is suggested.
+const MARGIN: usize = 2;
 /// Relative step of the derivatives by the coordinates of the parameters.
 const STEP: f64 = 1e-5;
 
@@ -98,6 +100,20 @@ impl ReachedPoints {
     /// The motion at each point; `None` where it has no closed form.
     pub fn kinds(&self) -> &[Option<MotionKind>] {
         &self.kinds
+    }
+
+    /// Points that can be suggested: their neighbours in the sweep show the same motion. Beside a change of
+    /// motion the sweep of a slightly different rig would jump.
+    pub fn candidates(&self) -> Vec<usize> {
+        let of = |sequence: &Vec<usize>| {
+            let kinds: Vec<_> = sequence.iter().map(|place| self.kinds[*place]).collect();
+            let safe = |i: usize| {
+                let near = &kinds[i.saturating_sub(MARGIN)..(i + MARGIN + 1).min(kinds.len())];
+                kinds[i].is_some() && near.iter().all(|kind| *kind == kinds[i])
+            };
+            (0..kinds.len()).filter(|i| safe(*i)).map(|i| sequence[i]).collect::<Vec<usize>>()
+        };
+        self.data.sequences.iter().flat_map(of).collect()
     }
 
     /// The information of each point, where `std` gives the standard uncertainty in m of an amplitude at a
@@ -165,7 +181,7 @@ pub struct PointInformation {
 /// The aim of a design.
 #[derive(Debug, Clone)]
 pub enum Aim {
-    /// All parameters: the sum of their relative variances, which the least certain rules.
+    /// All parameters: the sum of the squares of their relative variances, a smooth measure of the largest.
     Parameters,
     /// One prediction, with its relative derivatives by the parameters.
     Prediction(DVector<f64>),
@@ -199,7 +215,7 @@ impl PointInformation {
     fn cost(&self, chosen: &[usize], aim: &Aim) -> f64 {
         let Some(covariance) = self.covariance(chosen, true) else { return f64::INFINITY };
         match aim {
-            Aim::Parameters => 0.5 * covariance.trace().ln(),
+            Aim::Parameters => 0.25 * covariance.diagonal().map(|variance| variance * variance).sum().ln(),
             Aim::Prediction(slopes) => 0.5 * (slopes.transpose() * covariance * slopes)[(0, 0)].ln(),
         }
     }

@@ -120,13 +120,12 @@ fn points_needed(seed: u64) -> (usize, usize) {
     }
     let places = candidates(81);
     let truth = reached(Rig { gap, k1, k2, restitution, ..guess }, &fit, &places);
-    let all: Vec<usize> = (0..places.len()).collect();
     let (mut now, mut chosen): (ReachedPoints, Vec<usize>) = (reached(guess, &fit, &places), Vec::new());
     let known = |now: &ReachedPoints, chosen: &[usize]| {
         now.information(&|_| noise).uncertainty(chosen, aim).is_some_and(|uncertainty| uncertainty <= target)
     };
     while !known(&now, &chosen) && chosen.len() < 60 {
-        chosen.extend(now.information(&|_| noise).next(&chosen, &all, 1, aim));
+        chosen.extend(now.information(&|_| noise).next(&chosen, &now.candidates(), 1, aim));
         if chosen.len() >= 3 {
             let data = measured(&truth, &chosen, noise, &mut Noise::new(1000 + seed));
             let kinds = chosen.iter().map(|point| truth.kinds[*point]).collect();
@@ -157,11 +156,10 @@ fn points_needed(seed: u64) -> (usize, usize) {
 #[test]
 #[ignore = "Monte Carlo: cargo test --release -- --ignored"]
 fn suggested_points_are_half_of_an_even_grid() {
-    let needed: Vec<(usize, usize)> = (0..5).map(points_needed).collect();
-    let all = |of: fn(&(usize, usize)) -> usize| needed.iter().map(of).sum::<usize>();
-    assert!(2 * all(|needed| needed.0) <= all(|needed| needed.1), "{needed:?}");
-    // No rig needs many more than half: a grid may meet a resonance by luck.
-    assert!(needed.iter().all(|(suggested, even)| 3 * suggested <= 2 * even), "{needed:?}");
+    for seed in 0..5 {
+        let (suggested, even) = points_needed(seed);
+        assert!(2 * suggested <= even, "{seed}: {suggested} {even}");
+    }
 }
 
 /// Two parameters that only their product shows: the prediction is certain, the parameters are not; and the
