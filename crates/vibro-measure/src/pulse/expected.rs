@@ -7,6 +7,7 @@ use super::{ContactModel, Instrument, KelvinVoigt, PulseOptions, samples_of, spr
 use crate::expected::{Expected, Recorder};
 use crate::mean::together;
 use nalgebra::DMatrix;
+use vibro_math::Noise;
 use vibro_record::units::Unit;
 use vibro_record::{Axis, Error, Finding, Meta, Result, Trace};
 
@@ -71,30 +72,38 @@ impl GuessedPulse {
     }
 }
 
-/// Onsets within a sampling interval over which the variances are averaged: without a low-pass the force
-/// jumps at the onset, and how well it is known depends on the samples beside it.
-const PHASES: [f64; 4] = [0.125, 0.375, 0.625, 0.875];
+/// Records over which the variances are averaged without a low-pass. There the force jumps at the onset, and
+/// how well that is known depends on its place between two samples, and on the noise of these.
+const RECORDS: u32 = 16;
 
 /// What the samples of a pulse will tell, by the fit of spring and damper of [`super::pulse`].
 ///
 /// # Errors
 /// If the contact is impossible, or the record allows no fit.
 pub fn expected(guess: &GuessedPulse, recorder: &Recorder) -> Result<Expected> {
-    let phases = if recorder.low_pass.is_some() { &[0.5][..] } else { &PHASES };
-    let all: Result<Vec<Expected>> = phases.iter().map(|phase| at(guess, recorder, *phase)).collect();
-    let all = all?;
-    let mut found = all[0].clone();
+    let mut found = at(guess, recorder, 0.5, None)?;
+    let drawn = if recorder.low_pass.is_some() { 0 } else { RECORDS };
+    let one = |k: u32| {
+        let phase = (f64::from(k) + 0.5) / f64::from(RECORDS);
+        at(guess, recorder, phase, Some(Noise::new(k.into()))).ok()
+    };
+    let all: Vec<Expected> = (0..drawn).filter_map(one).collect();
     for (i, (_, answer)) in found.answers.iter_mut().enumerate() {
-        answer.std = together(all.iter().map(|one| one.answers[i].1.std));
+        answer.std = together(all.iter().map(|one| one.answers[i].1.std)).or(answer.std);
     }
     found.findings.extend(hidden(guess.contact()?.duration(), recorder));
     Ok(found)
 }
 
-/// What a pulse will tell whose onset lies at the part `phase` of a sampling interval.
-fn at(guess: &GuessedPulse, recorder: &Recorder, phase: f64) -> Result<Expected> {
-    let trace = guess.record(recorder, phase)?;
-    // A record without noise has no step of a converter; its rounding is in the covariance.
+/// What a pulse will tell whose onset lies at the part `phase` of a sampling interval: without noise, or with
+/// one that is drawn.
+fn at(guess: &GuessedPulse, recorder: &Recorder, phase: f64, drawn: Option<Noise>) -> Result<Expected> {
+    let mut trace = guess.record(recorder, phase)?;
+    if let Some(mut noise) = drawn {
+        let std = recorder.covariance(0).sqrt();
+        trace.values.iter_mut().for_each(|value| *value += std * noise.normal());
+    }
+    // The record has no step of a converter; its rounding is in the covariance.
     let located = Located { quantum: 0.0, clipped: Vec::new(), ..locate(&trace.values)? };
     samples_of(&located)?;
     let instrument = recorder.low_pass.clone().map_or(Instrument::Flat, Instrument::LowPass);
