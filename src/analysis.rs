@@ -22,6 +22,7 @@ pub(crate) mod kinds;
 pub(crate) mod model;
 mod named_file;
 mod own_files;
+pub(crate) mod plan;
 pub(crate) mod precision;
 mod progress;
 pub(crate) mod pulse;

@@ -10,6 +10,7 @@ mod demo;
 mod info;
 mod init;
 mod model;
+mod plan;
 mod precision;
 mod print;
 mod program;
@@ -72,6 +73,14 @@ const GROUPS: &[(&str, &[CommandRow])] = &[
                 "Convert a file to UFF-58, CSV, WAV or NPY, by the ending of OUTPUT",
             ),
         ],
+    ),
+    (
+        "Before a test",
+        &[CommandRow::asking::<plan::Plan>(
+            "plan plan.toml",
+            "What a test will tell before it is made: expected uncertainties, what to change first",
+        )
+        .of_campaigns()],
     ),
     (
         MEASURE,

@@ -7,13 +7,14 @@ mod overlay;
 mod pair;
 mod predicting;
 mod prediction;
-mod simulated;
+pub(crate) mod simulated;
 
 pub use fit::{Block, Fit, FitPoint, FittedParameter, LeftOut, Profile, Rung, Unidentified, fit};
 pub use overlay::{Level, Overlay, overlay, predicted};
 pub use pair::{Pair, PeakPair, Score};
 pub use prediction::{Motion, MotionKind, Prediction, Verdict};
 
+pub(crate) use fit::design;
 pub(crate) use forcing::{Forcing, levels};
 pub(crate) use named::{Named, named};
 pub(crate) use predicting::Predicting;

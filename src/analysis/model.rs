@@ -93,7 +93,7 @@ impl SceneKeys {
 
 /// Doubt that keys of a rig are missing and were taken from the thesis' rig. What a model computes has no
 /// uncertainty.
-pub(super) fn rig_left_out(table: &str, keys: &[&str]) -> Option<Finding> {
+pub(in crate::analysis) fn rig_left_out(table: &str, keys: &[&str]) -> Option<Finding> {
     let found = Finding::doubt("rig-left-out").name("table", table).name("keys", keys.join(", "));
     (!keys.is_empty()).then(|| found.without_estimate())
 }

@@ -80,6 +80,25 @@ impl Campaign {
         (1..).zip(all).map(one).collect()
     }
 
+    /// A table that stands once, such as `[instrument]`; as [`Campaign::entries`].
+    ///
+    /// # Errors
+    /// If it has an unknown key, or a value of the wrong kind, or stands in double brackets.
+    pub(crate) fn single<K: DeserializeOwned>(
+        &self,
+        section: &str,
+        ranges: &[KeyRange],
+    ) -> Result<Option<(Entry<K>, Result<()>)>> {
+        let Some(table) = self.table()?.remove(section) else { return Ok(None) };
+        let head = table.span();
+        let DeValue::Table(rows) = table.into_inner() else {
+            let error =
+                Error::usage(format!("[[{section}]]"), "one table").hint(format!("write [{section}]"));
+            return Err(self.pointed(error, head));
+        };
+        self.entry(1, rows, head, false, ranges).map(Some)
+    }
+
     /// The tables of a section as written in the file: keys and values.
     ///
     /// # Errors

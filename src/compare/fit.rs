@@ -12,6 +12,7 @@ mod answer;
 mod compliance;
 mod converge;
 mod data;
+pub mod design;
 mod hold_out;
 mod problem;
 mod search;

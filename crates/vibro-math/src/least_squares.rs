@@ -49,6 +49,34 @@ impl Fit {
         self.variance() * self.cofactor[(i, j)]
     }
 
+    /// The fit of a record without noise, with the covariance that noise would give its parameters: `KJᵀCJK`,
+    /// K the cofactor and C the covariance of the noise. `times_c` multiplies a matrix by C from the left.
+    /// For white noise it is the Cramér–Rao bound; for coloured noise it is that of least squares, which
+    /// weighs all residuals alike.
+    #[must_use]
+    pub fn under_noise(self, times_c: impl Fn(&DMatrix<f64>) -> DMatrix<f64>) -> Fit {
+        let gain = &self.jacobian * &self.cofactor;
+        self.of_covariance(gain.tr_mul(&times_c(&gain)))
+    }
+
+    /// The same fit with this covariance of its parameters.
+    #[must_use]
+    pub fn of_covariance(mut self, covariance: DMatrix<f64>) -> Fit {
+        self.cofactor = covariance;
+        // The scale of the covariance is in the cofactor: residuals of unit variance keep it there.
+        let size = (self.degrees_of_freedom() as f64 / self.residuals.len() as f64).sqrt();
+        self.residuals.fill(size);
+        self
+    }
+
+    /// Correlation of parameters `i` and `j`.
+    ///
+    /// # Panics
+    /// If `i` or `j` is no parameter.
+    pub fn correlation(&self, i: usize, j: usize) -> f64 {
+        self.cofactor[(i, j)] / (self.cofactor[(i, i)] * self.cofactor[(j, j)]).sqrt()
+    }
+
     /// Standard uncertainty of parameter `i`; as [`Fit::covariance`].
     ///
     /// # Panics
@@ -280,6 +308,25 @@ mod tests {
         // Intercept and slope: −x̄/√(Σx²/n).
         let expected = -mx / (x.iter().map(|x| x * x).sum::<f64>() / 12.0).sqrt();
         assert!((fit.covariance(0, 1) / (fit.std(0) * fit.std(1)) - expected).abs() < 1e-6);
+    }
+
+    /// White noise of variance 4 gives twice the standard uncertainties of unit residuals; noise that all
+    /// residuals share moves the intercept of a line alone.
+    #[test]
+    fn noise_gives_its_covariance() {
+        let line = |p: &[f64], r: &mut [f64]| {
+            r.iter_mut().enumerate().for_each(|(i, r)| *r = p[0] + p[1] * (i as f64 - 2.0));
+        };
+        let fit = least_squares(line, 5, &[0.0, 0.0], &[1.0, 1.0]).unwrap();
+        let white = fit.clone().under_noise(|gain| gain * 4.0);
+        // Intercept 2/√5, slope 2/√Σx², with x from −2 to 2; the Jacobian of a line is exact to ε^(2/3).
+        assert!(
+            (white.std(0) - 2.0 / 5f64.sqrt()).abs() < 1e-9
+                && (white.std(1) - 2.0 / 10f64.sqrt()).abs() < 1e-9
+        );
+        assert!(white.correlation(0, 1).abs() < 1e-9);
+        let shared = fit.under_noise(|gain| DMatrix::from_element(5, 5, 9.0) * gain);
+        assert!((shared.std(0) - 3.0).abs() < 1e-9 && shared.std(1) < 1e-6);
     }
 
     #[test]

@@ -6,6 +6,7 @@
 //! damped sines). The residual of the lines beside a sine is its noise.
 
 mod damped;
+mod expected;
 mod hum;
 mod result;
 mod sines;
@@ -15,6 +16,7 @@ use super::Estimate;
 use super::chance::chi_squared_above;
 use super::mains::Hum;
 use damped::{Damped, LINES, OWN, SineGroup, lines};
+pub use expected::{GuessedMode, expected};
 pub use result::{DecayMode, DecayOptions, DecayResult, Level};
 use sines::{ENOUGH, MOST, STEADY, SURE, Sines, decays};
 use std::f64::consts::TAU;

@@ -23,6 +23,7 @@
 //! ```
 
 mod cycles;
+mod expected;
 mod faults;
 mod floor;
 mod groups;
@@ -35,6 +36,7 @@ mod train;
 mod turns;
 
 pub use cycles::{Bandwidth, Cycle, Phases};
+pub use expected::{GuessedBlows, expected};
 pub use faults::FaultCount;
 pub use floor::NoiseFloor;
 use groups::Offset;

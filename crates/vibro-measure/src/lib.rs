@@ -17,6 +17,7 @@ pub mod crossing;
 pub mod decay;
 pub mod drill;
 pub mod excitation;
+pub mod expected;
 pub mod exposure;
 pub mod impacts;
 pub mod jump;

@@ -132,6 +132,12 @@ fn cosines(n: usize) -> usize {
     ((1.2 * (n as f64).powf(0.4)).round() as usize).clamp(3, MOST).min(n.saturating_sub(1))
 }
 
+/// Root mean square of standard uncertainties; `None` where one is not known.
+pub(crate) fn together(stds: impl Iterator<Item = Option<f64>>) -> Option<f64> {
+    let squares: Vec<f64> = stds.map(|s| s.map(|s| s * s)).collect::<Option<_>>()?;
+    (!squares.is_empty()).then(|| (squares.iter().sum::<f64>() / squares.len() as f64).sqrt())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -7,6 +7,7 @@
 
 mod contact;
 mod edge;
+mod expected;
 mod fit;
 mod impulse;
 mod instants;
@@ -20,6 +21,7 @@ mod ringing;
 mod sensor;
 
 pub use contact::KelvinVoigt;
+pub use expected::{GuessedPulse, expected};
 pub use instants::two_times;
 pub use low_pass::LowPass;
 pub use result::{ContactModel, PulseCurve, PulseFit, PulsePicture, PulseResult, Unfitted};

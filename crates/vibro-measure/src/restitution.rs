@@ -4,6 +4,7 @@
 //! the result is null and a finding reports it; nothing is averaged.
 
 mod drop;
+mod expected;
 mod fit;
 mod flights;
 mod pairs;
@@ -13,11 +14,12 @@ mod untold;
 mod velocities;
 
 pub use drop::{Drop, GRAVITY};
+pub use expected::{GuessedDrops, expected};
 pub use train::Train;
 pub use velocities::Velocities;
 
 use super::Estimate;
-use crate::mean::{average, scatter};
+use crate::mean::{average, scatter, together};
 use crate::residuals::widened;
 use pairs::SCATTER;
 use serde::Serialize;
@@ -296,12 +298,6 @@ fn repeated(values: &[f64], stated: Option<f64>) -> (f64, Option<f64>) {
         stated.filter(|u| n < 2.0 || scatter <= 1.96 * u)
     };
     (mean, one.map(|u| u / n.sqrt()))
-}
-
-/// Root mean square of standard uncertainties; `None` where one is not known.
-fn together(stds: impl Iterator<Item = Option<f64>>) -> Option<f64> {
-    let squares: Vec<f64> = stds.map(|s| s.map(|s| s * s)).collect::<Option<_>>()?;
-    (!squares.is_empty()).then(|| (squares.iter().sum::<f64>() / squares.len() as f64).sqrt())
 }
 
 /// Checks a number that must be finite and above 0.

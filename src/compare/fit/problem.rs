@@ -137,7 +137,7 @@ impl Problem<'_> {
     /// Change of each whitened residual by one standard uncertainty of the calibrations: of each mass'
     /// factor, of its slope over frequency (−1 to 1), and of the force where it is not fitted. The
     /// amplitudes do not reveal an error of the force: force, gap and amplitudes scale alike.
-    fn calibration_columns(&self, setting: &Setting) -> Vec<Vec<f64>> {
+    pub fn calibration_columns(&self, setting: &Setting) -> Vec<Vec<f64>> {
         let (std, mut columns) = (self.data.calibration, Vec::new());
         if std == 0.0 {
             return columns;
@@ -163,7 +163,7 @@ impl Problem<'_> {
 
     /// Values of `of` for each step and its motion, in m for both masses, over their standard deviations
     /// and whitened step by step.
-    fn whitened(&self, of: impl Fn(&SweepStep, MotionKind) -> [f64; 2]) -> Vec<f64> {
+    pub fn whitened(&self, of: impl Fn(&SweepStep, MotionKind) -> [f64; 2]) -> Vec<f64> {
         let mut all = Vec::new();
         for ((step, kind), errors) in self.data.steps.iter().zip(&self.kinds).zip(&self.step_errors) {
             let Some(kind) = *kind else { continue };

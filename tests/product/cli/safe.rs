@@ -10,7 +10,7 @@ use tempfile::TempDir;
 use vibroimpact::math::Noise;
 
 /// Commands that write into a folder, each with the example recording that it reads (empty: none).
-const COMMANDS: [(&str, &[&str]); 21] = [
+const COMMANDS: [(&str, &[&str]); 22] = [
     ("bench/BENCH.CSV", &["spectrum", "--channel", "velocity", "--segment", "1024"]),
     ("bench/BENCH.CSV", &["spectrum", "--channel", "velocity", "--reference", "force", "--segment", "1024"]),
     ("bench/BENCH.CSV", &["modal", "--reference", "force", "--segment", "1024"]),
@@ -18,6 +18,7 @@ const COMMANDS: [(&str, &[&str]); 21] = [
     ("bench/PULSE.CSV", &["pulse", "--low-pass", "none"]),
     ("drop_test/BOUNCE.CSV", &["impacts"]),
     ("drop_test/DROP01.CSV", &["restitution", "--height", "0.57", "--interval-std", "1e-5"]),
+    ("plan/rig.toml", &["plan"]),
     ("bench/BENCH.CSV", &["response"]),
     ("bench/BENCH.CSV", &["waterfall"]),
     ("", &["pulse", "--time-to-peak", "6.6e-6", "--duration", "18e-6"]),

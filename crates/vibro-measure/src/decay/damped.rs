@@ -187,6 +187,27 @@ impl SineGroup {
         self.sines.iter().chain(self.hum.iter().map(|hum| &hum.sine))
     }
 
+    /// Whether two sines are so near each other that they are fitted together.
+    pub fn near(a: &Damped, b: &Damped) -> bool {
+        (a.periods - b.periods).abs() < 0.5 * (a.reach() + b.reach())
+    }
+
+    /// The group of a record without noise, with the uncertainties that noise gives it. `variance` is that of
+    /// each component of a line.
+    pub fn under_noise(mut self, variance: impl Fn(usize) -> f64) -> SineGroup {
+        let first = self.lines.start;
+        self.fit = self.fit.under_noise(|gain| {
+            DMatrix::from_fn(gain.nrows(), gain.ncols(), |i, j| variance(first + i / 2) * gain[(i, j)])
+        });
+        self.widening = 1.0;
+        self
+    }
+
+    /// Frequency and damping of sine `m`: indices among the parameters, and names with this ending.
+    pub fn shapes(m: usize, ending: &str) -> [(usize, String); 2] {
+        [(OWN * m, format!("frequency{ending}")), (OWN * m + 1, format!("zeta{ending}"))]
+    }
+
     /// Standard uncertainty of a function of the parameters of sine `m` with this gradient.
     pub fn std(&self, m: usize, gradient: [f64; OWN]) -> f64 {
         let at =

@@ -215,9 +215,7 @@ impl Sines {
         let wide = (top..rest.len() - 1).take_while(half).count() + (1..top).rev().take_while(half).count();
         let decay = std::f64::consts::PI * wide as f64;
         let new = Damped { periods: top as f64, decay, amplitude: Complex64::ZERO };
-        let near = |group: &SineGroup| {
-            group.sines.iter().any(|s| (s.periods - new.periods).abs() < 0.5 * (s.reach() + new.reach()))
-        };
+        let near = |group: &SineGroup| group.sines.iter().any(|s| SineGroup::near(s, &new));
         let (near, others): (Vec<SineGroup>, Vec<SineGroup>) = self.groups.drain(..).partition(near);
         self.groups = others;
         let old: Vec<Damped> = near.iter().flat_map(|group| group.sines.iter().copied()).collect();
@@ -287,7 +285,7 @@ fn is_one(a: &Damped, b: &Damped) -> bool {
 }
 
 /// Range of lines, among `all`, to which these sines are fitted together.
-fn range(sines: &[Damped], all: usize) -> Range<usize> {
+pub(super) fn range(sines: &[Damped], all: usize) -> Range<usize> {
     let ends = |sign: f64| sines.iter().map(move |s| s.periods + sign * s.reach());
     let low = ends(-1.0).fold(f64::INFINITY, f64::min).max(1.0) as usize;
     let high = ends(1.0).fold(0.0, f64::max) as usize + 1;

@@ -15,7 +15,8 @@ impl Samples<'_> {
     /// shape does.
     pub(super) fn between_samples(&self, fits: &mut [Judged]) {
         let Some(((false, _), FittedPulse { fit: best, first: Some(_), .. })) = fits.first() else { return };
-        let variance = best.variance().max(self.noise().1.powi(2)).max(f64::EPSILON.powi(2));
+        let shown = || best.variance().max(self.noise().1.powi(2)).max(f64::EPSILON.powi(2));
+        let variance = self.planned.unwrap_or_else(shown);
         // Logarithm of the weight, parameters, and index of the fit.
         let mut onsets: Vec<(f64, DVector<f64>, usize)> = Vec::new();
         for (index, (_, fitted)) in fits.iter().enumerate().filter(|(_, ((outside, _), _))| !outside) {

@@ -27,6 +27,8 @@ pub(super) struct Samples<'a> {
     pub quantum: f64,
     /// Ringing after the pulse, which may occur within it, too.
     pub rings: Option<Ringing>,
+    /// Variance of the noise over the squared height, of a planned record without noise.
+    pub planned: Option<f64>,
     /// The contact integrated last, with its model and shape: most steps of a fit keep it.
     pub last: RefCell<Option<(ContactModel, Vec<f64>, Rebound)>>,
 }

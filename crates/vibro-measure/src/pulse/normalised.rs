@@ -87,8 +87,8 @@ impl<'a> Normalised<'a> {
         let values = places.iter().map(|i| self.trace.values[*i] / self.height).collect();
         let (step, filter) = (self.step / self.length, self.filter.as_ref());
         let quantum = self.found.quantum / self.height;
-        let (mode, rings, last) = (None, None, RefCell::default());
-        Samples { step, filter, places, times, values, mode, quantum, rings, last }
+        let (mode, rings, planned, last) = (None, None, None, RefCell::default());
+        Samples { step, filter, places, times, values, mode, quantum, rings, planned, last }
     }
 
     /// The samples to be fitted: the pulse with a baseline on both sides, or only before it where the record

@@ -43,6 +43,11 @@ impl FlightNoise {
         (self.scatter * flight * flight + 2.0 * self.onset).sqrt()
     }
 
+    /// Noise with these variances of ln R from bounce to bounce and of the time of an impact, in s².
+    pub(super) fn new(scatter: f64, onset: f64) -> FlightNoise {
+        FlightNoise { scatter, onset }
+    }
+
     pub(super) fn mean(all: &[FlightNoise]) -> Option<FlightNoise> {
         let mean = |of: fn(&FlightNoise) -> f64| average(&all.iter().map(of).collect::<Vec<f64>>());
         (!all.is_empty()).then(|| FlightNoise { scatter: mean(|n| n.scatter), onset: mean(|n| n.onset) })
@@ -76,6 +81,14 @@ pub(super) fn misfit(trains: &[Timed], log: f64, noise: FlightNoise) -> f64 {
     let node =
         |(flights, _): &Timed| Ratios::new(&[flights], &[1.0], false).node(noise.scatter, noise.onset, false);
     trains.iter().filter_map(node).map(|own| (own.log_r - log).powi(2) / own.variance).sum()
+}
+
+/// ln R of trains and its variance, for known variances of ln R from bounce to bounce and of an onset. `None`
+/// without a ratio.
+pub(super) fn known(trains: &[Vec<Flight>], fall: bool, [scatter, onset]: [f64; 2]) -> Option<(f64, f64)> {
+    let flights: Vec<&[Flight]> = trains.iter().map(Vec::as_slice).collect();
+    let node = Ratios::new(&flights, &vec![1.0; flights.len()], fall).node(scatter, onset, false)?;
+    Some((node.log_r, node.variance))
 }
 
 /// Fits ln R and the noise of flights to trains; `None` without a ratio. With `fall`, all trains follow the

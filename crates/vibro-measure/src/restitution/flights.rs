@@ -25,7 +25,7 @@ pub(super) fn longer(train: &Train) -> Option<usize> {
 }
 
 /// From this number of trains on, their scatter alone gives the uncertainty.
-const MANY: usize = 4;
+pub(super) const MANY: usize = 4;
 
 /// Confidence level of the test whether trains differ: trains that do are not fitted together.
 const DIFFER: f64 = 0.95;

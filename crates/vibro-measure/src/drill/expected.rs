@@ -1,0 +1,102 @@
+//! Expected uncertainty of the blows of a planned drill record.
+
+use super::faults::State;
+use super::parabola::Parabola;
+use super::{Beam, DrillOptions};
+use crate::Estimate;
+use crate::expected::{Expected, Recorder};
+use vibro_record::{Error, Result};
+
+/// Blows as they are guessed before the test.
+#[derive(Debug, Clone, PartialEq)]
+pub struct GuessedBlows {
+    /// Blows in a second.
+    pub rate: f64,
+    /// Velocity before the blow in m/s.
+    pub before: f64,
+    /// Velocity after it in m/s, negative for a rebound.
+    pub after: f64,
+    /// Relative standard deviation of the velocities from blow to blow.
+    pub scatter: f64,
+    /// Mass in kg, for the energies.
+    pub mass: Option<f64>,
+    /// The struck mass in kg, at rest before the blow.
+    pub struck_mass: Option<f64>,
+    /// Sensitivity of the laser in m/s for one unit of the record.
+    pub sensitivity: f64,
+    /// The beam of the laser.
+    pub beam: Beam,
+    /// Standard uncertainty of the beam's angle in degrees.
+    pub beam_std: f64,
+    /// Longest contact in s; `None`: the default of a drill.
+    pub contact: Option<f64>,
+    /// Length of the fits beside it in s; `None`: the default of a drill.
+    pub fit: Option<f64>,
+}
+
+/// Coefficients of the samples of a parabola in its value at the middle of the contact, the nearest sample
+/// first.
+fn weights(options: &DrillOptions, rate: f64) -> Option<Vec<f64>> {
+    let (contact, fit) = options.lengths(rate);
+    let gap = ((0.5 * contact).ceil() as usize).max(1);
+    let length = (fit.round() as usize).max(super::parabola::FEWEST);
+    let states = vec![State::Good; length];
+    let one = |k: usize| {
+        let mut values = vec![0.0; length];
+        values[k] = 1.0;
+        // The middle of the contact lies anywhere between two samples.
+        Some(Parabola::through(&values, &states, -(gap as f64) - 0.5, 0..=length as isize - 1)?.value)
+    };
+    (0..length).map(one).collect()
+}
+
+/// What a record of the blows will tell: the means over all blows, by the parabolas of [`super::drill`].
+///
+/// # Errors
+/// If the record holds fewer than two blows, or a fit has too few samples.
+pub fn expected(guess: &GuessedBlows, recorder: &Recorder) -> Result<Expected> {
+    let mut options = DrillOptions::new(guess.sensitivity, guess.beam, 1, super::Edge::Rising);
+    options.contact = guess.contact.unwrap_or(options.contact);
+    options.fit = guess.fit.unwrap_or(options.fit);
+    let n = (guess.rate * recorder.duration).floor();
+    if n < 2.0 {
+        let why = format!("{} s hold fewer than two blows", recorder.duration);
+        return Err(Error::refused(why).hint("record longer").setting("duration"));
+    }
+    Recorder::check_work(options.lengths(recorder.rate).1)?;
+    let few = || Error::refused("too few samples for a parabola").hint("sample faster, or a longer fit");
+    let weights = weights(&options, recorder.rate).ok_or_else(few)?;
+    // Both sides have mirrored weights, and samples so far apart that their noise is independent.
+    let unit = guess.sensitivity * guess.beam.factor;
+    let product = |(i, a): (usize, &f64), (j, b): (usize, &f64)| a * b * recorder.covariance(i.abs_diff(j));
+    let pairs =
+        weights.iter().enumerate().map(|a| weights.iter().enumerate().map(|b| product(a, b)).sum::<f64>());
+    let noise = unit * unit * pairs.sum::<f64>();
+    let beam = guess.beam.per_degree * guess.beam_std;
+    let GuessedBlows { before, after, scatter, .. } = *guess;
+    let count = n as usize;
+    let estimate = |value: f64, of_noise: f64, of_scatter: f64, of_beam: f64, unit, method: &str| {
+        let std = ((of_noise * of_noise * noise + (of_scatter * scatter).powi(2)) / n).sqrt();
+        Estimate::new(value, Some(std.hypot(of_beam * beam)), unit, count, method)
+    };
+    let mean = "parabolas beside the contact, mean over the blows";
+    let mut found = Expected::default();
+    found.put("before", &estimate(before, 1.0, before, before, "m/s", mean));
+    found.put("after", &estimate(after, 1.0, after, after, "m/s", mean));
+    let ratio = guess.mass.zip(guess.struck_mass).map_or(0.0, |(mass, struck)| mass / struck);
+    let value = (ratio * (before - after) - after) / before;
+    // The approach moves R by (ratio − R)/v, the rebound by −(1 + ratio)/v; a blow that is faster as a whole
+    // leaves R.
+    let of_noise = (ratio - value).hypot(1.0 + ratio) / before;
+    found.put("restitution", &estimate(value, of_noise, 0.0, 0.0, "1", "ratio of the sums over the blows"));
+    if let Some(mass) = guess.mass {
+        let energy = 0.5 * mass * before * before;
+        let mean = "½ m v² before, mean over the blows";
+        found.put("energy", &estimate(energy, mass * before, 2.0 * energy, 2.0 * energy, "J", mean));
+        let given = 0.5 * mass * (before * before - after * after);
+        let mean = "½ m (v² before − v² after), mean over the blows";
+        let of_noise = mass * before.hypot(after);
+        found.put("energy_given", &estimate(given, of_noise, 2.0 * given, 2.0 * given, "J", mean));
+    }
+    Ok(found)
+}

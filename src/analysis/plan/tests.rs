@@ -1,0 +1,95 @@
+use super::*;
+use serde_json::Value;
+
+fn planned(text: &str) -> Result<Answer> {
+    of(&Campaign::parse(&Folder::default(), Path::new("plan.toml"), text.to_owned(), &SECTIONS)?, &())
+}
+
+/// The standard uncertainty of an answer of the first test of a kind.
+fn std(answer: &Answer, kind: &str, name: &str) -> f64 {
+    let Value::Object(all) = &answer.result[kind][0]["answers"] else { panic!("{:?}", answer.result) };
+    all[name]["std"].as_f64().unwrap()
+}
+
+const INSTRUMENT: &str = "[instrument]\nrate = 2000\nduration = 4\nnoise = 0.01\n";
+const DECAY: &str = "[[decay]]\nmodes = [{ frequency = 25, zeta = 0.01, amplitude = 1 }]\n";
+
+/// Uncertainties grow with the noise, and fall with the root of the number of records.
+#[test]
+fn noise_and_records_count_as_they_should() {
+    let once = planned(&format!("{INSTRUMENT}{DECAY}")).unwrap();
+    let four = planned(&format!("{INSTRUMENT}averages = 4\n{DECAY}")).unwrap();
+    let noisy = planned(&format!("{}{DECAY}", INSTRUMENT.replace("0.01", "0.03"))).unwrap();
+    for name in ["frequency", "zeta", "amplitude"] {
+        let one = std(&once, "decays", name);
+        // The covariance is linear in that of the noise, but for roundings of the matrices.
+        assert!((2.0 * std(&four, "decays", name) / one - 1.0).abs() < 1e-9);
+        assert!((std(&noisy, "decays", name) / one - 3.0).abs() < 1e-6);
+    }
+    let changes = once.result["decays"][0]["changes"].as_array().unwrap();
+    let best = &changes[0];
+    assert!((best["factor"].as_f64().unwrap() - 0.5).abs() < 1e-6, "{best}");
+}
+
+/// A decay of ζ = 0.01 at 25 Hz lasts four time constants in 2.5 s: longer records add little.
+#[test]
+fn a_record_that_is_long_enough_need_not_be_longer() {
+    let answer = planned(&format!("{INSTRUMENT}{DECAY}")).unwrap();
+    let changes = answer.result["decays"][0]["changes"].as_array().unwrap();
+    assert!(changes.iter().all(|change| change["change"] != "twice the record length"), "{changes:?}");
+}
+
+/// With bits, the step of the converter is noise of q/√12: 10 bits over ±5 are 0.0098, and 0.0028 of noise.
+#[test]
+fn a_coarse_converter_is_noise() {
+    let text = |noise: &str| format!("[instrument]\nrate = 2000\nduration = 4\n{noise}\n{DECAY}");
+    let bits = planned(&text("bits = 10\nrange = 5")).unwrap();
+    let noise = planned(&text(&format!("noise = {}", 10.0 / 1024.0 / 12f64.sqrt()))).unwrap();
+    let ratio = std(&bits, "decays", "zeta") / std(&noise, "decays", "zeta");
+    assert!((ratio - 1.0).abs() < 1e-9, "{ratio}");
+}
+
+#[test]
+fn mistakes_point_at_their_line() {
+    for (text, line, words) in [
+        ("[instrument]\nrate = -3\n", "line 2", "rate is -3"),
+        ("[instrument]\nrate = 3\nbits = 16\n", "line 3", "range"),
+        ("[instrument]\nrate = 3\nlow_pass = 5\n", "line 3", "order"),
+        ("[[instrument]]\nrate = 3\n", "line 1", "[instrument]"),
+        ("[instrument]\nnoize = 3\n", "line 2", "did you mean `noise`"),
+        ("[[pulse]]\nxi = 0.1\n", "line 1", "velocity"),
+        ("[[pulse]]\nxi = 1.1\nduration = 1e-4\nvelocity = 1\n", "line 2", "0 to below 1"),
+        ("[[pulse]]\nxi = 0.1\nvelocity = 1\nstiffness = 1e7\n", "line 1", "mass"),
+        ("[[decay]]\nmodes = [{ frequency = 25, zeta = 0.01 }]\n", "line 2", "`amplitude` is missing"),
+        (
+            "[[drop]]\nheight = 0.5\nrestitution = 0.6\nimpacts = 4\nonset_std = 1e-5\n",
+            "line 1",
+            "height_std",
+        ),
+        (
+            "[[drop]]\nfirst_flight = 0.5\nrestitution = 0.6\nimpacts = 2\nonset_std = 1e-5\n",
+            "",
+            "three impacts",
+        ),
+        ("[[sweep]]\nfrom = 4\nto = 3\n", "line 1", "[rig]"),
+        (
+            "[rig]\n[fit]\nparameters = [\"gap\"]\n[[sweep]]\nfrom = 4\nto = 3\nforces = [0.1]\n",
+            "line 5",
+            "the lower",
+        ),
+        ("[[drill]]\nspeed = 45\n", "line 1", "beam_angle"),
+        ("[[impact]]\n", "line 1", "unknown table `impact`"),
+        ("", "", "a plan without a test"),
+    ] {
+        let instrument = if text.contains("instrument") {
+            ""
+        } else {
+            "[instrument]\nrate = 1e4\nduration = 1\nnoise = 1\n"
+        };
+        // The table of the instrument stands last, so that lines are counted from the top of the test.
+        let error = planned(&format!("{text}{instrument}")).unwrap_err().to_string();
+        assert!(error.contains(line) && error.contains(words), "{text}: {error}");
+    }
+    let error = planned(&format!("[instrument]\nrate = 2000\n{DECAY}")).unwrap_err().to_string();
+    assert!(error.contains("noise"), "{error}");
+}
