@@ -4,6 +4,7 @@ pub mod cycles;
 pub mod figures;
 mod file;
 mod joined;
+mod modelled;
 pub mod tables;
 
 use super::answer::Answer;
@@ -306,6 +307,8 @@ impl Analysis for Keys {
         "drill_bandwidth",
         "drill_joined",
         "drill_chain",
+        "drill_model",
+        "drill_fit",
     ]);
     const RANGES: &'static [KeyRange] = &[
         KeyRange::above_zero("Hz", &["instrument"]),
@@ -343,7 +346,11 @@ impl Analysis for Keys {
             answer.files.iter_mut().for_each(|file| file.0.insert_str(0, "drill_"));
             Ok(vec![answer])
         })?;
-        let (joined, apart) = joined::joined(&std::mem::take(&mut job.found.bodies))?;
+        let model = job.campaign.drill_model.clone().and_then(|model| {
+            let draft = job.campaign.drill_draft(&model);
+            Some((model, job.found("[drill_model]", draft)?))
+        });
+        let (joined, apart) = joined::joined(&std::mem::take(&mut job.found.bodies), model.as_ref())?;
         for (record, finding) in &apart {
             job.found.add(record, [finding]);
         }
