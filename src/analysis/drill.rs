@@ -355,9 +355,13 @@ impl Analysis for Keys {
             job.found.add(record, [finding]);
         }
         let mut machines = Vec::new();
-        for (number, answer) in (1..).zip(joined) {
+        for (number, answers) in (1..).zip(joined) {
             let mark = if number == 1 { String::new() } else { number.to_string() };
-            machines.push(job.show("joined", &mark, answer));
+            let mut machine = job.show("joined", &mark, answers.machine);
+            if let Some(model) = answers.model {
+                machine.insert("model".to_owned(), job.show("model", &mark, model).into());
+            }
+            machines.push(machine);
         }
         if machines.is_empty() { Ok(()) } else { job.put("drill_machines", &machines) }
     }

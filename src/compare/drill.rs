@@ -96,7 +96,12 @@ pub fn drill_comparison(
     };
     let turns = TurnModel { rung, course, bodies: known, direction: chain.direction };
     let mut findings = Vec::new();
-    let (fit, machine) = fitted(&turns, &draft, entry, &mut findings)?;
+    let (mut fit, machine) = fitted(&turns, &draft, entry, &mut findings)?;
+    let invented = draft.left_out().join(", ");
+    if !invented.is_empty() {
+        let doubt = Finding::doubt("drill-left-out").name("keys", invented);
+        findings.push(doubt.of(&mut fit));
+    }
     let pulse = match (entry.pulse_angle, &fit) {
         (None, Some(DrillFit { keys, .. })) if !keys.is_empty() => keys[keys.len() - 1].estimate.clone(),
         (stated, _) => Estimate::new(stated.unwrap_or(0.0), None, "°", 0, "stated"),

@@ -206,7 +206,7 @@ fn a_campaign_joins_the_bodies_by_the_crank() {
         }
     }
     // The recordings are of an invented motion: no key of the model has an uncertainty.
-    assert_eq!(finding(machine, "drill-fit-lack")["severity"], "doubt");
+    assert_eq!(finding(model, "drill-fit-lack")["severity"], "doubt");
     assert!(model["fit"]["keys"].as_array().unwrap().iter().all(|key| key["estimate"]["std"].is_null()));
     for name in ["drill_average_striker_run.svg", "drill_joined.svg", "drill_chain.csv", "drill_model.svg"] {
         assert!(folder.path().join("results").join(name).exists(), "{name}");

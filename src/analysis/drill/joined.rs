@@ -38,6 +38,12 @@ fn sets<'a>(bodies: &[&'a Body]) -> (Vec<Vec<&'a Body>>, Vec<About>) {
     (sets, findings)
 }
 
+/// Answers of a joined machine, and of the model over it.
+pub(super) struct Joined {
+    pub machine: Answer,
+    pub model: Option<Answer>,
+}
+
 /// The machines that are joined from records, and findings on records that are not. A model is drawn over each.
 ///
 /// # Errors
@@ -45,7 +51,7 @@ fn sets<'a>(bodies: &[&'a Body]) -> (Vec<Vec<&'a Body>>, Vec<About>) {
 pub(super) fn joined(
     bodies: &[Body],
     model: Option<&(DrillModelEntry, MachineDraft)>,
-) -> Result<(Vec<Answer>, Vec<About>)> {
+) -> Result<(Vec<Joined>, Vec<About>)> {
     let (counted, uncounted): (Vec<&Body>, Vec<&Body>) = bodies.iter().partition(|body| body.crank);
     let (sets, mut apart) = sets(&counted);
     let uncounted = uncounted.iter().filter(|_| bodies.len() > 1);
@@ -59,13 +65,14 @@ pub(super) fn joined(
         answer.table("drill_chain", passages(&chain));
         answer.csv("drill_joined", &turn(&set));
         answer.figure("drill_joined", figure(&set, &chain));
+        let mut modelled = None;
         if let Some((entry, draft)) = model {
             match drill_comparison(draft, entry, &set, &chain) {
-                Ok(found) => modelled::add(&mut answer, &set, &chain, &found)?,
+                Ok(found) => modelled = Some(modelled::answer(&set, &chain, &found)?),
                 Err(error) => answer.add("", [left_out("drill-model-left-out", &error)]),
             }
         }
-        answers.push(answer);
+        answers.push(Joined { machine: answer, model: modelled });
     }
     if model.is_some() && answers.is_empty() {
         apart.push((String::new(), Finding::caution("drill-model-unused")));

@@ -1,30 +1,25 @@
 //! The model over the joined turn: tables and figure.
 
-use crate::analysis::answer::{Answer, unwritten};
+use crate::analysis::answer::Answer;
 use crate::compare::{Difference, DrillComparison, DrillFit, Unidentified};
 use crate::error::Result;
 use crate::measure::chain::{Body, Chain};
 use crate::report::layout::{lettered, table};
 use crate::report::{AxisSpec, Cell, Figure, Ink, Legend, Plot, Series, Stroke, Table};
 
-/// Adds the comparison to the answer of a joined machine.
+/// The answer of a comparison: a doubt about the model is none about what was measured.
 ///
 /// # Errors
 /// If the numbers cannot be written as JSON.
-pub(super) fn add(
-    answer: &mut Answer,
-    bodies: &[&Body],
-    chain: &Chain,
-    found: &DrillComparison,
-) -> Result<()> {
-    answer.result.insert("model".to_owned(), serde_json::to_value(found).map_err(unwritten)?);
+pub(super) fn answer(bodies: &[&Body], chain: &Chain, found: &DrillComparison) -> Result<Answer> {
+    let mut answer = Answer::of(found)?;
     answer.add("", &found.findings);
     answer.table("drill_model", differences(&found.differences));
     if let Some(fit) = &found.fit {
         answer.table("drill_fit", keys(fit));
     }
     answer.figure("drill_model", figure(bodies, chain, found));
-    Ok(())
+    Ok(answer)
 }
 
 /// Numbers of the blows, measured and of the model.
@@ -85,7 +80,8 @@ fn figure(bodies: &[&Body], chain: &Chain, found: &DrillComparison) -> Figure {
         let x = AxisSpec::new("Crank angle after the pulse", "°").limits(0.0, 360.0);
         let legend = if i == 0 { Legend::Above } else { Legend::Hidden };
         let mean = closed(body.mean.iter().map(|m| sign * m).collect());
-        let plot = Plot::new(x, AxisSpec::new(format!("Velocity, {}", body.name), "m/s"))
+        let plot = Plot::new(x, AxisSpec::new("Velocity", "m/s"))
+            .title(&*body.name)
             .legend(legend)
             .with(
                 Series::band("± 1 standard deviation", degrees.clone(), edge(-1.0), edge(1.0))

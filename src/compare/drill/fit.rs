@@ -11,7 +11,7 @@ use crate::math::{Minimum, minimise};
 use crate::measure::Estimate;
 use crate::measure::residuals::{Whiteness, student};
 use crate::model::drill::{Machine, MachineDraft};
-use crate::record::{Doubt, Finding, Uncertain};
+use crate::record::{Doubt, Finding, Uncertain, uncertain};
 use nalgebra::DMatrix;
 use serde::Serialize;
 use std::cell::RefCell;
@@ -50,6 +50,8 @@ pub struct DrillFit {
     pub widened: f64,
 }
 
+uncertain!(DrillFit: keys);
+
 /// Relative change of the sum of squares and of the unknowns at which a search ends.
 const GAIN: f64 = 1e-6;
 /// Name of the angle of the pulse among the keys.
@@ -60,6 +62,8 @@ const CALIBRATION: f64 = 0.01;
 /// Correlation beyond which two unknowns are told in combination only: knowing one would divide the uncertainty
 /// of the other by five.
 const TIED: f64 = 0.98;
+/// Correlation with an open unknown beyond which an unknown depends on it.
+const SHARED: f64 = 0.5;
 /// Largest relative standard uncertainty of a key that the turn determines: beyond, half or twice the value fits.
 const LOOSE: f64 = 0.5;
 /// χ²/ν beyond which the model lacks something: what is fitted then takes up a part of its error.
@@ -291,7 +295,7 @@ pub fn fitted(
         fit.keys.iter_mut().for_each(|key| key.reason = Some(Unidentified::InDoubt));
         findings.push(doubt.of(&mut fit.keys));
     }
-    findings.extend(answer.unidentified(&mut fit));
+    findings.extend(Answer::unidentified(&mut fit));
     Ok((Some(fit), machine))
 }
 
@@ -346,25 +350,37 @@ impl Answer<'_> {
         }
     }
 
-    /// Doubts about keys that the turn does not determine, or only in combination.
-    fn unidentified(&self, fit: &mut DrillFit) -> Vec<Finding> {
-        let names: Vec<String> = fit.keys.iter().map(|key| key.key.clone()).collect();
-        let correlations = fit.correlations.clone();
-        let doubt = |(key, row): (&mut FittedKey, &Vec<f64>)| {
-            let tied = names.iter().zip(row).filter(|(name, r)| **name != key.key && r.abs() > TIED);
-            let tied: Vec<&str> = tied.map(|(name, _)| name.as_str()).collect();
-            let loose = key.estimate.std? > LOOSE * key.estimate.value.abs() && key.start.is_some();
-            let (doubt, reason) = if !tied.is_empty() {
-                let found = Finding::doubt("drill-key-in-combination").name("others", tied.join(", "));
-                (found, Unidentified::Combination)
-            } else if loose {
-                (Finding::doubt("drill-key-open"), Unidentified::TooUncertain)
-            } else {
-                return None;
-            };
+    /// Doubts about keys that the turn does not determine, or only in combination. Where an unknown is open it may
+    /// lie far from where the covariance was taken: what depends on it has no uncertainty either.
+    fn unidentified(fit: &mut DrillFit) -> Vec<Finding> {
+        let related = |i: usize, j: usize, least: f64| i != j && fit.correlations[i][j].abs() > least;
+        let all = 0..fit.keys.len();
+        let loose = |key: &FittedKey| {
+            key.start.is_some() && key.estimate.std.is_some_and(|std| std > LOOSE * key.estimate.value.abs())
+        };
+        let is_open = |i: usize| loose(&fit.keys[i]) || all.clone().any(|j| related(i, j, TIED));
+        let open: Vec<bool> = all.clone().map(is_open).collect();
+        let others = |i: usize| -> Vec<&str> {
+            let tied = all.clone().filter(|j| related(i, *j, TIED) || open[*j] && related(i, *j, SHARED));
+            tied.map(|j| fit.keys[j].key.as_str()).collect()
+        };
+        let found: Vec<Option<(Doubt, Unidentified)>> = all
+            .clone()
+            .map(|i| {
+                let others = others(i);
+                if !others.is_empty() {
+                    let tied = Finding::doubt("drill-key-in-combination").name("others", others.join(", "));
+                    Some((tied, Unidentified::Combination))
+                } else {
+                    open[i].then(|| (Finding::doubt("drill-key-open"), Unidentified::TooUncertain))
+                }
+            })
+            .collect();
+        let doubts = fit.keys.iter_mut().zip(found).filter_map(|(key, found)| {
+            let (doubt, reason) = found.filter(|_| key.reason.is_none())?;
             key.reason = Some(reason);
             Some(doubt.about(&*key.key).of(key))
-        };
-        fit.keys.iter_mut().zip(&correlations).filter_map(doubt).collect()
+        });
+        doubts.collect()
     }
 }

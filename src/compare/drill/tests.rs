@@ -1,4 +1,5 @@
 use super::*;
+use crate::compare::fit::Unidentified;
 use crate::math::Noise;
 use crate::measure::drill::{AngleOrigin, Beam, DrillOptions, Edge, Slices, drill};
 use crate::model::drill::{Machine, Run, run};
@@ -58,6 +59,10 @@ fn entry(fit: &[&str], pulse_angle: Option<f64>) -> DrillModelEntry {
     }
 }
 
+fn stated() -> MachineDraft {
+    MachineDraft::from_toml(include_str!("../../../examples/hammer_drill/drill.toml")).unwrap()
+}
+
 /// A machine that differs from the stated one, which is the example.
 fn truth() -> Machine {
     let mut machine = Machine::example();
@@ -82,7 +87,7 @@ fn deviations(draws: u64) -> Vec<f64> {
         let bodies = [0, 2].map(run);
         let bodies: Vec<&Body> = bodies.iter().collect();
         let chain = Chain::of(&bodies).unwrap();
-        let found = drill_comparison(&MachineDraft::default(), &entry, &bodies, &chain).unwrap();
+        let found = drill_comparison(&stated(), &entry, &bodies, &chain).unwrap();
         let fit = found.fit.unwrap();
         println!("{draw}: chi²/ν {:.3}, widened {:.3}", fit.reduced_chi_squared, fit.widened);
         let off = |key: &FittedKey| {
@@ -109,4 +114,22 @@ fn ten_drills_come_back_within_their_uncertainties() {
     println!("mean square {square:.2}: {off:?}");
     // 40 deviations, four of each draw: their mean square is 1 ± √(2/40) = 0.22 where they are independent.
     assert!(off.iter().all(|z| z.abs() < 5.0) && (0.1..2.0).contains(&square), "{square} {off:?}");
+}
+
+#[test]
+fn keys_that_act_alike_are_named() {
+    let (machine, run) = (truth(), (25e3, 0.1));
+    let motion = motion(&machine, run.0);
+    let bodies = [0usize, 2].map(|body| record(&machine, &motion, body, run, 40 + body as u64));
+    let bodies: Vec<&Body> = bodies.iter().collect();
+    let chain = Chain::of(&bodies).unwrap();
+    // The bit alone shows only the speed of the blow of what drives the striker.
+    let entry = entry(&["flow.leakage", "striker.friction"], None);
+    let found = drill_comparison(&stated(), &entry, &bodies[1..], &chain).unwrap();
+    let keys = found.fit.unwrap().keys;
+    for key in &keys {
+        assert_eq!((key.reason, key.estimate.std), (Some(Unidentified::Combination), None), "{keys:?}");
+    }
+    let named = found.findings.iter().filter(|finding| finding.code == "drill-key-in-combination");
+    assert_eq!(named.count(), 3);
 }
