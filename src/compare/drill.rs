@@ -59,8 +59,8 @@ pub struct DrillComparison {
 pub struct ShownBody {
     /// Name of the body.
     pub name: String,
-    /// Velocity in m/s, positive in the direction of a blow, at the phases of the average: sampled, smoothed and
-    /// averaged like the record.
+    /// Velocity in m/s, positive in the direction of a blow, at the phases of the average: sampled,
+    /// smoothed and averaged like the record.
     pub velocity: Vec<f64>,
     /// Root mean square of measured less model over the turn in m/s.
     pub rms: f64,
@@ -71,8 +71,8 @@ pub struct ShownBody {
 /// Compares the joined bodies of a drill with the model in `draft`, which runs at the measured speed.
 ///
 /// # Errors
-/// If no body has the name of one of the model's, a number of the model is impossible, it cannot be followed, or
-/// the fit fails.
+/// If no body has the name of one of the model's, a number of the model is impossible, it cannot be
+/// followed, or the fit fails.
 pub fn drill_comparison(
     draft: &MachineDraft,
     entry: &DrillModelEntry,

@@ -80,8 +80,9 @@ pub struct Tones {
 /// another large line within two lines of the sine, no uncertainty is given: [`tones`] fits both.
 ///
 /// # Errors
-/// If the trace has no spectrum ([`vibro_signal::spectrum::plain`]), no line is above the noise, the record has
-/// fewer than one and a half periods, or the sine lies within a quarter of a line of half the sampling rate.
+/// If the trace has no spectrum ([`vibro_signal::spectrum::plain`]), no line is above the noise, the record
+/// has fewer than one and a half periods, or the sine lies within a quarter of a line of half the sampling
+/// rate.
 pub fn sine(trace: &Trace, near: Option<f64>) -> Result<Tones> {
     Ok(SineFit::new(trace, &[HannLines::of(trace)?.strongest(near)?])?.estimates(trace, 1))
 }

@@ -44,7 +44,8 @@ pub(super) struct Joined {
     pub model: Option<Answer>,
 }
 
-/// The machines that are joined from records, and findings on records that are not. A model is drawn over each.
+/// The machines that are joined from records, and findings on records that are not. A model is drawn over
+/// each.
 ///
 /// # Errors
 /// If the numbers cannot be written as JSON.

@@ -87,20 +87,16 @@ pub fn differences(
         let own = chain.passages.iter().find(|p| is(&p.from, behind) && is(&p.to, behind + 1));
         let Some(passage) = own else { continue };
         let [a, b] = [masses[behind], masses[behind + 1]];
-        let numbers: [(&str, &Option<Estimate>, &dyn Fn(&Impact) -> f64); 3] = [
-            ("restitution", &passage.restitution, &|i| {
-                (i.after[1] - i.after[0]) / (i.before[0] - i.before[1])
-            }),
-            ("momentum given", &passage.given, &|i| a * (i.before[0] - i.after[0])),
-            ("energy taken", &passage.energy_taken, &|i| {
-                0.5 * b * (i.after[1].powi(2) - i.before[1].powi(2))
-            }),
-        ];
-        for (name, measured, of) in numbers {
-            let quantity = format!("{name}, {}", interface.name());
+        let mut add = |name: &str, measured: &Option<Estimate>, of: &dyn Fn(&Impact) -> f64| {
             let both = measured.as_ref().zip(mean(turn, interface, of));
+            let quantity = format!("{name}, {}", interface.name());
             found.extend(both.map(|(measured, model)| Difference::of(quantity, measured, model)));
-        }
+        };
+        add("restitution", &passage.restitution, &|i| {
+            (i.after[1] - i.after[0]) / (i.before[0] - i.before[1])
+        });
+        add("momentum given", &passage.given, &|i| a * (i.before[0] - i.after[0]));
+        add("energy taken", &passage.energy_taken, &|i| 0.5 * b * (i.after[1].powi(2) - i.before[1].powi(2)));
     }
     found
 }

@@ -1,7 +1,7 @@
 //! Keys of a drill and the angle of its pulse from the joined turn, by least squares.
 //!
-//! Residuals are measured less shown velocities at the phases of each average, over the standard error of that
-//! mean. The velocity scale of each record has an error of its own, with a prior.
+//! Residuals are measured less shown velocities at the phases of each average, over the standard error of
+//! that mean. The velocity scale of each record has an error of its own, with a prior.
 
 use super::turn::{MeasuredPhase, ModelTurn, TurnModel};
 use crate::campaign::DrillModelEntry;
@@ -56,19 +56,21 @@ uncertain!(DrillFit: keys);
 const GAIN: f64 = 1e-6;
 /// Name of the angle of the pulse among the keys.
 const PULSE: &str = "pulse_angle";
-/// Relative standard uncertainty of a velocity scale that is not stated: that of a beam set to 1° at 30° to the
-/// motion.
+/// Relative standard uncertainty of a velocity scale that is not stated: that of a beam set to 1° at 30° to
+/// the motion.
 const CALIBRATION: f64 = 0.01;
-/// Correlation beyond which two unknowns are told in combination only: knowing one would divide the uncertainty
-/// of the other by five.
+/// Correlation beyond which two unknowns are told in combination only: knowing one would divide the
+/// uncertainty of the other by five.
 const TIED: f64 = 0.98;
 /// Correlation with an open unknown beyond which an unknown depends on it.
 const SHARED: f64 = 0.5;
-/// Largest relative standard uncertainty of a key that the turn determines: beyond, half or twice the value fits.
+/// Largest relative standard uncertainty of a key that the turn determines: beyond, half or twice the value
+/// fits.
 const LOOSE: f64 = 0.5;
 /// χ²/ν beyond which the model lacks something: what is fitted then takes up a part of its error.
 const LACK_OF_FIT: f64 = 1.25;
-/// Steps of the derivatives, in the units of [`minimise`]: 6e-5 of a key, far above the error of the integration.
+/// Steps of the derivatives, in the units of [`minimise`]: 6e-5 of a key, far above the error of the
+/// integration.
 const KEY_SCALE: f64 = 10.0;
 /// Those of the pulse in turns and of the velocity scales: a significant change.
 const SMALL: f64 = 0.01;
@@ -227,8 +229,8 @@ impl<'a> Problem<'a> {
     }
 }
 
-/// Fit of the stated keys, and the machine with them; adds its findings. The angle of the pulse is the last key
-/// where it is not stated. `None` where nothing is to be found.
+/// Fit of the stated keys, and the machine with them; adds its findings. The angle of the pulse is the last
+/// key where it is not stated. `None` where nothing is to be found.
 ///
 /// # Errors
 /// If a key cannot be fitted, or the machine cannot be followed.
@@ -325,19 +327,17 @@ impl Answer<'_> {
     fn fit(&self, machine: &Machine) -> DrillFit {
         let (problem, u) = (self.problem, &self.minimum.parameters);
         let method = "least squares of the mean turn";
-        let key = |i: usize| match i.checked_sub(problem.first_key()) {
-            Some(k) => {
-                let Unknown { key, start, .. } = problem.keys[k];
-                let std = problem.keys[k].slope(u[i]) * self.std(i);
-                let value = machine.value(key).unwrap_or(f64::NAN);
-                let estimate = Estimate::new(value, Some(std), Machine::unit_of(key), problem.n(), method);
-                FittedKey { key: key.to_owned(), estimate, start: Some(start), reason: None }
-            }
-            None => {
-                let value = 360.0 * u[i].rem_euclid(1.0);
-                let estimate = Estimate::new(value, Some(360.0 * self.std(i)), "°", problem.n(), method);
-                FittedKey { key: PULSE.to_owned(), estimate, start: None, reason: None }
-            }
+        let estimate = |value, std, unit| Estimate::new(value, Some(std), unit, problem.n(), method);
+        let key = |i: usize| {
+            let Some(k) = i.checked_sub(problem.first_key()) else {
+                let angle = estimate(360.0 * u[i].rem_euclid(1.0), 360.0 * self.std(i), "°");
+                return FittedKey { key: PULSE.to_owned(), estimate: angle, start: None, reason: None };
+            };
+            let Unknown { key, start, .. } = problem.keys[k];
+            let std = problem.keys[k].slope(u[i]) * self.std(i);
+            let value = machine.value(key).unwrap_or(f64::NAN);
+            let estimate = estimate(value, std, Machine::unit_of(key));
+            FittedKey { key: key.to_owned(), estimate, start: Some(start), reason: None }
         };
         let all = self.unknowns();
         let row = |i: &usize| all.iter().map(|j| self.correlation(*i, *j)).collect();
@@ -350,8 +350,8 @@ impl Answer<'_> {
         }
     }
 
-    /// Doubts about keys that the turn does not determine, or only in combination. Where an unknown is open it may
-    /// lie far from where the covariance was taken: what depends on it has no uncertainty either.
+    /// Doubts about keys that the turn does not determine, or only in combination. Where an unknown is open
+    /// it may lie far from where the covariance was taken: what depends on it has no uncertainty either.
     fn unidentified(fit: &mut DrillFit) -> Vec<Finding> {
         let related = |i: usize, j: usize, least: f64| i != j && fit.correlations[i][j].abs() > least;
         let all = 0..fit.keys.len();
@@ -368,12 +368,11 @@ impl Answer<'_> {
             .clone()
             .map(|i| {
                 let others = others(i);
-                if !others.is_empty() {
-                    let tied = Finding::doubt("drill-key-in-combination").name("others", others.join(", "));
-                    Some((tied, Unidentified::Combination))
-                } else {
-                    open[i].then(|| (Finding::doubt("drill-key-open"), Unidentified::TooUncertain))
+                if others.is_empty() {
+                    return open[i].then(|| (Finding::doubt("drill-key-open"), Unidentified::TooUncertain));
                 }
+                let tied = Finding::doubt("drill-key-in-combination").name("others", others.join(", "));
+                Some((tied, Unidentified::Combination))
             })
             .collect();
         let doubts = fit.keys.iter_mut().zip(found).filter_map(|(key, found)| {

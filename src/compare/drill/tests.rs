@@ -44,7 +44,7 @@ fn record(machine: &Machine, motion: &Run, body: usize, (rate, pulse): (f64, f64
     let options = DrillOptions::new(1.0, Beam::new(0.0, AngleOrigin::Axis).unwrap(), 1, Edge::Rising);
     let masses = [machine.striker.mass, machine.intermediate.mass, machine.bit.mass];
     let options = DrillOptions { mass: Some(masses[body]), ..options };
-    let found = drill(&Slices { rate: rate, channels: vec![&velocity, &pulse] }, &options, None).unwrap();
+    let found = drill(&Slices { rate, channels: vec![&velocity, &pulse] }, &options, None).unwrap();
     Body::of(BODIES[body], BODIES[body], Some(masses[body]), &found)
 }
 

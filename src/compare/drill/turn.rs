@@ -49,8 +49,8 @@ impl TurnModel<'_> {
         Ok(ModelTurn { run, positions })
     }
 
-    /// Velocities in m/s in the direction of a blow at the phases of each average, with the pulse `ahead` turns
-    /// after top dead centre.
+    /// Velocities in m/s in the direction of a blow at the phases of each average, with the pulse `ahead`
+    /// turns after top dead centre.
     ///
     /// # Errors
     /// As [`Body::shown`].

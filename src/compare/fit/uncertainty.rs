@@ -158,8 +158,8 @@ impl Uncertainty {
     }
 }
 
-/// (JᵀJ)⁻¹ of a Jacobian with as many rows as columns or more. The variance of a combination that the residuals
-/// do not determine is large, but finite.
+/// (JᵀJ)⁻¹ of a Jacobian with as many rows as columns or more. The variance of a combination that the
+/// residuals do not determine is large, but finite.
 ///
 /// # Errors
 /// If the singular values cannot be computed.

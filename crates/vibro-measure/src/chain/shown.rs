@@ -4,8 +4,8 @@ use super::body::Body;
 use crate::drill::value;
 use vibro_record::Result;
 
-/// Instants of a known motion to a sample of the record. Turns of a record begin anywhere between two samples,
-/// so that its average has them all.
+/// Instants of a known motion to a sample of the record. Turns of a record begin anywhere between two
+/// samples, so that its average has them all.
 const INSTANTS: usize = 4;
 /// Standard deviations at which the scatter of the impacts' phase ends.
 const FAR: f64 = 5.0;
@@ -21,8 +21,8 @@ impl Body {
         ((self.rate / self.speed[0]).round() as usize).max(2)
     }
 
-    /// Mean velocity (m/s) at the phases of the average if the body moved through these positions (m), at even
-    /// instants of a turn, the first of them `ahead` turns before the pulse of the crank.
+    /// Mean velocity (m/s) at the phases of the average if the body moved through these positions (m), at
+    /// even instants of a turn, the first of them `ahead` turns before the pulse of the crank.
     ///
     /// The velocity is sampled, smoothed and averaged like the record. Impacts whose phase scatters from turn
     /// to turn blur the average; as many turns as were measured show all of that scatter.
