@@ -27,6 +27,7 @@
 //! ```
 //! An unknown key is an error that points at its line.
 
+mod drill_model;
 mod edit;
 mod entry;
 mod key_range;
@@ -36,6 +37,7 @@ mod reading;
 mod tables;
 mod value;
 
+pub use drill_model::DrillModelEntry;
 pub use edit::{WrittenKey, WrittenTable};
 pub use meaning::KeyMeaning;
 pub use tables::{Compute, Drive, FitEntry, Follows, ModelEntry};
@@ -49,6 +51,7 @@ pub(crate) use reading::{Channel, above_zero};
 pub(crate) use value::{LowPass, channel, channels, one_or_more, two, word};
 
 use crate::error::{Error, Place, Result};
+use crate::model::drill::MachineDraft;
 use crate::model::{ContactKeys, Parameter, Rig, Scene, Uncertainty};
 use crate::read::Folder;
 use crate::record::{Finding, shown};
@@ -85,6 +88,8 @@ pub struct Campaign {
     pub contact: Option<ContactKeys>,
     /// Model of the overlay's predictions, and its settings.
     pub model: ModelEntry,
+    /// Model of the joined bodies of hammer drills.
+    pub drill_model: Option<DrillModelEntry>,
     /// Parameters to be fitted to the responses.
     pub fit: FitEntry,
     /// What to compute, and how.
@@ -323,8 +328,30 @@ impl Campaign {
         for (table, checked) in checked {
             checked.map_err(|(key, why)| at(table, key, Error::usage(why, "")))?;
         }
+        if let Some(model) = &self.drill_model {
+            model.check().map_err(|(key, error)| at("drill_model", key, error))?;
+            self.drill_file(model).map_err(|e| at("drill_model", "file", e))?;
+        }
         self.contact = contact;
         Ok(self)
+    }
+
+    /// The file of the model of a hammer drill.
+    fn drill_file(&self, model: &DrillModelEntry) -> Result<PathBuf> {
+        self.existing(self.folder.path(&model.file)?, &model.file)
+    }
+
+    /// The keys of the model of a hammer drill.
+    ///
+    /// # Errors
+    /// If its file cannot be read, is none of a drill, or has an impossible value.
+    pub(crate) fn drill_draft(&self, model: &DrillModelEntry) -> Result<MachineDraft> {
+        let path = self.drill_file(model)?;
+        let text = String::from_utf8(self.folder.read(&path)?);
+        let text = text.map_err(|_| Error::usage("bytes that are not UTF-8", "a drill as TOML text"));
+        let draft = text.and_then(|text| MachineDraft::from_toml(&text));
+        let checked = draft.and_then(|draft| draft.machine().map(|_| draft));
+        checked.map_err(|error| error.in_file(path))
     }
 
     /// Rig keys that the file does not state and that take the values of the thesis' rig.
@@ -348,6 +375,11 @@ impl Campaign {
     /// If it leads outside the folder or does not exist.
     pub(crate) fn file<K>(&self, entry: &Entry<K>, key: &'static str, name: &Path) -> Result<PathBuf> {
         let path = self.path_of(entry, key, name)?;
+        self.existing(path, name).map_err(|e| self.fault(entry, e.setting(key)))
+    }
+
+    /// The path of a file, stated as `name`, if it exists.
+    fn existing(&self, path: PathBuf, name: &Path) -> Result<PathBuf> {
         if self.folder.exists(&path) {
             return Ok(path);
         }
@@ -360,11 +392,10 @@ impl Campaign {
             let name_of = |path: &PathBuf| path.strip_prefix(root).unwrap_or(path).display().to_string();
             Error::absent_among(found, &all.iter().map(name_of).collect::<Vec<_>>(), name)
         };
-        let error = match &self.made_by {
+        Err(match &self.made_by {
             Some(command) => error.hint(format!("`{command}` makes it")),
             None => error,
-        };
-        Err(self.fault(entry, error.setting(key)))
+        })
     }
 }
 

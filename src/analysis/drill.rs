@@ -4,6 +4,7 @@ pub mod cycles;
 pub mod figures;
 mod file;
 mod joined;
+mod modelled;
 pub mod tables;
 
 use super::answer::Answer;
@@ -306,6 +307,8 @@ impl Analysis for Keys {
         "drill_bandwidth",
         "drill_joined",
         "drill_chain",
+        "drill_model",
+        "drill_fit",
     ]);
     const RANGES: &'static [KeyRange] = &[
         KeyRange::above_zero("Hz", &["instrument"]),
@@ -343,14 +346,22 @@ impl Analysis for Keys {
             answer.files.iter_mut().for_each(|file| file.0.insert_str(0, "drill_"));
             Ok(vec![answer])
         })?;
-        let (joined, apart) = joined::joined(&std::mem::take(&mut job.found.bodies))?;
+        let model = job.campaign.drill_model.clone().and_then(|model| {
+            let draft = job.campaign.drill_draft(&model);
+            Some((model, job.found("[drill_model]", draft)?))
+        });
+        let (joined, apart) = joined::joined(&std::mem::take(&mut job.found.bodies), model.as_ref())?;
         for (record, finding) in &apart {
             job.found.add(record, [finding]);
         }
         let mut machines = Vec::new();
-        for (number, answer) in (1..).zip(joined) {
+        for (number, answers) in (1..).zip(joined) {
             let mark = if number == 1 { String::new() } else { number.to_string() };
-            machines.push(job.show("joined", &mark, answer));
+            let mut machine = job.show("joined", &mark, answers.machine);
+            if let Some(model) = answers.model {
+                machine.insert("model".to_owned(), job.show("model", &mark, model).into());
+            }
+            machines.push(machine);
         }
         if machines.is_empty() { Ok(()) } else { job.put("drill_machines", &machines) }
     }

@@ -21,6 +21,7 @@ mod unknown;
 
 pub use answer::{Fit, FitPoint, FittedParameter, LeftOut};
 pub use hold_out::{Block, Rung};
+pub(super) use uncertainty::covariance;
 pub use uncertainty::{Profile, Unidentified};
 
 use super::forcing::range;

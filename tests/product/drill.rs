@@ -146,8 +146,9 @@ fn a_campaign_joins_the_bodies_by_the_crank() {
         wav(&data, &file, &[volts(name, velocity), volts("pulse", pulse)]);
     }
     wav(&data, "still.wav", &[volts("striker", record::still(0.5))]);
-    let own = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/hammer_drill/campaign.toml");
-    let text = std::fs::read_to_string(own).unwrap();
+    let own = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/hammer_drill");
+    let text = std::fs::read_to_string(own.join("campaign.toml")).unwrap();
+    std::fs::copy(own.join("drill.toml"), folder.path().join("drill.toml")).unwrap();
     let campaign = folder.path().join("campaign.toml");
     std::fs::write(&campaign, &text).unwrap();
     let run = |path: &Path| {
@@ -190,7 +191,24 @@ fn a_campaign_joins_the_bodies_by_the_crank() {
     let bit = momenta[1] / b;
     near(&machine["efficiency"], b * bit * bit / (m * 7.5 * 7.5));
     assert!((machine["blow_rate"].as_f64().unwrap() - 60.0 * 47.3).abs() < 60.0);
-    for name in ["drill_average_striker_run.svg", "drill_joined.svg", "drill_chain.csv"] {
+    let model = &machine["model"];
+    for (body, measured) in model["bodies"].as_array().unwrap().iter().zip(drills) {
+        assert_eq!(body["velocity"].as_array().unwrap().len(), 720);
+        assert!(body["rms"].as_f64().unwrap() < 4.0, "{}: {}", measured["name"], body["rms"]);
+    }
+    let differences = model["differences"].as_array().unwrap();
+    assert_eq!(differences.len(), 9, "{differences:?}");
+    for difference in differences {
+        let [measured, model] = ["measured", "model"].map(|key| difference[key]["value"].as_f64().unwrap());
+        if let Some(std) = difference["measured"]["std"].as_f64() {
+            let expected = (measured - model) / std;
+            assert!((difference["deviations"].as_f64().unwrap() - expected).abs() < 1e-9 * expected.abs());
+        }
+    }
+    // The recordings are of an invented motion: no key of the model has an uncertainty.
+    assert_eq!(finding(model, "drill-fit-lack")["severity"], "doubt");
+    assert!(model["fit"]["keys"].as_array().unwrap().iter().all(|key| key["estimate"]["std"].is_null()));
+    for name in ["drill_average_striker_run.svg", "drill_joined.svg", "drill_chain.csv", "drill_model.svg"] {
         assert!(folder.path().join("results").join(name).exists(), "{name}");
     }
     // A missing key that has no default is named.

@@ -6,6 +6,7 @@
 
 mod body;
 mod passage;
+mod shown;
 
 pub use body::{Body, Hits};
 pub use passage::Passage;
@@ -122,6 +123,9 @@ mod tests {
             mass: Some(mass),
             speed: [45.0, 0.2],
             crank: true,
+            rate: 1e5,
+            smoothing: None,
+            turns: 100,
             hits: hits.collect(),
             phase: Vec::new(),
             mean: Vec::new(),

@@ -45,7 +45,7 @@ pub use options::{AngleOrigin, Beam, Corner, DrillOptions, Smoothing, TurnsFrom}
 pub use result::{Displacement, Drill, Pulses};
 pub(crate) use survey::levels;
 pub use turns::Edge;
-pub(crate) use turns::{Edges, Numbered};
+pub(crate) use turns::{Edges, Numbered, value};
 
 use crate::Estimate;
 use crate::converter::{analogue_step, rounding};

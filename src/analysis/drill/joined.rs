@@ -1,10 +1,15 @@
 //! Records of several bodies of a machine, joined by the crank.
 
+use super::modelled;
 use crate::analysis::answer::Answer;
+use crate::analysis::answer::left_out;
 use crate::analysis::headline::headline;
+use crate::campaign::DrillModelEntry;
+use crate::compare::drill_comparison;
 use crate::error::Result;
 use crate::measure::Estimate;
 use crate::measure::chain::{Body, Chain, Passage};
+use crate::model::drill::MachineDraft;
 use crate::record::Finding;
 use crate::report::layout::{headed, lettered, pair, points, table};
 use crate::report::words::About;
@@ -33,11 +38,21 @@ fn sets<'a>(bodies: &[&'a Body]) -> (Vec<Vec<&'a Body>>, Vec<About>) {
     (sets, findings)
 }
 
-/// The machines that are joined from records, and findings on records that are not.
+/// Answers of a joined machine, and of the model over it.
+pub(super) struct Joined {
+    pub machine: Answer,
+    pub model: Option<Answer>,
+}
+
+/// The machines that are joined from records, and findings on records that are not. A model is drawn over
+/// each.
 ///
 /// # Errors
 /// If the numbers cannot be written as JSON.
-pub(super) fn joined(bodies: &[Body]) -> Result<(Vec<Answer>, Vec<About>)> {
+pub(super) fn joined(
+    bodies: &[Body],
+    model: Option<&(DrillModelEntry, MachineDraft)>,
+) -> Result<(Vec<Joined>, Vec<About>)> {
     let (counted, uncounted): (Vec<&Body>, Vec<&Body>) = bodies.iter().partition(|body| body.crank);
     let (sets, mut apart) = sets(&counted);
     let uncounted = uncounted.iter().filter(|_| bodies.len() > 1);
@@ -51,7 +66,17 @@ pub(super) fn joined(bodies: &[Body]) -> Result<(Vec<Answer>, Vec<About>)> {
         answer.table("drill_chain", passages(&chain));
         answer.csv("drill_joined", &turn(&set));
         answer.figure("drill_joined", figure(&set, &chain));
-        answers.push(answer);
+        let mut modelled = None;
+        if let Some((entry, draft)) = model {
+            match drill_comparison(draft, entry, &set, &chain) {
+                Ok(found) => modelled = Some(modelled::answer(&set, &chain, &found)?),
+                Err(error) => answer.add("", [left_out("drill-model-left-out", &error)]),
+            }
+        }
+        answers.push(Joined { machine: answer, model: modelled });
+    }
+    if model.is_some() && answers.is_empty() {
+        apart.push((String::new(), Finding::caution("drill-model-unused")));
     }
     Ok((answers, apart))
 }
@@ -172,6 +197,9 @@ mod tests {
             mass: None,
             speed: [speed, 0.1],
             crank: true,
+            rate: 1e5,
+            smoothing: None,
+            turns: 100,
             hits: Vec::new(),
             phase: Vec::new(),
             mean: Vec::new(),

@@ -95,18 +95,7 @@ impl Uncertainty {
         for (mut column, rate) in scaled.column_iter_mut().zip(&rates) {
             column /= *rate;
         }
-        let not_computed = || Error::refused("the singular values of the fit were not found");
-        if scaled.iter().any(|v| !v.is_finite()) {
-            return Err(not_computed());
-        }
-        // With an iteration limit, since the algorithm has no bound of its own.
-        let svd = SVD::try_new(scaled, false, true, f64::EPSILON, 10_000).ok_or_else(not_computed)?;
-        let floor = (svd.singular_values.max() * RESOLVED).max(1e-12);
-        let mut v = svd.v_t.ok_or_else(not_computed)?;
-        for (mut row, s) in v.row_iter_mut().zip(&svd.singular_values) {
-            row /= s.max(floor);
-        }
-        let covariance = v.tr_mul(&v).component_div(&(&rates * rates.transpose()));
+        let covariance = covariance(scaled)?.component_div(&(&rates * rates.transpose()));
         // Gauss–Newton step from the minimum: not 0 for a parameter that its limit keeps from the optimum.
         let step = -(&covariance * jacobian.tr_mul(&DVector::from_column_slice(&least.minimum.residuals)));
         let limit = |i: usize| {
@@ -167,6 +156,26 @@ impl Uncertainty {
     pub fn worst(&self) -> usize {
         (0..self.relative.len()).max_by(|a, b| self.relative[*a].total_cmp(&self.relative[*b])).unwrap_or(0)
     }
+}
+
+/// (JᵀJ)⁻¹ of a Jacobian with as many rows as columns or more. The variance of a combination that the
+/// residuals do not determine is large, but finite.
+///
+/// # Errors
+/// If the singular values cannot be computed.
+pub fn covariance(jacobian: DMatrix<f64>) -> Result<DMatrix<f64>> {
+    let not_computed = || Error::refused("the singular values of the fit were not found");
+    if jacobian.iter().any(|v| !v.is_finite()) {
+        return Err(not_computed());
+    }
+    // With an iteration limit, since the algorithm has no bound of its own.
+    let svd = SVD::try_new(jacobian, false, true, f64::EPSILON, 10_000).ok_or_else(not_computed)?;
+    let floor = (svd.singular_values.max() * RESOLVED).max(1e-12);
+    let mut v = svd.v_t.ok_or_else(not_computed)?;
+    for (mut row, s) in v.row_iter_mut().zip(&svd.singular_values) {
+        row /= s.max(floor);
+    }
+    Ok(v.tr_mul(&v))
 }
 
 /// If parameter number `i` lies at a limit of its range, the direction outwards in u (1 or −1) and the bound;

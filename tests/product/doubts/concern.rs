@@ -66,15 +66,18 @@ const SCALED: Concern = At(&[
 ]);
 
 /// Every code of a doubt.
-pub const CONCERNS: [(&str, Concern); 77] = [
+pub const CONCERNS: [(&str, Concern); 80] = [
     ("rig-left-out", Nothing(MODEL)),
-    ("drill-left-out", Nothing(MODEL)),
+    ("drill-left-out", At(&["fit/keys/*/estimate"])),
     ("decay-unexplained", MODE),
     ("decay-changes", MODE),
     (
         "drill-velocity-scaled-twice",
         At(&["impacts", "groups", "before", "after", "energy", "energy_given", "displacement"]),
     ),
+    ("drill-fit-lack", At(&["fit/keys/*/estimate", "pulse_angle"])),
+    ("drill-key-in-combination", Item("fit/keys", "key", &["estimate"])),
+    ("drill-key-open", Item("fit/keys", "key", &["estimate"])),
     ("drill-over-range", At(&["displacement"])),
     ("drill-impacts-over-range", VELOCITIES),
     ("drill-mean-velocity", VELOCITIES),

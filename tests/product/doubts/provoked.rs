@@ -385,7 +385,26 @@ fn drills(folder: &Path) -> Vec<Case> {
     ]
 }
 
-/// Fits of the example's rig, one sweep of it for speed.
+/// The example's hammer drill, whose recordings are not of its model.
+fn joined_drill(folder: &Path) -> Case {
+    let example = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/hammer_drill");
+    std::fs::create_dir_all(folder.join("data")).unwrap();
+    for file in ["campaign.toml", "drill.toml"] {
+        std::fs::copy(example.join(file), folder.join(file)).unwrap();
+    }
+    let made = record::record(1.0);
+    let runs =
+        [("drill", [made.striker, made.pulse]), ("piston", record::piston(1.0)), ("bit", record::bit(1.0))];
+    for (name, [velocity, pulse]) in runs {
+        let channel = if name == "drill" { "striker" } else { name };
+        let channels = [volts(channel, velocity), volts("pulse", pulse)];
+        wav(&folder.join("data"), &format!("{name}.wav"), &channels);
+    }
+    wav(&folder.join("data"), "still.wav", &[volts("striker", record::still(0.5))]);
+    case("another drill", "run", Some(&folder.join("campaign.toml")), &["drill-fit-lack"])
+}
+
+/// Fits of the example's rig, one sweep of it for speed, and of the example's hammer drill.
 pub fn fits(folder: &Path) -> Vec<Case> {
     let example = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/two_mass_rig");
     let text = std::fs::read_to_string(example.join("campaign.toml")).unwrap();
@@ -407,6 +426,7 @@ pub fn fits(folder: &Path) -> Vec<Case> {
     };
     vec![
         fit("a prior far off", 4, "prior.gap = [1.3e-3, 1e-5]", ("", ""), "gap,c1", &["prior-contradicted"]),
+        joined_drill(&folder.join("drill")),
         fit("another spring", 1, "", ("k1 = 135.0", "k1 = 150.0"), "c1", &["many-outliers", "lack-of-fit"]),
     ]
 }

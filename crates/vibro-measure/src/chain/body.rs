@@ -1,7 +1,7 @@
 //! A body of a machine, as its run shows it.
 
 use crate::Estimate;
-use crate::drill::{Drill, Group, TurnsFrom};
+use crate::drill::{Corner, Drill, Group, TurnsFrom};
 use serde::{Deserialize, Serialize};
 
 /// A body of a machine, as its run shows it.
@@ -17,6 +17,12 @@ pub struct Body {
     pub speed: [f64; 2],
     /// Whether phases count from the crank's pulse.
     pub crank: bool,
+    /// Samples a second of its record.
+    pub rate: f64,
+    /// Smoothing of the average.
+    pub smoothing: Option<Corner>,
+    /// Turns in the average.
+    pub turns: usize,
     /// Groups of impacts.
     pub hits: Vec<Hits>,
     /// Phases of the average turn, in turns.
@@ -59,6 +65,9 @@ impl Body {
             mass,
             speed: [found.speed.value, found.speed_variation],
             crank: found.turns_from == TurnsFrom::Reference,
+            rate: 1.0 / found.excerpt_time.1,
+            smoothing: found.smoothing,
+            turns: found.averaged,
             hits: hits.collect(),
             phase: found.average.phase.clone(),
             mean: found.average.mean.clone(),

@@ -96,7 +96,7 @@ pub enum TurnsFrom {
 }
 
 /// A smoothing and its corner in Hz.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "kind", content = "corner", rename_all = "kebab-case")]
 pub enum Corner {
     /// Butterworth low-pass of second order, forward and backward: the corner is at half the amplitude.
@@ -127,7 +127,7 @@ impl Smoothing {
 
 impl Corner {
     /// Smooths a velocity.
-    pub(super) fn smooth(self, values: &[f64], rate: f64) -> Result<Vec<f64>> {
+    pub(crate) fn smooth(self, values: &[f64], rate: f64) -> Result<Vec<f64>> {
         match self {
             Corner::ZeroPhaseLowPass(corner) => Filter::low_pass(corner, 2, rate)?.zero_phase(values),
             Corner::Exponential(corner) => {

@@ -247,7 +247,7 @@ pub(super) fn between(values: &[f64], i: usize, level: f64) -> Option<f64> {
 
 /// Value at a position between samples, on the cubic through the four samples around it; a straight line at
 /// the ends. `None` outside the record.
-pub(super) fn value(values: &[f64], at: f64) -> Option<f64> {
+pub(crate) fn value(values: &[f64], at: f64) -> Option<f64> {
     let i = at.floor();
     if i < 0.0 {
         return None;

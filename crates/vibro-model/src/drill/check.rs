@@ -1,6 +1,7 @@
 //! Ranges of the numbers of an impact unit.
 
 use super::machine::{Interface, Machine};
+use crate::given::leaves;
 use crate::least::{NumberRange, number};
 use vibro_record::{Error, Result};
 
@@ -19,6 +20,13 @@ impl Machine {
     /// Unit of a key in a file; empty where it has none.
     pub fn unit_of(key: &str) -> &'static str {
         Machine::example().numbers().into_iter().find(|row| row.0 == key).map_or("", |row| row.2)
+    }
+
+    /// Value of a key in a file; `None` where that is no number.
+    pub fn value(&self, key: &str) -> Option<f64> {
+        let all = leaves("", toml::Table::try_from(self).ok()?);
+        let (_, value) = all.into_iter().find(|(name, _)| name == key)?;
+        value.as_float().or_else(|| Some(value.as_integer()? as f64))
     }
 
     /// Key, value, unit and range of every number that is checked by itself.
