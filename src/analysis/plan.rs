@@ -148,9 +148,10 @@ fn of(plan: &Campaign, progress: &dyn Progress) -> Result<Answer> {
         answer.add(&forecast.title, &forecast.findings);
         answer.tables.push(tables::forecast(forecast));
     }
-    for (title, points) in &suggested {
-        answer.table("plan_points", tables::points(title, points));
-        answer.figure("plan_points", figures::points(title, points));
+    for (k, (title, points)) in suggested.iter().enumerate() {
+        let name = if k == 0 { "plan_points".to_owned() } else { format!("plan_points_{}", k + 1) };
+        answer.table(&name, tables::points(title, points));
+        answer.figure(&name, figures::points(title, points));
     }
     if !suggested.is_empty() {
         let suggested = suggested.iter().map(|(_, points)| points).collect::<Vec<_>>();

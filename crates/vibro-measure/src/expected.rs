@@ -15,6 +15,10 @@ use vibro_record::{Error, Finding, Result};
 /// uncertainty of the other by 1/√(1 − r²) = 5.
 pub const TIED: f64 = 0.98;
 
+/// Multiples of the sampling rate from which filtered noise is folded back. A low-pass of order 1 with its
+/// corner at the sampling rate leaves 1 % of the power beyond.
+const FOLDS: u32 = 64;
+
 /// Most values of a planned fit.
 const MOST: f64 = 2e4;
 
@@ -27,6 +31,8 @@ pub struct Recorder {
     pub duration: f64,
     /// Step of the converter; 0 where it does not count.
     pub step: f64,
+    /// Largest value of the converter; `None` where it does not count.
+    pub range: Option<f64>,
     /// Standard deviation of white noise of a sample, added behind the low-pass.
     pub noise: f64,
     /// One-sided spectral density of the sensor's noise before the low-pass, per √Hz.
@@ -59,8 +65,21 @@ impl Recorder {
 
     /// One-sided spectral density of the noise at `frequency` in Hz, squared unit per Hz.
     pub fn spectrum(&self, frequency: f64) -> f64 {
-        let filtered = self.low_pass.as_ref().map_or(0.0, |filter| filter.gain(frequency) * self.density);
-        2.0 * self.white() / self.rate + filtered.powi(2)
+        // What lies beyond half the sampling rate is folded back.
+        let folded = |filter: &LowPass| {
+            let above =
+                (1..=FOLDS).flat_map(|k| [-1.0, 1.0].map(|side| f64::from(k) * self.rate + side * frequency));
+            std::iter::once(frequency).chain(above).map(|f| filter.gain(f).powi(2)).sum::<f64>()
+        };
+        let filtered = self.low_pass.as_ref().map_or(0.0, folded);
+        2.0 * self.white() / self.rate + self.density.powi(2) * filtered
+    }
+
+    /// Refuses a record whose largest value is beyond the range of the converter.
+    pub(crate) fn holds(&self, largest: f64) -> Result<()> {
+        let Some(range) = self.range.filter(|range| largest > *range) else { return Ok(()) };
+        let why = format!("the record reaches {largest:.3}, the converter {range}: it would be clipped");
+        Err(Error::refused(why).hint("a larger range").setting("range"))
     }
 
     /// Number of samples of a record.

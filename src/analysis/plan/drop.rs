@@ -57,9 +57,8 @@ impl super::Guess for Guess {
         }),
         Knob::new("contact time", "a contact time known to 0.1 ms", 0.17, |_, guess, by| {
             // What is assumed where none is stated, ± 1/√3 ms.
-            let assumed = 1e-3 / 3f64.sqrt();
-            guess.contact_time_std = Some(guess.contact_time_std.unwrap_or(assumed) * by);
-            true
+            let stated = guess.contact_time_std.replace(by * 1e-3 / 3f64.sqrt());
+            stated.is_none()
         }),
     ];
 

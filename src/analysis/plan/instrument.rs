@@ -98,7 +98,8 @@ impl Instrument {
                 "0.01, in the unit of the record; or noise_density, or bits and range",
             ));
         }
-        Ok(Recorder { rate, duration, step, noise, density, low_pass: self.filter()? })
+        let (range, low_pass) = (self.range, self.filter()?);
+        Ok(Recorder { rate, duration, step, range, noise, density, low_pass })
     }
 
     /// What of an instrument can be changed to know more.

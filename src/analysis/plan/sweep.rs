@@ -177,6 +177,12 @@ pub fn planned(
     let aim = aim(guess, &task)?;
     let now = information(instrument)?;
     let candidates: Vec<usize> = reached.candidates().into_iter().filter(|place| *place >= first).collect();
+    if candidates.is_empty() {
+        let why = format!("none of {} points has a motion to be fitted", places.len() - first);
+        return Err(Error::refused(why)
+            .hint("other frequencies or forces, or a longer [model] settle")
+            .setting("from"));
+    }
     let next = now.next(&chosen, &candidates, guess.next.unwrap_or(NEXT), &aim.1);
     let suggestion = |(i, place): (usize, &usize)| {
         let all = [&chosen[..], &next[..=i]].concat();

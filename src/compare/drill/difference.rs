@@ -61,9 +61,11 @@ pub fn differences(
         );
         let period = machine.crank.period();
         let ahead = |impact: &Impact| 360.0 * (impact.time + 0.5 * impact.duration) / period;
-        if let (Some(pulse), Some(model)) =
-            (pulse_angle, mean(turn, Interface::Striker, |i| ahead(i) % 360.0))
+        // The mean of directions: angles on both sides of top dead centre have none of their own.
+        let directed = |of: fn(f64) -> f64| mean(turn, Interface::Striker, |i| of(ahead(i).to_radians()));
+        if let (Some(pulse), Some(sine), Some(cosine)) = (pulse_angle, directed(f64::sin), directed(f64::cos))
         {
+            let model = sine.atan2(cosine).to_degrees();
             let std = 360.0 * hits.phase[1] / (hits.n as f64).sqrt();
             // Within half a turn of the measured one.
             let angle = 360.0 * hits.phase[0] + pulse;

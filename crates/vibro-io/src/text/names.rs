@@ -259,7 +259,8 @@ impl Name {
         let (motion, quantity) = (said.next()?, Unit::parse(amplitude(used).0)?.quantity());
         let moves = MOTIONS.iter().any(|(_, motion)| *motion == quantity);
         // A name with several motions tells none.
-        let differs = moves && motion != quantity && said.all(|other| other == motion);
+        let derived = DERIVED.iter().any(|word| name.contains(word));
+        let differs = moves && !derived && motion != quantity && said.all(|other| other == motion);
         let found = Finding::doubt("quantity-name-differs").name("column", self.name.as_str());
         let found = found.name("word", motion.name()).name("used", used).name("quantity", quantity.name());
         differs.then(|| found.without_estimate())
@@ -361,6 +362,9 @@ const MOTIONS: [(&str, Quantity); 6] = [
     ("displacement", Quantity::Displacement),
     ("auslenkung", Quantity::Displacement),
 ];
+
+/// Words in a name of what was computed of the motion that it says: `integrated acceleration` is a velocity.
+const DERIVED: [&str; 7] = ["integr", "rate", "deriv", "diff", " of ", " from ", "abgeleitet"];
 
 /// Words in the name of a force: the unit N is then newton.
 const FORCES: [&str; 3] = ["force", "load", "kraft"];

@@ -1170,7 +1170,7 @@ fn a_row_of_units_that_contradicts_a_name_is_said() {
         "{:?}",
         motion.all_findings()
     );
-    for name in ["Velocity [mm/s]", "Acceleration of velocity [mm/s]", "Force at acceleration [N]"] {
+    for name in ["Velocity [mm/s]", "Integrated acceleration [mm/s]", "Force at acceleration [N]"] {
         let found = of(format!("Time [s],{name}\n{rows}"));
         assert!(!has_finding(&found.all_findings(), "quantity-name-differs", &[]), "{name}");
     }

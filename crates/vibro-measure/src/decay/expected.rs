@@ -34,6 +34,7 @@ pub fn expected(modes: &[GuessedMode], recorder: &Recorder, unit: &'static str) 
         let found = format!("a mode at {} Hz, sampled at {} Hz", high.frequency, recorder.rate);
         return Err(Error::usage(found, "a sampling rate above twice the frequency").setting("rate"));
     }
+    recorder.holds(modes.iter().map(|mode| mode.amplitude).sum())?;
     // Samples behind the sixth time constant of the strongest mode are not used.
     let enough = (ENOUGH / rate(strongest) * recorder.rate) as usize;
     let n = recorder.samples().min(enough);

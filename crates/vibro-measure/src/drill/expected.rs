@@ -68,6 +68,7 @@ pub fn expected(guess: &GuessedBlows, recorder: &Recorder) -> Result<Expected> {
     let weights = weights(&options, recorder.rate).ok_or_else(few)?;
     // Both sides have mirrored weights, and samples so far apart that their noise is independent.
     let unit = guess.sensitivity * guess.beam.factor;
+    recorder.holds(guess.before.abs().max(guess.after.abs()) / unit)?;
     let product = |(i, a): (usize, &f64), (j, b): (usize, &f64)| a * b * recorder.covariance(i.abs_diff(j));
     let pairs =
         weights.iter().enumerate().map(|a| weights.iter().enumerate().map(|b| product(a, b)).sum::<f64>());

@@ -85,11 +85,13 @@ pub fn expected(guess: &GuessedPulse, recorder: &Recorder) -> Result<Expected> {
     let drawn = if recorder.low_pass.is_some() { 0 } else { RECORDS };
     let one = |k: u32| {
         let phase = (f64::from(k) + 0.5) / f64::from(RECORDS);
-        at(guess, recorder, phase, Some(Noise::new(k.into()))).ok()
+        at(guess, recorder, phase, Some(Noise::new(k.into())))
     };
-    let all: Vec<Expected> = (0..drawn).filter_map(one).collect();
-    for (i, (_, answer)) in found.answers.iter_mut().enumerate() {
-        answer.std = together(all.iter().map(|one| one.answers[i].1.std)).or(answer.std);
+    // A record in sixteen that allows no fit is no plan.
+    let all = (0..drawn).map(one).collect::<Result<Vec<Expected>>>()?;
+    for (name, answer) in &mut found.answers {
+        let of = |one: &Expected| one.answers.iter().find(|(other, _)| other == name)?.1.std;
+        answer.std = together(all.iter().map(of)).or(answer.std);
     }
     found.findings.extend(hidden(guess.contact()?.duration(), recorder));
     Ok(found)
@@ -103,6 +105,7 @@ fn at(guess: &GuessedPulse, recorder: &Recorder, phase: f64, drawn: Option<Noise
         let std = recorder.covariance(0).sqrt();
         trace.values.iter_mut().for_each(|value| *value += std * noise.normal());
     }
+    recorder.holds(trace.values.iter().fold(0.0, |most: f64, v| most.max(v.abs())))?;
     // The record has no step of a converter; its rounding is in the covariance.
     let located = Located { quantum: 0.0, clipped: Vec::new(), ..locate(&trace.values)? };
     samples_of(&located)?;

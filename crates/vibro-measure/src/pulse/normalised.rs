@@ -35,6 +35,10 @@ pub(super) struct Normalised<'a> {
 /// ringing has a mean near zero.
 const LEVEL: f64 = 0.5;
 
+/// Record beside the contact whose level counts for it, on either side, in lengths of the pulse: slower drift
+/// goes into the baseline.
+const NEAR: f64 = 8.0;
+
 /// Baseline fitted before and after the pulse, in lengths of the pulse.
 const BESIDE: f64 = 2.0;
 
@@ -180,20 +184,24 @@ impl<'a> Normalised<'a> {
     }
 
     /// Standard uncertainty of the level under the contact, over the height of the pulse, that drift, hum and
-    /// 1/f noise leave beyond white noise: stretches of the record as long as the contact scatter by it about
+    /// 1/f noise leave beyond white noise: stretches beside it, as long as the contact, scatter by it about
     /// the fitted baseline. The white part is that of the differences of neighbours.
     fn level_std(&self, fitted: &FittedPulse) -> f64 {
         let (onset, end) = (fitted.fit.parameters[0], fitted.end());
         let delay = self.filter.as_ref().map_or(0.0, LowPass::delay);
         let values = &self.trace.values;
         let n = ((end - onset) * self.length / self.step).ceil().max(1.0);
-        let before = values[..self.index(onset - 2.0 * self.step / self.length)].rchunks_exact(n as usize);
+        let begin = self.index(onset - 2.0 * self.step / self.length);
+        let before = values[self.index(onset - NEAR)..begin].rchunks_exact(n as usize);
         // Behind the contact a sensor with a mode rings.
         let rings = fitted.fit.parameters.len() > 3 + fitted.model.parameters();
-        let rest = if rings { values.len() } else { self.index(end + TAIL * delay) };
-        let after = values[rest..].chunks_exact(n as usize);
+        let settled = self.index(end + TAIL * delay);
+        let after = &values[settled..if rings { settled } else { self.index(end + TAIL * delay + NEAR) }];
         let (mut count, mut squares, mut steps) = (0.0, 0.0, 0.0);
-        for stretch in before.chain(after).filter(|stretch| stretch.iter().all(|v| v.is_finite())) {
+        // Another pulse is no drift.
+        let quiet = |v: &f64| ((v - self.found.baseline) / self.height).abs() < 0.5;
+        let quiet = |stretch: &&[f64]| stretch.iter().all(|v| v.is_finite() && quiet(v));
+        for stretch in before.chain(after.chunks_exact(n as usize)).filter(quiet) {
             let level = average(stretch) / self.height - fitted.fit.parameters[1];
             let neighbours = stretch.windows(2).map(|w| ((w[1] - w[0]) / self.height).powi(2)).sum::<f64>();
             (count, squares, steps) = (count + 1.0, squares + level * level, steps + neighbours);

@@ -4,11 +4,10 @@
 //! parameters of the others and leaves almost no residual. So the uncertainty is a mean over both cases: no
 //! further mode, or one from a prior, weighted by their likelihoods.
 //!
-//! The prior: modes are as dense as the others of the fit beside one of them, and beside a mode on its own as
-//! in the whole band (a Poisson process whose rate is known by their number, Jeffreys' prior). They are of
-//! similar damping, and of any order of magnitude in height. Structures of proportional damping have real
-//! modal constants, any other constants of any phase; both are as likely. Where fewer modes stand for more,
-//! their constants have phases.
+//! The prior: modes are as dense as the others of the fit beside one of them (a Poisson process whose rate is
+//! known by their number, Jeffreys' prior), of similar damping, and of any order of magnitude in height.
+//! Structures of proportional damping have real modal constants, any other constants of any phase; both are
+//! as likely. Where fewer modes stand for more, their constants have phases.
 //!
 //! The others follow a further mode by a fit of their own to the lines without it, nearly in proportion to
 //! its height only while that is small. So its posterior is no normal one, and follows by importance sampling
@@ -199,10 +198,14 @@ fn holding(mixture: &[(f64, f64, f64)], least: f64) -> f64 {
 }
 
 impl Rational {
-    /// Widens the uncertainties of the modes to cover a further one that the noise may hide.
+    /// Widens the uncertainties of modes that were fitted together to cover a further one that the noise may
+    /// hide. A mode on its own has none: beside it, what the noise may hide counted too much in single modes.
     pub fn cover_hidden(&mut self, again: &Again<'_>) {
+        if self.modes.len() < 2 {
+            return;
+        }
+        let odds = self.modes.len() as f64 - 0.5;
         let Some(hidden) = Hidden::of(again, self.whiteness.inflation) else { return };
-        let odds = hidden.odds();
         let (draws, log_weights) = hidden.draws(odds);
         for (q, std) in self.std.iter_mut().flatten().enumerate() {
             let with =
@@ -254,14 +257,6 @@ impl<'a> Hidden<'a> {
         let classes = priors(highest);
         let between = (low, high);
         Some(Hidden { again, variance, free, modes, highest, between, quantities, of_phases, classes })
-    }
-
-    /// Odds of a further mode before the lines are seen. Modes that were fitted together have neighbours. A
-    /// mode on its own has none in the whole band.
-    fn odds(&self) -> f64 {
-        let x = &self.again.scaled.x;
-        let lone = (self.between.1 - self.between.0) / (x[x.len() - 1] - x[0]);
-        (self.modes.len() as f64 - 0.5) * if self.modes.len() > 1 { 1.0 } else { lone }
     }
 
     /// Draws, and the logarithm of the weight of each, whose sum is the evidence of a further mode over that
