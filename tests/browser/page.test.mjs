@@ -216,11 +216,11 @@ test("a page that is printed before its data are unpacked has every figure or it
 });
 
 test("ticks of a logarithmic axis are multiples of powers of ten, even steps on a short one, powers on a long one", () => open(report, {}, async (page) => {
-  const of = (low, high) => page.evaluate(([a, b]) => logTicks(a, b), [low, high]);
+  const of = (low, high, room = 100) => page.evaluate(([a, b, c]) => logTicks(a, b, c), [low, high, room]);
   const wide = await of(0.00187, 74.65);
   assert.deepEqual([wide[0], wide.at(-1), wide.length], [0.002, 70, 8 + 3 * 9 + 7]);
   assert.deepEqual(await of(0.0089, 0.0161), [0.01, 0.012, 0.014, 0.016]);
-  assert.deepEqual(await of(3e-5, 2e4), [1e-4, 1e-3, 1e-2, 0.1, 1, 10, 100, 1000, 1e4]);
+  assert.deepEqual(await of(3e-5, 2e4, 30), [1e-4, 1e-3, 1e-2, 0.1, 1, 10, 100, 1000, 1e4]);
 }));
 
 test("without scripts the figures stand as printed", () => open(report, { javaScriptEnabled: false }, async (page) => {
