@@ -147,6 +147,13 @@ fn turn(bodies: &[&Body]) -> Table {
     table
 }
 
+/// Values over a turn as a closed curve, since the turn ends where it begins.
+pub(super) fn closed(values: impl Iterator<Item = f64>) -> Vec<f64> {
+    let mut curve: Vec<f64> = values.collect();
+    curve.extend(curve.first().copied());
+    curve
+}
+
 /// Velocities with their scatter and displacements of all bodies over a turn, positive in the direction of a
 /// blow; vertical lines at the contacts.
 fn figure(bodies: &[&Body], chain: &Chain) -> Figure {
@@ -155,23 +162,17 @@ fn figure(bodies: &[&Body], chain: &Chain) -> Figure {
     let mut displacement = Plot::new(x(), AxisSpec::new("Displacement", "mm")).legend(Legend::Hidden);
     let sign = chain.direction;
     for (i, body) in bodies.iter().enumerate() {
-        // The curve is closed, since the turn ends where it begins.
-        let closed = |values: Vec<f64>| -> Vec<f64> {
-            let first = values.first().copied();
-            values.into_iter().chain(first).collect()
-        };
         let degrees: Vec<f64> = body.phase.iter().map(|p| 360.0 * p).chain([360.0]).collect();
-        let edge =
-            |by: f64| closed(body.mean.iter().zip(&body.std).map(|(m, s)| sign * m + by * s).collect());
+        let edge = |by: f64| closed(body.mean.iter().zip(&body.std).map(|(m, s)| sign * m + by * s));
         let ink = Ink::Nth(i);
         velocity = velocity.with(Series::band("", degrees.clone(), edge(-1.0), edge(1.0)).ink(ink));
-        let mean = closed(body.mean.iter().map(|m| sign * m).collect());
+        let mean = closed(body.mean.iter().map(|m| sign * m));
         velocity = velocity.with(Series::line(&*body.name, degrees.clone(), mean).ink(ink));
         for (side, marker) in [Marker::Circle, Marker::OpenCircle].into_iter().enumerate() {
             let places = body.hits.iter().map(|hits| (360.0 * hits.phase[0], sign * hits.velocities[side]));
             velocity = points(velocity, "", places, ink, marker);
         }
-        let moved = closed(body.displacement.iter().map(|x| 1e3 * sign * x).collect());
+        let moved = closed(body.displacement.iter().map(|x| 1e3 * sign * x));
         displacement = displacement.with(Series::line(&*body.name, degrees, moved).ink(ink));
     }
     for passage in &chain.passages {

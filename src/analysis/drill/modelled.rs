@@ -1,5 +1,6 @@
 //! The model over the joined turn: tables and figure.
 
+use super::joined::closed;
 use crate::analysis::answer::Answer;
 use crate::compare::{Difference, DrillComparison, DrillFit, Unidentified};
 use crate::error::Result;
@@ -69,17 +70,11 @@ fn figure(bodies: &[&Body], chain: &Chain, found: &DrillComparison) -> Figure {
         .filter_map(|shown| Some((bodies.iter().find(|body| body.name == shown.name)?, shown)));
     let mut height = 20.0;
     for (i, (body, shown)) in panels.enumerate() {
-        // The curve is closed, since the turn ends where it begins.
-        let closed = |values: Vec<f64>| -> Vec<f64> {
-            let first = values.first().copied();
-            values.into_iter().chain(first).collect()
-        };
         let degrees: Vec<f64> = body.phase.iter().map(|p| 360.0 * p).chain([360.0]).collect();
-        let edge =
-            |by: f64| closed(body.mean.iter().zip(&body.std).map(|(m, s)| sign * m + by * s).collect());
+        let edge = |by: f64| closed(body.mean.iter().zip(&body.std).map(|(m, s)| sign * m + by * s));
         let x = AxisSpec::new("Crank angle after the pulse", "°").limits(0.0, 360.0);
         let legend = if i == 0 { Legend::Above } else { Legend::Hidden };
-        let mean = closed(body.mean.iter().map(|m| sign * m).collect());
+        let mean = closed(body.mean.iter().map(|m| sign * m));
         let plot = Plot::new(x, AxisSpec::new("Velocity", "m/s"))
             .title(&*body.name)
             .legend(legend)
@@ -89,7 +84,7 @@ fn figure(bodies: &[&Body], chain: &Chain, found: &DrillComparison) -> Figure {
             )
             .with(Series::line("measured", degrees.clone(), mean).ink(Ink::Nth(0)))
             .with(
-                Series::line("model", degrees, closed(shown.velocity.clone()))
+                Series::line("model", degrees, closed(shown.velocity.iter().copied()))
                     .ink(Ink::Nth(1))
                     .stroke(Stroke::Dashed),
             );

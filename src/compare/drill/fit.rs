@@ -9,6 +9,7 @@ use crate::compare::fit::{Unidentified, covariance};
 use crate::error::{Error, Result};
 use crate::math::{Minimum, minimise};
 use crate::measure::Estimate;
+use crate::measure::expected::TIED;
 use crate::measure::residuals::{Whiteness, student};
 use crate::model::drill::{Machine, MachineDraft};
 use crate::record::{Doubt, Finding, Uncertain, uncertain};
@@ -59,9 +60,6 @@ const PULSE: &str = "pulse_angle";
 /// Relative standard uncertainty of a velocity scale that is not stated: that of a beam set to 1° at 30° to
 /// the motion.
 const CALIBRATION: f64 = 0.01;
-/// Correlation beyond which two unknowns are told in combination only: knowing one would divide the
-/// uncertainty of the other by five.
-const TIED: f64 = 0.98;
 /// Correlation with an open unknown beyond which an unknown depends on it.
 const SHARED: f64 = 0.5;
 /// Largest relative standard uncertainty of a key that the turn determines: beyond, half or twice the value
