@@ -11,12 +11,11 @@ use super::kind::{Analysis, OfFile, no_file};
 use super::source::Source;
 use crate::campaign::{Entry, KeyRange};
 use crate::error::Result;
-use crate::measure::Estimate;
 use crate::measure::decay::{DecayOptions, DecayResult, decay};
 use crate::record::doubt_with_record;
 use crate::record::units::notation;
 use crate::report::files::Names;
-use crate::report::layout::{pair, table, titled};
+use crate::report::layout::{degrees, table, titled};
 use crate::report::{Cell, Table};
 use serde::Deserialize;
 
@@ -65,7 +64,6 @@ impl OfFile for Keys {
 }
 
 fn modes(name: &str, found: &DecayResult) -> Table {
-    let degrees = |e: &Estimate| pair(e.value.to_degrees(), e.std.map(f64::to_degrees));
     let table = table(
         titled("Modes", name),
         &found.modes,

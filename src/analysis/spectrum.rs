@@ -14,7 +14,7 @@ use crate::measure::spectral::{Lines, Method, SpectralOptions, SpectralResult, s
 use crate::read::Header;
 use crate::record::{Scaling, Traces, Window, doubt_with_record, find_channel, shown, sort_by_number};
 use crate::report::files::Names;
-use crate::report::layout::{headed, table};
+use crate::report::layout::{degrees, headed, table};
 use crate::report::{Cell, Table, files};
 use crate::signal::transfer::Estimator;
 use serde::Deserialize;
@@ -408,7 +408,7 @@ fn tones(name: &str, found: &SpectralResult) -> Table {
             ("frequency", "Hz", &|t| Cell::from(&t.frequency)),
             ("amplitude", "", &|t| Cell::from(&t.amplitude)),
             ("unit", "", &|t| Cell::from(t.amplitude.unit)),
-            ("phase", "rad", &|t| Cell::from(&t.phase)),
+            ("phase", "°", &|t| degrees(&t.phase)),
         ],
     )
 }

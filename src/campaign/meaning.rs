@@ -12,6 +12,8 @@ pub struct KeyMeaning {
     pub unit: &'static str,
     /// What it states.
     pub meaning: &'static str,
+    /// Its name in plain words: the first clause of the meaning.
+    pub label: &'static str,
     /// What holds without it.
     pub left_out: &'static str,
     /// Whether tables of all kinds have it: it says how a file is read.
@@ -25,7 +27,7 @@ impl KeyMeaning {
     /// ```
     /// use vibroimpact::campaign::KeyMeaning;
     /// let height = KeyMeaning::of("drop").find(|one| one.key == "height").unwrap();
-    /// assert_eq!((height.unit, height.meaning), ("m", "height of the fall"));
+    /// assert_eq!((height.unit, height.label), ("m", "height of the fall"));
     /// ```
     pub fn of(section: &str) -> impl Iterator<Item = KeyMeaning> {
         let (named, mut sections) = (format!("[[{section}]]"), 0);
@@ -49,6 +51,31 @@ impl KeyMeaning {
         let (key, rest) = line.strip_prefix("| `")?.split_once("` | ")?;
         let mut cells = rest.trim_end_matches(" |").split("| ").map(str::trim);
         let (unit, meaning, left_out) = (cells.next()?, cells.next()?, cells.next()?);
-        Some(KeyMeaning { key, unit, meaning, left_out, shared: false })
+        // "`true`: hum stays" is the switch "hum stays".
+        let clause = meaning
+            .strip_prefix("`true`")
+            .map_or(meaning, |rest| rest.trim_start_matches(':').trim_start().trim_start_matches("for "));
+        let label = clause.split([',', ';', ':', '(']).next()?.trim_end();
+        Some(KeyMeaning { key, unit, meaning, label, left_out, shared: false })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_key_has_a_short_label_of_its_own() {
+        for section in ["sweep", "spectrum", "frf", "impacts", "drop", "decay", "pulse", "drill"] {
+            let keys: Vec<KeyMeaning> = KeyMeaning::of(section).collect();
+            for (i, one) in keys.iter().enumerate() {
+                let same = keys[..i].iter().find(|other| other.label == one.label);
+                assert_eq!(same.map(|other| other.key), None, "[[{section}]] {}: {}", one.key, one.label);
+                let plain = !one.label.contains(['`', '[', ']']) && (4..=45).contains(&one.label.len());
+                assert!(plain, "[[{section}]] {}: {:?}", one.key, one.label);
+            }
+        }
+        let hum = KeyMeaning::of("drop").find(|one| one.key == "keep_hum").unwrap();
+        assert_eq!(hum.label, "mains hum stays in the trace");
     }
 }

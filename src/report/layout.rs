@@ -1,6 +1,7 @@
 //! Parts of tables and figures that several analyses use.
 
 use super::{AxisSpec, Cell, Figure, Ink, Marker, Panel, Plot, Series, Stroke, Table};
+use crate::measure::Estimate;
 
 /// A column: name, unit, and the cell for an item.
 pub type Shown<'a, T> = (&'a str, &'a str, &'a dyn Fn(&T) -> Cell);
@@ -28,6 +29,11 @@ pub fn titled(what: &str, name: &str) -> String {
 /// A value with its standard uncertainty.
 pub fn pair(value: f64, std: Option<f64>) -> Cell {
     Cell::Estimate { value, std }
+}
+
+/// A phase in rad as one in degrees.
+pub fn degrees(phase: &Estimate) -> Cell {
+    pair(phase.value.to_degrees(), phase.std.map(f64::to_degrees))
 }
 
 /// Adds a line through points to a plot; nothing without points.

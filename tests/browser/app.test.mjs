@@ -217,8 +217,8 @@ test("a value is typed with its unit, its meaning is shown, and a record is meas
   await page.waitForFunction(isImpacts);
   await page.waitForFunction(() => !app.running);
   // Keys of a few values offer them.
-  assert.deepEqual(await card.locator("datalist[id$='-decimal-picks'] option").evaluateAll((all) => all.map((one) => one.value)), ["comma", "point"]);
-  await card.locator("summary", { hasText: "further keys" }).click();
+  assert.deepEqual(await card.locator("select[data-field$=' decimal'] option").evaluateAll((all) => all.map((one) => one.value)), ["", "comma", "point"]);
+  await card.locator("summary", { hasText: "more settings" }).click();
   await card.locator("input[data-field$=' threshold']").fill("0.4");
   await page.keyboard.press("Enter");
   await page.waitForFunction(() => document.getElementById("text").value.includes("threshold = 0.4"));

@@ -40,7 +40,7 @@ class App {
     // Edited: not as it was proposed. Unsaved: the edits are nowhere else.
     [this.edited, this.unsaved, this.setting, this.looking] = [false, false, Promise.resolve(), Promise.resolve()];
     const ask = (what, more) => this.program.ask(what, more);
-    this.trace = new TraceView(at("trace"), { ask, set, events: (table, file) => this.events(table, file) });
+    this.trace = new TraceView(at("trace"), { ask, set, events: (...of) => this.events(...of), proposed: (table) => proposedIn(this.cards.said(table)) });
     this.drawn = new Map();
     this.wire();
     this.program.ready.then(() => { document.body.dataset.ready = "yes"; }, (error) => this.trouble(`This browser cannot run the program: ${error.message}`));
@@ -309,8 +309,8 @@ class App {
   }
 
   /** Times in s of what was detected in a file of a table. */
-  events({ section }, file) {
-    const own = (path) => path?.split("/").pop() === file.split("/").pop(), results = this.results ?? {};
+  events({ section }, file, results = this.results ?? {}) {
+    const own = (path) => path?.split("/").pop() === file.split("/").pop();
     if (section === "impacts") return results.impacts?.find((one) => own(one.file))?.times ?? [];
     if (section === "drop") {
       for (const { files = [], times = [] } of results.drops ?? []) {

@@ -11,6 +11,8 @@ const colour = (name) => getComputedStyle(document.documentElement).getPropertyV
 /** A number in a few digits with its unit. */
 function quantity(value, unit) {
   if (!Number.isFinite(value)) return "";
+  // A part of full scale is no physical unit.
+  if (unit === "FS") return `${Number(value.toPrecision(4))} FS`;
   const steps = [[1e9, "G"], [1e6, "M"], [1e3, "k"], [1, ""], [1e-3, "m"], [1e-6, "µ"]];
   const [by, letter] = steps.find(([step]) => Math.abs(value) >= step) ?? [1, ""];
   return `${Number((value / by).toPrecision(4))} ${letter}${unit}`.trim();
@@ -77,7 +79,7 @@ class Recordings {
 
   show(recordings) {
     this.watch.disconnect();
-    const head = make("tr", {}, ...["file", "channel", "what", "unit", "rate", "length", ""].map((name) => make("th", { textContent: name, className: /rate|length/.test(name) ? "number" : "" })));
+    const head = make("tr", {}, ...["file", "channel", "what", "in SI unit", "rate", "length", ""].map((name) => make("th", { textContent: name, className: /rate|length/.test(name) ? "number" : "" })));
     const body = make("tbody");
     const unread = recordings.filter(({ problem }) => problem);
     this.unread = new Set(unread.map(({ path }) => path));

@@ -54,16 +54,28 @@ const valueOf = (table, key) => table.keys.find((row) => row.key === key)?.value
 /** Keys that name a channel of the file. */
 const OF_CHANNEL = ["channel", "reference", "velocity", "force", "response", "handle"];
 
-/** Values to choose from: the channels of the file, or what the meaning of the key lists. */
-function choices({ key, meaning = "" }, table, channels) {
-  if (OF_CHANNEL.includes(key)) return channels(table).filter((name) => name !== "");
+/** Values to choose from, and whether there are no others: the channels of the file, or what the meaning of the key lists. */
+function choices({ key, unit, meaning = "" }, table, channels) {
+  if (OF_CHANNEL.includes(key)) {
+    const names = channels(table).filter((name) => name !== "");
+    return { picks: names, all: new Set(names).size === names.length && names.every((name) => fromToml(toToml(name)) === name) };
+  }
   const keys = table.keys.map((row) => row.key);
   const listed = Array.from(meaning.matchAll(/`([a-z][a-z0-9/-]*)`/g), ([, word]) => word).filter((word) => !keys.includes(word));
-  return listed.length === 1 && listed[0] === "true" ? ["true", "false"] : listed;
+  return listed.join() === "true" ? { picks: ["true", "false"], all: true } : { picks: listed, all: listed.length > 1 && !unit && !/such as|…/.test(meaning) };
 }
 
 /** Keys that an error names, such as `low_pass`. */
 const namedIn = (texts) => texts.flatMap((text) => Array.from(text.matchAll(/`([a-z_]+)(?: = [^`]*)?`/g), ([, key]) => key));
+
+/** Keys with the values that an error proposes, such as `threshold = 0.43`. */
+const proposedIn = (texts) => texts.flatMap((text) => Array.from(text.matchAll(/`([a-z_]+) = ([^`]+)`/g), ([, key, value]) => ({ key, value })));
+
+/** What is typed, by the unit of a key. */
+const SUCH_AS = { m: "57 cm", Hz: "20 kHz", s: "3 ms", kg: "250 g", "m/s": "1.5", "°": "30" };
+
+/** The name of a key in plain words. */
+const labelOf = ({ key, label }) => label?.replaceAll("`", "") ?? key.replaceAll("_", " ");
 
 /** What tells a table from the others, wherever it stands in the list. */
 function identity(tables, k) {
@@ -82,6 +94,8 @@ class Tables {
     Object.assign(this, { host, set, kind, look, find, channels, kinds: [] });
     // Values that were refused stand, with the reason, until they are typed anew.
     [this.refused, this.redraws, this.wrong] = [[], false, new Map()];
+    // Keys that had a value stay where they were when it is taken away.
+    this.stood = new Set();
   }
 
   show(tables, problems) {
@@ -98,7 +112,7 @@ class Tables {
     const open = new Set(Array.from(this.host.querySelectorAll("details[open]"), nameOf));
     this.host.replaceChildren(...tables.map((table, k) => this.card(table, identity(tables, k), tables[k + 1]?.line, problems)));
     this.tables = tables;
-    this.head = make("div");
+    this.head = make("div", { className: "head" });
     this.host.prepend(this.head);
     this.listed();
     for (const fold of this.host.querySelectorAll("details")) fold.open = open.has(nameOf(fold));
@@ -116,7 +130,7 @@ class Tables {
     const linked = (of, one, more) => {
       const links = this.tables.flatMap((table, k) => {
         const id = identity(this.tables, k);
-        return table.keys.filter((row) => of(row, id)).map(({ key }) => this.toField(id, table, key));
+        return table.keys.filter((row) => of(row, id)).map((row) => this.toField(id, table, row));
       });
       const words = links.length === 1 ? `One value ${one}: ` : `${links.length} values ${more}: `;
       return links.length ? [make("p", { className: "waits" }, words, ...links.flatMap((link, k) => (k ? [", ", link] : [link])))] : [];
@@ -127,13 +141,13 @@ class Tables {
   }
 
   /** A link to a field. */
-  toField(id, table, key) {
-    const find = () => {
+  toField(id, table, row) {
+    const { key } = row, find = () => {
       const field = this.host.querySelector(`[data-field="${CSS.escape(`${id} ${key}`)}"]`);
       field.closest("details")?.setAttribute("open", "");
       field.focus();
     };
-    return make("button", { className: "link", textContent: `${key.replaceAll("_", " ")} of ${table.files || table.section}`, onclick: find });
+    return make("button", { className: "link", textContent: `${labelOf(row)}, ${table.files || table.section}`, onclick: find });
   }
 
   card(table, id, next, problems) {
@@ -141,18 +155,22 @@ class Tables {
     card.dataset.table = id;
     card.append(make("h3", { textContent: table.files || table.section }));
     card.append(this.kindOf(table, id));
-    const name = fromToml(valueOf(table, "name")), said = table.refused && !table.line ? [table.refused] : [];
-    said.push(...(table.line ? this.refused : []).filter(([record]) => record === name || record === table.files).map(([, why]) => here(why)));
     const wrong = problems.filter(({ line }) => line && table.line && line >= table.line && line < (next ?? Infinity));
     // An error of a value stands below its field.
     const atKey = ({ line }) => table.keys.some((row) => row.line === line);
-    said.push(...wrong.filter((one) => !atKey(one)).map(({ text }) => here(text)));
-    // The same reason may stand in a longer sentence.
-    const whole = (text, k) => said.every((other, i) => i === k || !other.includes(text) || (other === text && i > k));
-    for (const text of said.filter(whole)) card.append(make("p", { className: "refused", textContent: text }));
+    const said = this.said(table, wrong.filter((one) => !atKey(one)).map(({ text }) => here(text)));
+    for (const text of said) card.append(make("p", { className: "refused", textContent: text }));
+    const proposed = proposedIn(said).filter(({ key }) => table.keys.some((row) => row.key === key));
+    const take = ({ key, value }) => make("button", { textContent: `set ${key} = ${value}`, onclick: () => this.set(id, key, value).catch((error) => { wrongs.textContent = here(error.message); }) });
+    const wrongs = make("span", { className: "wrong" });
+    if (proposed.length) card.append(make("div", { className: "does" }, ...proposed.map(take), wrongs));
     // Keys that an error names stand with those that are in use; the title names the file.
     const named = namedIn([...said, ...wrong.map(({ text }) => text)]), isTitle = (row) => row.key === "file" && fromToml(row.value) === table.files;
-    const shown = (row) => (isTitle(row) || (row.known === "possible" && row.shared && !named.includes(row.key)) ? "reading" : named.includes(row.key) && ["open", "possible"].includes(row.known) ? "named" : row.known);
+    for (const { key } of table.keys.filter(({ value }) => value !== "")) this.stood.add(`${id} ${key}`);
+    // A name that nobody asks for is one of the further settings.
+    const isName = (row) => row.key === "name" && row.known !== "missing" && !named.includes("name");
+    const isNamed = ({ key }) => named.includes(key) || this.stood.has(`${id} ${key}`);
+    const shown = (row) => (isTitle(row) || (row.known === "possible" && row.shared && !isNamed(row)) ? "reading" : isName(row) ? "possible" : isNamed(row) && ["open", "possible"].includes(row.known) ? "named" : row.known);
     const rows = (...known) => table.keys.filter((row) => known.includes(shown(row))).map((row) => this.row(row, id, table));
     card.append(...rows("missing"), ...rows("named"), ...rows("guessed", "stated", "found"));
     for (const { line, text } of wrong) {
@@ -161,7 +179,7 @@ class Tables {
       const below = input?.parentElement.querySelector(".wrong");
       if (below) below.textContent ||= here(text);
     }
-    const folds = { open: (n) => `${n} more that would help`, possible: (n) => `${n} further keys`, reading: (n) => `${n} on how the file is read` };
+    const folds = { open: (n) => (n === 1 ? "1 value that would help" : `${n} values that would help`), possible: (n) => `more settings (${n})`, reading: (n) => `how the file is read (${n})` };
     for (const [known, title] of Object.entries(folds)) {
       const all = rows(known);
       if (all.length) card.append(make("details", { className: known }, make("summary", { textContent: title(all.length) }), ...all));
@@ -173,6 +191,14 @@ class Tables {
     if (table.line) does.append(make("button", { textContent: "in the text", onclick: () => this.find(table.line) }));
     card.append(does);
     return card;
+  }
+
+  /** Why a table gives no answer, and what else is said of it. */
+  said(table, more = []) {
+    const name = fromToml(valueOf(table, "name")), said = table.refused && !table.line ? [table.refused] : [];
+    said.push(...(table.line ? this.refused : []).filter(([record]) => record === name || record === table.files).map(([, why]) => here(why)), ...more);
+    // The same reason may stand in a longer sentence.
+    return said.filter((text, k) => said.every((other, i) => i === k || !other.includes(text) || (other === text && i > k)));
   }
 
   /** The kind of a table, which can be changed where it is of one file. */
@@ -190,9 +216,11 @@ class Tables {
 
   row(one, table, of) {
     const { key, value, known, why, line, unit, meaning, left_out: without } = one;
-    const id = `field-${table}-${key}`, picks = choices(one, of, this.channels);
-    const isSwitch = picks.join() === "true,false" && ["", ...picks].includes(value);
-    const input = isSwitch ? make("select", { id }, ...["", ...picks].map((choice) => make("option", { value: choice, textContent: choice, selected: choice === value }))) : make("input", { id, value: fromToml(value), autocomplete: "off", spellcheck: false });
+    const id = `field-${table}-${key}`, { picks, all } = choices(one, of, this.channels), plain = fromToml(value);
+    const isChoice = all && ["", ...picks].includes(plain), empty = known === "missing" ? "choose" : `– ${without ?? ""}`.replaceAll("`", "");
+    const option = (choice) => make("option", { value: choice, textContent: choice || empty, selected: choice === plain });
+    const input = isChoice ? make("select", { id }, ...["", ...picks].map(option)) : make("input", { id, value: plain, autocomplete: "off", spellcheck: false });
+    if (!isChoice) input.placeholder = known === "missing" ? (SUCH_AS[unit] ? `such as ${SUCH_AS[unit]}` : "") : (without ?? "").replaceAll("`", "");
     // A value of several lines is changed in the text.
     input.readOnly = value.includes("\n");
     [input.dataset.field, input.dataset.line] = [`${table} ${key}`, line ?? ""];
@@ -219,10 +247,12 @@ class Tables {
     };
     // A field that was drawn anew while it was typed in has not changed for the browser.
     input.onkeydown = (event) => { if (event.key === "Enter") input.onchange(); };
-    const reason = known === "guessed" ? `guessed: ${why}` : known === "missing" ? `missing: ${why || meaning}` : why;
-    const label = make("label", { htmlFor: id, textContent: key.replaceAll("_", " "), title: key });
-    const row = make("div", { className: `row ${known}` }, label, input, make("span", { className: "unit", textContent: unit ?? "" }));
-    if (picks.length && !isSwitch) {
+    // The label has the first words already.
+    const asked = why && why.startsWith(labelOf(one)) ? why.slice(labelOf(one).length).replace(/^ in \S+?(;|$)/, "").trim() : why;
+    const reason = known === "guessed" ? `guessed: ${why}` : known === "missing" ? `missing${asked ? `: ${asked}` : ""}` : why;
+    const label = make("label", { htmlFor: id }, labelOf(one), " ", make("code", { textContent: key }));
+    const row = make("div", { className: `row ${known}` }, label, input, ...(unit ? [make("span", { className: "unit", textContent: unit })] : []));
+    if (picks.length && !isChoice) {
       input.setAttribute("list", `${id}-picks`);
       row.append(make("datalist", { id: `${id}-picks` }, ...picks.map((value) => make("option", { value }))));
     }

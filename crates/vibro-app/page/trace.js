@@ -8,6 +8,8 @@ const PICKS = {
 
 /** Threshold of the program where none is stated. */
 const THRESHOLD = { impacts: 0.125, drop: 0.02 };
+/** Colours of what each proposed value would detect. */
+const TRIALS = ["--edge", "--other"];
 /** Distance in pixels within which the mouse takes a line. */
 const NEAR = 5;
 
@@ -33,14 +35,15 @@ function writeSteps(pen, { from, to }, across, unit, width, foot) {
 
 /** The raw trace of a table, with what was detected, and lines that the mouse drags. */
 class TraceView {
-  constructor(host, { ask, set, events }) {
-    Object.assign(this, { host, ask, set, events });
-    [this.part, this.times] = [[null, null], []];
+  /** `events(table, file, results)` are the times of what was detected; `proposed(table)` the keys with values that its refusal names. */
+  constructor(host, { ask, set, events, proposed }) {
+    Object.assign(this, { host, ask, set, events, proposed });
+    [this.part, this.times, this.trials] = [[null, null], [], []];
   }
 
   async open(tables, id, file = 0) {
     const k = tables.findIndex((_, k) => identity(tables, k) === id);
-    if (this.id !== id || this.file !== file) [this.part, this.times] = [[null, null], []];
+    if (this.id !== id || this.file !== file) [this.part, this.times, this.trials] = [[null, null], [], []];
     Object.assign(this, { tables, id, k, table: tables[k], file });
     this.host.hidden = false;
     await this.load();
@@ -79,6 +82,26 @@ class TraceView {
     if (!this.lost) this.times = found;
     this.build();
     this.draw();
+    await this.tryOut();
+  }
+
+  /** Shows what would be detected with each value that the refusal of the record proposes. */
+  async tryOut() {
+    const proposed = this.proposed(this.table).filter(({ key }) => this.picks().includes(key)).slice(0, TRIALS.length);
+    const of = JSON.stringify([this.id, this.file, proposed]);
+    if (of === this.tried) return;
+    [this.tried, this.trials] = [of, []];
+    for (const one of proposed) {
+      const results = await this.ask("try", { table: this.k, ...one }).catch(() => null);
+      if (this.tried !== of) return;
+      const times = results ? this.events(this.table, this.data.files[this.file], results) : [];
+      // Two values may find the same impacts.
+      const known = this.trials.some((other) => other.times.length === times.length && other.times.every((t, i) => Math.abs(t - times[i]) < this.pixel()));
+      if (times.length && !known) this.trials.push({ ...one, times });
+    }
+    if (!this.trials.length) return;
+    this.build();
+    this.draw();
   }
 
   build() {
@@ -103,7 +126,8 @@ class TraceView {
       const input = make("input", { size: 12, value: this.value(key), placeholder: "not stated", title: PICKS[key].about });
       input.onchange = () => !this.redraws && this.state(key, () => toToml(input.value, PICKS[key].unit));
       inputs[key] = input;
-      fields.append(make("label", {}, `${key} `, input));
+      const label = labelOf(this.table.keys.find((row) => row.key === key) ?? { key });
+      fields.append(make("label", {}, `${label} `, input));
     }
     this.inputs = inputs;
     this.said = make("p", { className: "soft" });
@@ -111,10 +135,16 @@ class TraceView {
     const copy = tool("copy these keys", "Copy as TOML", async () => {
       await navigator.clipboard.writeText(this.toml.textContent).catch(() => getSelection().selectAllChildren(this.toml));
     });
+    const trials = make("div", { className: "does" });
+    this.trials.forEach(({ key, value, times }, k) => {
+      const take = tool(`${times.length} impacts, with ${key} = ${value}`, "Takes these", () => this.state(key, () => value));
+      take.style.borderLeft = `6px solid ${colour(TRIALS[k])}`;
+      trials.append(take);
+    });
     // A field that is being typed in stays as it is.
     const typed = Object.entries(before).find(([, input]) => input === document.activeElement);
     this.redraws = true;
-    this.host.replaceChildren(bar, this.canvas, this.band, fields, this.said, this.toml, copy);
+    this.host.replaceChildren(bar, this.canvas, trials, this.band, fields, this.said, this.toml, make("div", { className: "does" }, copy));
     this.redraws = false;
     if (typed && inputs[typed[0]]) {
       inputs[typed[0]].value = typed[1].value;
@@ -127,7 +157,7 @@ class TraceView {
     };
     this.canvas.ondblclick = () => this.go(null, null);
     this.band.onpointerdown = (event) => this.pressBand(event);
-    const help = this.lost ? "Nothing is detected now: the marks are those of before. " : this.times.length ? `${this.times.length} detected: the marks below. ` : "";
+    const help = this.trials.length ? `${this.trials.length > 1 ? "Each coloured button has the impacts that its value finds" : "The coloured lines are the impacts that the value of the button finds"}: press it to take them. ` : this.lost ? "Nothing is detected now: the marks are those of before. " : this.times.length ? `${this.times.length} detected: the marks below. ` : "";
     this.said.textContent = `${help}Drag a line to move it; drag beside the lines to zoom, double-click for all.`;
   }
 
@@ -181,6 +211,18 @@ class TraceView {
     pen.textAlign = "left";
     pen.fillText(quantity(high - room, unit), 4, 12);
     pen.fillText(quantity(low + room, unit), 4, height - foot - 4);
+    this.trials.forEach(({ times }, k) => {
+      pen.strokeStyle = colour(TRIALS[k]);
+      pen.lineWidth = 2;
+      // One above the other, so that an impact of both is seen.
+      const [from, to] = [k, k + 1].map((part) => part * (height - foot) / this.trials.length);
+      for (const x of times.map(this.across)) {
+        pen.beginPath();
+        pen.moveTo(x, from);
+        pen.lineTo(x, to);
+        pen.stroke();
+      }
+    });
     pen.strokeStyle = pen.fillStyle = colour("--edge");
     for (const t of this.times) {
       const x = this.across(t);

@@ -49,6 +49,15 @@ pub enum Request {
     },
     /// Runs the campaign.
     Run,
+    /// The results with another value of a key of a table, which stays as it is.
+    Try {
+        /// Number of the table in the list, from 0.
+        table: usize,
+        /// The key.
+        key: String,
+        /// The value, in TOML.
+        value: String,
+    },
     /// Pictures of all records of a file.
     Pictures {
         /// Its name.

@@ -19,6 +19,8 @@ pub struct Workbench {
     /// What was proposed for files that came without a campaign, and for those that were added.
     proposals: Vec<Proposal>,
     text: String,
+    /// What was computed for the proposal: the first run needs most of it.
+    tried: Option<AnswerCache>,
     /// Folder and names of the results.
     results: (PathBuf, Vec<String>),
     /// Files of archives that were left out, with the reason.
@@ -56,7 +58,7 @@ impl Workbench {
     pub fn named(name: &str) -> Workbench {
         let folder = Folder::memory(name, <[(&str, Vec<u8>); 0]>::default());
         let (text, results, left) = (String::new(), (PathBuf::new(), Vec::new()), Vec::new());
-        Workbench { folder, proposals: Vec::new(), text, results, left }
+        Workbench { folder, proposals: Vec::new(), text, tried: None, results, left }
     }
 
     /// Adds a file by its name in the folder, in place of one of the same name.
@@ -90,6 +92,7 @@ impl Workbench {
                 self.state()
             }
             Request::Run => self.run(progress)?,
+            Request::Try { table, key, value } => self.tried_with(*table, (key, value), progress)?,
             Request::Pictures { path } => self.pictures(path)?,
             Request::Trace { table, file, from, to, columns } => {
                 self.trace(*table, *file, (*from, *to), *columns)?
@@ -179,11 +182,12 @@ impl Workbench {
     }
 
     /// The text of a proposed campaign: the known one with tables for further files, else a new one.
-    fn proposed(&self, known: Option<&str>, progress: &dyn Progress) -> Result<(String, Proposal)> {
+    fn proposed(&mut self, known: Option<&str>, progress: &dyn Progress) -> Result<(String, Proposal)> {
         let campaign = known.map(|text| analysis::parse(&self.folder, &self.path(), text.to_owned()));
         let campaign = campaign.transpose()?;
-        let none = AnswerCache::default();
-        let proposal = Proposal::of(&self.folder, &Reading::default(), campaign.as_ref(), &none, progress)?;
+        let kept = AnswerCache::none(&self.folder);
+        let proposal = Proposal::of(&self.folder, &Reading::default(), campaign.as_ref(), &kept, progress)?;
+        self.tried = Some(kept);
         let text = match known {
             Some(known) => format!("{}\n{}", known.trim_end(), proposal.tables()),
             None => proposal.below(HEAD),
@@ -251,7 +255,7 @@ impl Workbench {
     fn run(&mut self, progress: &dyn Progress) -> Result<Value> {
         let campaign = self.campaign()?;
         let results = campaign.within().at(campaign.out());
-        let kept = AnswerCache::of(&results);
+        let kept = self.tried.take().unwrap_or_else(|| AnswerCache::of(&results));
         let mut output = Output::new(results, Owner::Run)?.replace(true);
         let outcome = analysis::run(&campaign, &kept, &mut output, progress)?;
         output.commit()?;
@@ -260,6 +264,16 @@ impl Workbench {
         let said = |finding| words::as_kinds(&sentence(finding, Voice::Campaign));
         let refused: Vec<_> = of_all.map(|(name, finding)| (name, said(finding))).collect();
         Ok(json!({ "answered": outcome.answered, "files": outcome.files, "refused": refused }))
+    }
+
+    /// The results as they would be with this key: nothing is changed.
+    fn tried_with(&self, table: usize, (key, value): (&str, &str), progress: &dyn Progress) -> Result<Value> {
+        let (text, section, number) = self.with_table(table)?;
+        let text = Campaign::text_with(&text, (&section, number), key, value)?;
+        let campaign = analysis::parse(&self.folder, &self.path(), text)?;
+        let kept = AnswerCache::of(&campaign.within().at(campaign.out()));
+        let answered = analysis::answers(&campaign, &kept, progress)?;
+        Ok(answered.map_or_else(|_| json!({}), |answer| json!(answer.result)))
     }
 
     fn pictures(&self, path: &str) -> Result<Value> {

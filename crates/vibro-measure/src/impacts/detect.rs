@@ -223,7 +223,7 @@ fn too_few(
     let hidden = if banded {
         "another band: a spectrum shows where the impacts ring"
     } else {
-        "a band above hum and slow levels, in which the impacts ring: it is a high-pass"
+        "a band in which the impacts ring, above hum and slow levels: a spectrum shows it"
     };
     match (lower, joined) {
         (true, _) => refused.hint("a lower threshold, as lower bursts were ignored").setting("threshold"),

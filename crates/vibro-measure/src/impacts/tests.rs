@@ -137,12 +137,12 @@ fn a_refusal_says_what_may_help() {
         *v = *v * 0.05 + (std::f64::consts::TAU * 50.0 * i as f64 / 1e4).sin();
     }
     if let Err(error) = impacts(&low, &ImpactsOptions::default()) {
-        assert!(error.to_string().contains("high-pass"), "{error}");
+        assert!(error.to_string().contains("band in which the impacts ring"), "{error}");
     }
     let mut noise = Noise::new(8);
     let quiet = trace((0..5000).map(|_| noise.normal()).collect(), 1000.0);
     let error = impacts(&quiet, &ImpactsOptions::default()).unwrap_err().to_string();
-    assert!(error.contains("high-pass") && !error.contains("threshold"), "{error}");
+    assert!(error.contains("band in which the impacts ring") && !error.contains("threshold"), "{error}");
 }
 
 #[test]

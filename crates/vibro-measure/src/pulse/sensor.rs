@@ -13,8 +13,11 @@ const SLOWEST: f64 = 0.4;
 /// Highest frequency of a mode, in cycles per length of the pulse: the contact hardly excites a faster one.
 const FASTEST: f64 = 16.0;
 
+/// Parts of the signal that may pass through a mode.
+const SHARES: std::ops::Range<f64> = 0.0..1.0;
+
 /// Damping ratios of the first guesses.
-const DAMPING: [f64; 4] = [0.005, 0.02, 0.06, 0.15];
+const DAMPING: [f64; 5] = [0.005, 0.02, 0.06, 0.15, 0.35];
 
 /// Frequencies of the first guesses in one over the duration of the samples: a mode is seen over as much.
 const STEPS: f64 = 6.0;
@@ -24,6 +27,13 @@ const ENOUGH: f64 = 4.0;
 
 /// First guesses of a mode from which fits begin.
 const GUESSES: usize = 3;
+
+/// Part of the gain of a fit that the best first guess has at least. By its damping ratio it loses a tenth,
+/// by its frequency a fortieth, and some by the contact, which is not fitted anew.
+const GUESSED: f64 = 0.7;
+
+/// Parameters of a mode.
+const PARAMETERS: f64 = 3.0;
 
 /// The models of the contact behind a sensor with one mode, on the samples up to the end of the ringing.
 pub(super) struct Ringing<'a> {
@@ -44,17 +54,16 @@ pub(super) fn ringing<'a>(scale: &'a Normalised<'_>, bare: &[FittedPulse]) -> Op
     let alone = without.fit(best.model).ok()?;
     let colour = alone.whiteness.inflation.max(1.0).powi(2);
     let chance = 2.0 * without.frequencies().max(1.0).ln();
-    for (gain, mode) in without.modes(&alone) {
-        if gain < NO_SUPPORT * colour {
-            return None;
-        }
+    // An AICc counts two for each parameter.
+    let least = GUESSED * (colour * (NO_SUPPORT + chance) + 2.0 * PARAMETERS);
+    for (_, mode) in without.modes(&alone).into_iter().filter(|(gain, _)| *gain > least) {
         let samples = samples(Some(mode));
         let Ok(main) = samples.fit(ContactModel::KelvinVoigt) else { continue };
         let (fits, unfitted) = rivals(&samples, main);
         let Some(best) = fits.iter().min_by(|a, b| a.aicc().total_cmp(&b.aicc())) else { continue };
         let share = best.fit.parameters[3 + best.model.parameters()];
         let gain = (alone.aicc() - best.aicc()) / colour;
-        if gain > NO_SUPPORT + chance && (0.0..1.0).contains(&share) && !samples.unexplained(best) {
+        if gain > NO_SUPPORT + chance && SHARES.contains(&share) && !samples.unexplained(best) {
             return Some(Ringing { samples, fits, unfitted });
         }
     }
@@ -100,7 +109,7 @@ impl Samples<'_> {
             .filter_map(|i| {
                 let of = |zeta: &f64| {
                     let (left, share) = line(frequency(i), *zeta)?;
-                    Some((left, [share, frequency(i), *zeta]))
+                    SHARES.contains(&share).then_some((left, [share, frequency(i), *zeta]))
                 };
                 DAMPING.iter().filter_map(of).min_by(|a, b| a.0.total_cmp(&b.0))
             })
