@@ -187,7 +187,8 @@ test("a value is typed with its unit, its meaning is shown, and a record is meas
   await height.fill("48,5 cm");
   const row = page.locator(".row:focus-within");
   assert.equal(await row.locator(".unit").innerText(), "m");
-  assert.equal(await row.locator(".means").innerText(), "height of the fall; left out: flight times alone");
+  assert.equal(await row.locator("label").innerText(), "height of the fall height");
+  assert.equal(await row.locator(".means").innerText(), "if empty: flight times alone");
   await height.press("Enter");
   await ran(page, before + 1);
   assert.match(await page.locator("#text").inputValue(), /height = 0\.485\n/);
@@ -364,6 +365,21 @@ test("threshold and dead time are dragged in the trace, and the answer follows",
   await page.mouse.move(now.x + 640, now.y + 60, { steps: 4 });
   await page.mouse.up();
   await page.waitForFunction((wide) => app.trace.wide() < wide / 2, wide);
+}));
+
+test("the trace shows the impacts that a proposed value finds, and a button takes them", { skip }, () => open({}, async (page) => {
+  await drop(page, { "echo.csv": bounces({ echo: 0.3 }) });
+  await ran(page);
+  const before = await runs(page);
+  await page.getByRole("button", { name: "see the record" }).first().click();
+  const offer = page.locator("#trace button", { hasText: "3 impacts, with" });
+  await offer.waitFor();
+  // The first flight takes 0.38 s; an echo comes after 60 ms.
+  const times = await page.evaluate(() => app.trace.trials[0].times);
+  assert.ok(times.length === 3 && times[1] - times[0] > 0.3, String(times));
+  await offer.click();
+  await ran(page, before + 1);
+  assert.match(await report(page).locator("body").innerText(), /echo\tflight times\t0\.6/);
 }));
 
 test("all is reached by the keyboard alone", { skip }, () => open({}, async (page) => {

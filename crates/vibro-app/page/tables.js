@@ -258,7 +258,9 @@ class Tables {
     }
     // Shown while the field is used.
     if (meaning) {
-      const means = `${meaning}; left out: ${without}`.replaceAll("`", "");
+      // The label has the first words.
+      const plain = meaning.replaceAll("`", ""), more = plain.includes(labelOf(one)) ? plain.slice(plain.indexOf(labelOf(one)) + labelOf(one).length).replace(/^[,;:]? */, "") : plain;
+      const means = [more, `if empty: ${without}`.replaceAll("`", "")].filter(Boolean).join("; ");
       row.append(make("span", { className: "means", id: `${id}-means`, textContent: means }));
       input.setAttribute("aria-describedby", `${id}-means`);
     }

@@ -9,7 +9,7 @@ const PICKS = {
 /** Threshold of the program where none is stated. */
 const THRESHOLD = { impacts: 0.125, drop: 0.02 };
 /** Colours of what each proposed value would detect. */
-const TRIALS = ["--edge", "--other"];
+const TRIALS = ["--other", "--edge"];
 /** Distance in pixels within which the mouse takes a line. */
 const NEAR = 5;
 
@@ -100,8 +100,20 @@ class TraceView {
       if (times.length && !known) this.trials.push({ ...one, times });
     }
     if (!this.trials.length) return;
-    this.build();
+    this.offer();
     this.draw();
+  }
+
+  /** Buttons for what was tried out, in the colours of its lines, and what else can be done. */
+  offer() {
+    const button = ({ key, value, times }, k) => {
+      const take = make("button", { textContent: `${times.length} impacts, with ${key} = ${value}`, onclick: () => this.state(key, () => value) });
+      take.style.borderLeft = `6px solid ${colour(TRIALS[k])}`;
+      return take;
+    };
+    this.offers.replaceChildren(...this.trials.map(button));
+    const help = this.trials.length ? `${this.trials.length > 1 ? "Each coloured button has the impacts that its value finds" : "The coloured lines are the impacts that the value of the button finds"}: press it to take them. ` : this.lost ? "Nothing is detected now: the marks are those of before. " : this.times.length ? `${this.times.length} detected: the marks below. ` : "";
+    this.said.textContent = `${help}Drag a line to move it; drag beside the lines to zoom, double-click for all.`;
   }
 
   build() {
@@ -135,16 +147,11 @@ class TraceView {
     const copy = tool("copy these keys", "Copy as TOML", async () => {
       await navigator.clipboard.writeText(this.toml.textContent).catch(() => getSelection().selectAllChildren(this.toml));
     });
-    const trials = make("div", { className: "does" });
-    this.trials.forEach(({ key, value, times }, k) => {
-      const take = tool(`${times.length} impacts, with ${key} = ${value}`, "Takes these", () => this.state(key, () => value));
-      take.style.borderLeft = `6px solid ${colour(TRIALS[k])}`;
-      trials.append(take);
-    });
+    this.offers = make("div", { className: "does" });
     // A field that is being typed in stays as it is.
     const typed = Object.entries(before).find(([, input]) => input === document.activeElement);
     this.redraws = true;
-    this.host.replaceChildren(bar, this.canvas, trials, this.band, fields, this.said, this.toml, make("div", { className: "does" }, copy));
+    this.host.replaceChildren(bar, this.canvas, this.offers, this.band, fields, this.said, this.toml, make("div", { className: "does" }, copy));
     this.redraws = false;
     if (typed && inputs[typed[0]]) {
       inputs[typed[0]].value = typed[1].value;
@@ -157,8 +164,7 @@ class TraceView {
     };
     this.canvas.ondblclick = () => this.go(null, null);
     this.band.onpointerdown = (event) => this.pressBand(event);
-    const help = this.trials.length ? `${this.trials.length > 1 ? "Each coloured button has the impacts that its value finds" : "The coloured lines are the impacts that the value of the button finds"}: press it to take them. ` : this.lost ? "Nothing is detected now: the marks are those of before. " : this.times.length ? `${this.times.length} detected: the marks below. ` : "";
-    this.said.textContent = `${help}Drag a line to move it; drag beside the lines to zoom, double-click for all.`;
+    this.offer();
   }
 
   /** Time that a pixel stands for. */
@@ -204,6 +210,7 @@ class TraceView {
     this.up = (v) => (height - foot) * (1 - (v - low) / (high - low));
     this.at = (x) => picture.from + x / width * this.wide();
     this.level = (y) => low + (1 - y / (height - foot)) * (high - low);
+    this.drawTrials(pen, height - foot);
     drawBand(pen, picture, this.across, this.up);
     pen.fillStyle = colour("--soft");
     pen.font = "11px sans-serif";
@@ -211,18 +218,6 @@ class TraceView {
     pen.textAlign = "left";
     pen.fillText(quantity(high - room, unit), 4, 12);
     pen.fillText(quantity(low + room, unit), 4, height - foot - 4);
-    this.trials.forEach(({ times }, k) => {
-      pen.strokeStyle = colour(TRIALS[k]);
-      pen.lineWidth = 2;
-      // One above the other, so that an impact of both is seen.
-      const [from, to] = [k, k + 1].map((part) => part * (height - foot) / this.trials.length);
-      for (const x of times.map(this.across)) {
-        pen.beginPath();
-        pen.moveTo(x, from);
-        pen.lineTo(x, to);
-        pen.stroke();
-      }
-    });
     pen.strokeStyle = pen.fillStyle = colour("--edge");
     for (const t of this.times) {
       const x = this.across(t);
@@ -237,6 +232,21 @@ class TraceView {
     if (!this.band.hidden) this.drawSpectrum();
     const stated = this.picks().filter((key) => this.value(key));
     this.toml.textContent = stated.map((key) => `${key} = ${this.value(key)}`).join("\n") || "# nothing is stated: all is found from the record";
+  }
+
+  /** Lines at the impacts that each proposed value finds, one set above the other, so that an impact of both is seen. */
+  drawTrials(pen, height) {
+    this.trials.forEach(({ times }, k) => {
+      pen.strokeStyle = colour(TRIALS[k]);
+      pen.lineWidth = 2;
+      const [from, to] = [k, k + 1].map((part) => part * height / this.trials.length);
+      for (const x of times.map(this.across)) {
+        pen.beginPath();
+        pen.moveTo(x, from);
+        pen.lineTo(x, to);
+        pen.stroke();
+      }
+    });
   }
 
   drawHandle(pen, { place, level, name }, width, height) {
