@@ -75,7 +75,9 @@ fn modes(name: &str, found: &DecayResult) -> Table {
         ],
     );
     let (start, end) = (found.start, found.end);
-    let note = format!("Amplitude and phase at {start:.3} s; used up to {end:.3} s.");
+    let note = format!(
+        "Natural frequency, of the motion without damping. Amplitude and phase at {start:.3} s; used up to {end:.3} s."
+    );
     let decrement = found.decrement.as_ref().map(|ratio| {
         let ratio = notation::estimate(ratio.value, ratio.std);
         format!(" Logarithmic decrement of the strongest: damping ratio {ratio}.")

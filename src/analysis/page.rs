@@ -1,6 +1,6 @@
 //! The report of a campaign as one page.
 
-use super::answer::Answer;
+use super::answer::{Answer, LEFT_OUT};
 use super::compared_rig::ComparedRig;
 use super::headline::shortened;
 use super::job::Job;
@@ -34,11 +34,15 @@ pub fn page(
         page =
             page.paragraph("± is one standard uncertainty: twice as much holds the truth 95 times in 100.");
     }
-    // Each finding is listed once: doubts beside the answers, all others at the records.
-    let mut doubts = graded(&all.findings, Voice::Campaign);
-    doubts.retain(|(severity, _)| *severity > Severity::Note);
-    let others = doubts
-        .split_off(doubts.iter().take_while(|found| found.0 == Severity::Doubt).count().min(MOST_DOUBTS));
+    // Each finding is listed once: records without an answer and doubts beside the answers, all others at the
+    // records.
+    let without: Vec<About> = all.findings.iter().filter(|(_, one)| one.code == LEFT_OUT).cloned().collect();
+    let mut doubts = graded(&without, Voice::Campaign);
+    let mut rest = graded(&all.findings, Voice::Campaign);
+    rest.retain(|found| found.0 > Severity::Note && !doubts.contains(found));
+    let first = rest.iter().take_while(|found| found.0 == Severity::Doubt).count().min(MOST_DOUBTS);
+    let others = rest.split_off(first);
+    doubts.extend(rest);
     page = page.findings(&doubts);
     if !others.is_empty() {
         let name = if doubts.is_empty() { "caution" } else { "more caution" };

@@ -63,6 +63,7 @@ mod tests {
             ("scatter = \"0.1\"", &["a number without quotes", "write scatter = 0.1"]),
             ("starts =   # missing: how many", &["starts has no value", "# starts"]),
             ("starts = 1.5e1", &["write starts = 15"]),
+            ("starts = \"5 s\"", &["starts = \"5 s\"", "a whole number"]),
             ("starts : 3", &["write starts = 3"]),
             ("scatter = .01", &["write scatter = 0.01"]),
             ("scatter = .5 # a \"#\" ", &["scatter = .5;", "write scatter = 0.5"]),

@@ -285,7 +285,7 @@ impl Trial<'_> {
     /// decide between them.
     fn undecided_drop(&self, series: &FileSeries, k: usize, name: &str) -> Option<Table> {
         let refusal = self.answers(&[series.bounces(k, name)]).err().filter(|r| r.code == Train::UNTOLD)?;
-        let what = "height of the fall in m; or set what the reason above proposes";
+        let what = "height of the fall in m, or take one of the proposed values instead";
         let table = series.bounces(k, name).missing("height", "0.5", what);
         let rows = table.rows.into_iter().filter(|row| !matches!(row.known, KeyStatus::Open(_))).collect();
         Some(Table { rows, refused: Some(refusal), ..table })

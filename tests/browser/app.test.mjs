@@ -336,7 +336,7 @@ test("threshold and dead time are dragged in the trace, and the answer follows",
   await drop(page, { "echo.csv": bounces({ echo: 0.3 }) });
   await ran(page);
   const before = await runs(page);
-  assert.match(await page.locator(".card").innerText(), /two trains of bounces/);
+  assert.match(await page.locator(".card").innerText(), /two series of bounces/);
   await page.getByRole("button", { name: "see the record" }).first().click();
   const canvas = page.locator("#trace canvas").first();
   await canvas.waitFor();

@@ -1,7 +1,7 @@
 const at = (id) => document.getElementById(id);
 
 /** Words of the button that keeps the files, whenever what is kept is not what there is. */
-const KEEP = "keep in this browser";
+const KEEP = "keep all in this browser";
 
 /** Script of the report in its frame: a link to a file saves it, and the place on the page outlives a new report. */
 const IN_REPORT = `<script>

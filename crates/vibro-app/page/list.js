@@ -95,7 +95,7 @@ class Recordings {
     this.left = make("div");
     this.host.append(this.left);
     this.known = new Map(recordings.filter(({ problem }) => !problem).map(({ path, records }) => [path, records]));
-    this.fold(this.host, `${unread.length} without records that can be read`, unread.map(({ path, problem }) => make("li", { textContent: `${path}: ${inShort(problem)}` })));
+    this.fold(this.host, `${unread.length === 1 ? "1 file holds" : `${unread.length} files hold`} no record`, unread.map(({ path, problem }) => make("li", { textContent: `${path}: ${inShort(problem)}` })));
   }
 
   /** Names of the channels of a file. */

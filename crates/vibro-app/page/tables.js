@@ -96,6 +96,8 @@ class Tables {
     [this.refused, this.redraws, this.wrong] = [[], false, new Map()];
     // Keys that had a value stay where they were when it is taken away.
     this.stood = new Set();
+    // Places of the cards: they stay when the text has a table elsewhere.
+    this.places = new Map();
   }
 
   show(tables, problems) {
@@ -110,7 +112,13 @@ class Tables {
     const { dataset, value, selectionStart, selectionEnd } = document.activeElement ?? {}, field = dataset?.field;
     const nameOf = (fold) => `${fold.parentElement.dataset.table}\n${fold.className}`;
     const open = new Set(Array.from(this.host.querySelectorAll("details[open]"), nameOf));
-    this.host.replaceChildren(...tables.map((table, k) => this.card(table, identity(tables, k), tables[k + 1]?.line, problems)));
+    const cards = tables.map((table, k) => this.card(table, identity(tables, k), tables[k + 1]?.line, problems));
+    // At first those that wait for a value.
+    const waits = (k) => tables[k].keys.some(({ known }) => known === "missing");
+    const order = tables.map((_, k) => k).sort((a, b) => waits(b) - waits(a));
+    const ids = tables.map((_, k) => identity(tables, k).split("\n").slice(1).join("\n"));
+    for (const k of order) if (!this.places.has(ids[k])) this.places.set(ids[k], this.places.size);
+    this.host.replaceChildren(...order.sort((a, b) => this.places.get(ids[a]) - this.places.get(ids[b])).map((k) => cards[k]));
     this.tables = tables;
     this.head = make("div", { className: "head" });
     this.host.prepend(this.head);
@@ -137,7 +145,15 @@ class Tables {
     };
     const missing = linked(({ known }) => known === "missing", "is missing", "are missing");
     const refused = linked(({ key }, id) => this.wrong.has(`field-${id}-${key}`), "is not taken, the report has the one before", "are not taken, the report has those before");
-    this.head.replaceChildren(...missing, ...refused);
+    // Records without an answer for another reason; a name that no card has stands with its reason.
+    const silent = this.refused.map(([record, why]) => {
+      const k = this.tables.findIndex((table) => table.line && this.isOf(table, record));
+      if (k < 0) return `${record}: ${here(why)}`;
+      const find = () => this.host.querySelector(`[data-table="${CSS.escape(identity(this.tables, k))}"]`).scrollIntoView({ block: "center" });
+      return make("button", { className: "link", textContent: record, onclick: find });
+    });
+    const without = silent.length ? [make("p", { className: "waits" }, silent.length === 1 ? "One record gives no answer: " : `${silent.length} records give no answer: `, ...silent.flatMap((one, k) => (k ? [", ", one] : [one])))] : [];
+    this.head.replaceChildren(...missing, ...refused, ...without);
   }
 
   /** A link to a field. */
@@ -193,10 +209,13 @@ class Tables {
     return card;
   }
 
+  /** Whether a record has the name of a table. */
+  isOf(table, record) { return [fromToml(valueOf(table, "name")), table.files].includes(record); }
+
   /** Why a table gives no answer, and what else is said of it. */
   said(table, more = []) {
-    const name = fromToml(valueOf(table, "name")), said = table.refused && !table.line ? [table.refused] : [];
-    said.push(...(table.line ? this.refused : []).filter(([record]) => record === name || record === table.files).map(([, why]) => here(why)), ...more);
+    const said = table.refused && !table.line ? [table.refused] : [];
+    said.push(...(table.line ? this.refused : []).filter(([record]) => this.isOf(table, record)).map(([, why]) => here(why)), ...more);
     // The same reason may stand in a longer sentence.
     return said.filter((text, k) => said.every((other, i) => i === k || !other.includes(text) || (other === text && i > k)));
   }

@@ -99,7 +99,6 @@ class TraceView {
       const known = this.trials.some((other) => other.times.length === times.length && other.times.every((t, i) => Math.abs(t - times[i]) < this.pixel()));
       if (times.length && !known) this.trials.push({ ...one, times });
     }
-    if (!this.trials.length) return;
     this.offer();
     this.draw();
   }
@@ -112,8 +111,8 @@ class TraceView {
       return take;
     };
     this.offers.replaceChildren(...this.trials.map(button));
-    const help = this.trials.length ? `${this.trials.length > 1 ? "Each coloured button has the impacts that its value finds" : "The coloured lines are the impacts that the value of the button finds"}: press it to take them. ` : this.lost ? "Nothing is detected now: the marks are those of before. " : this.times.length ? `${this.times.length} detected: the marks below. ` : "";
-    this.said.textContent = `${help}Drag a line to move it; drag beside the lines to zoom, double-click for all.`;
+    const help = this.trials.length ? "Lines in the colour of a button are the impacts that its value finds. Press it to take them. " : this.lost ? "Nothing is detected now: the marks are those of before. " : this.times.length ? `${this.times.length} detected: the marks below. ` : "";
+    this.said.textContent = `${help}${this.picks().length ? "Drag a line to move it; drag beside the lines to zoom" : "Drag to zoom"}, double-click for all.`;
   }
 
   build() {

@@ -1,5 +1,6 @@
 //! A file as the page lists it.
 
+use crate::words;
 use serde::Serialize;
 use std::path::Path;
 use vibroimpact::read::{Folder, Header, Reader};
@@ -29,7 +30,7 @@ impl SeenRecording {
                 SeenRecording { path: name, bytes, format: format.name(), records, problem: None }
             }
             Err(error) => {
-                let (format, records, problem) = ("", Vec::new(), Some(error.to_string()));
+                let (format, records, problem) = ("", Vec::new(), Some(words::error(&error)));
                 SeenRecording { path: name, bytes, format, records, problem }
             }
         }

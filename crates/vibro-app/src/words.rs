@@ -22,9 +22,7 @@ pub fn error(error: &Error) -> String {
         // The list of recordings tells what is in each file.
         Hint::OfFile("vibro info") => "the list of recordings tells what is in it".to_owned(),
         Hint::OfFile(command) => as_kinds(&format!("`{command}`")),
-        Hint::Words(words) if words.starts_with("`vibro info") => {
-            "choose a kind beside a file that is not used".to_owned()
-        }
+        Hint::Words(words) if words.starts_with("`vibro info") => "drop other files".to_owned(),
         _ => as_kinds(&hint.to_string()),
     };
     error.text_with(|key, value| Voice::Campaign.set(key, value), spelt)
@@ -47,7 +45,9 @@ pub fn as_kinds(sentence: &str) -> String {
     let sentence = PLACES.iter().fold(sentence.to_owned(), |text, (there, here)| text.replace(there, here));
     COMMANDS.iter().fold(sentence, |text, (command, section)| {
         let kind = format!("the kind “{}”", analysis::title(section).unwrap_or(section));
-        text.replace(&format!("`{command}`"), &kind)
+        [format!("`{command}`"), format!("{command} FILE")]
+            .iter()
+            .fold(text, |text, one| text.replace(one, &kind))
     })
 }
 
@@ -60,7 +60,7 @@ mod tests {
         let rings = || Error::refused("the record rings").hint(Hint::OfFile("vibro decay"));
         assert_eq!(error(&rings()), "the record rings\n  try: the kind “Free decays”");
         let empty = Error::refused("nothing").hint("`vibro info a/FILE` tells what is in a file");
-        assert_eq!(error(&empty), "nothing\n  try: choose a kind beside a file that is not used");
+        assert_eq!(error(&empty), "nothing\n  try: drop other files");
         let rate = "no sampling rate: choose its kind, and state `rate` (vibro init: --rate HZ for all)";
         assert_eq!(as_kinds(rate), "no sampling rate: choose its kind, and state `rate`");
         let low = Error::refused("no pulse").hint("`vibro impacts` finds them").setting("low_pass");

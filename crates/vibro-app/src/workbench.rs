@@ -292,6 +292,14 @@ impl Workbench {
         columns: usize,
     ) -> Result<Value> {
         let (text, section, number) = self.with_table(table)?;
+        // All of the record, also where a part of it is used: its ends are dragged.
+        let text = match WrittenTable::all(&text)?
+            .iter()
+            .any(|one| one.section == section && one.number == number && one.value("span").is_some())
+        {
+            true => Campaign::text_with(&text, (&section, number), "span", "")?,
+            false => text,
+        };
         let campaign = analysis::parse(&self.folder, &self.path(), text)?;
         let (trace, files) = analysis::raw_trace(&campaign, (&section, number), file)?;
         let n = trace.axis.len();

@@ -202,7 +202,10 @@ fn repairs(key: &str, stated: &str, kind: Option<&Kind>) -> Vec<(String, String)
     let word = bare.to_lowercase();
     let is = |words: [&str; 4]| words.contains(&&*word);
     let is_name = bare.starts_with(char::is_alphabetic);
-    let number = meant_number(key, bare);
+    // A count has no unit: `5 s` may mean the samples of five seconds.
+    let whole = matches!(kind, Some(Kind::Whole(..)));
+    let has_unit = bare.contains(char::is_alphabetic) && bare.parse::<f64>().is_err();
+    let number = meant_number(key, bare).filter(|_| !(whole && has_unit));
     let of_number = match &number {
         Some(number) if bare.contains(',') && !number.contains('.') => "digits without commas between them",
         _ if bare.contains(',') => "a number with a decimal point",
@@ -222,12 +225,11 @@ fn repairs(key: &str, stated: &str, kind: Option<&Kind>) -> Vec<(String, String)
     let first = if let Some(Kind::Names(names)) = kind { names.first() } else { None };
     let quoted = |text: String| format!("\"{text}\"");
     let is_text = matches!(kind, Some(Kind::Text));
-    let whole = matches!(kind, Some(Kind::Whole(..)));
     let near = kind.filter(|_| !whole).and_then(|kind| kind.meant(key, bare)).map(quoted);
     let all = [
         (&*words, near),
         ("no mark behind a value", stated.strip_suffix([',', ';']).map(str::to_owned)),
-        ("a whole number", kind.filter(|_| whole).and_then(|kind| kind.meant(key, bare))),
+        ("a whole number", kind.filter(|_| whole && !has_unit).and_then(|kind| kind.meant(key, bare))),
         (of_number, number.clone()),
         (CORNER, no_filter.then(|| quoted("none".to_owned()))),
         ("true or false", is(["yes", "on", "1", "true"]).then(|| "true".to_owned())),

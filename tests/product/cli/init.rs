@@ -138,9 +138,9 @@ fn drops_whose_bounces_are_not_told_yet_are_drops_with_what_to_try() {
         (&"two.csv".into(), &"bounces-untold".into()),
         "{answer}"
     );
-    assert!(refused["reason"].as_str().unwrap().contains("two trains of bounces"), "{answer}");
+    assert!(refused["reason"].as_str().unwrap().contains("two series of bounces"), "{answer}");
     let written = fs::read_to_string(root.path().join("campaign.toml")).unwrap();
-    let (_, refused) = written.split_once("two trains of bounces").expect("why it is left out");
+    let (_, refused) = written.split_once("two series of bounces").expect("why it is left out");
     assert!(refused.contains("`span = [") && refused.contains("#[[drop]]"), "{written}");
     // A check prints the keys that would help.
     let said = String::from_utf8(vibro(&["check", text(root.path())]).stderr).unwrap();

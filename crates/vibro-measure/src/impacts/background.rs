@@ -10,7 +10,7 @@ use vibro_record::{median, quantile};
 const RISE: f64 = 2.0;
 /// Least height of an impact over the echo before it, which follows the impact before by more than the pause.
 /// Ringing falls; where it beats, it hardly rises above all that the pause before it holds.
-const OVER_ECHO: f64 = 1.25;
+const OVER_ECHO: f64 = 1.1;
 /// Ratio of one candidate decay time to the one before.
 const STEP: f64 = 1.25;
 /// Relative difference up to which two numbers of bursts count as equal.

@@ -5,7 +5,7 @@ use super::normalised::Normalised;
 use super::result::Unfitted;
 use super::{ContactModel, rivals};
 use crate::residuals::NO_SUPPORT;
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::{DMatrix, DVector};
 
 /// Lowest frequency of a mode, in cycles per length of the pulse: a slower one only changes the baseline.
 const SLOWEST: f64 = 0.4;
@@ -28,9 +28,13 @@ const ENOUGH: f64 = 4.0;
 /// First guesses of a mode from which fits begin.
 const GUESSES: usize = 3;
 
-/// Part of the gain of a fit that the best first guess has at least. By its damping ratio it loses a tenth,
-/// by its frequency a fortieth, and some by the contact, which is not fitted anew.
-const GUESSED: f64 = 0.7;
+/// Part of the gain of a fit that the best first guess has at least, and each further one. By its damping
+/// ratio a guess loses a tenth, by its frequency a fortieth; the contact yields further than along its
+/// tangents.
+const GUESSED: [f64; 2] = [0.4, 0.7];
+
+/// Part of a parameter by which it is moved for a tangent.
+const TANGENT: f64 = 1e-4;
 
 /// Parameters of a mode.
 const PARAMETERS: f64 = 3.0;
@@ -55,15 +59,21 @@ pub(super) fn ringing<'a>(scale: &'a Normalised<'_>, bare: &[FittedPulse]) -> Op
     let colour = alone.whiteness.inflation.max(1.0).powi(2);
     let chance = 2.0 * without.frequencies().max(1.0).ln();
     // An AICc counts two for each parameter.
-    let least = GUESSED * (colour * (NO_SUPPORT + chance) + 2.0 * PARAMETERS);
-    for (_, mode) in without.modes(&alone).into_iter().filter(|(gain, _)| *gain > least) {
+    let needed = colour * (NO_SUPPORT + chance) + 2.0 * PARAMETERS;
+    for (k, (guessed, mode)) in without.modes(&alone).into_iter().enumerate() {
+        if guessed < GUESSED[k.min(1)] * needed {
+            break;
+        }
         let samples = samples(Some(mode));
+        let gains = |fit: &FittedPulse| (alone.aicc() - fit.aicc()) / colour > NO_SUPPORT + chance;
+        if !samples.fit(best.model).is_ok_and(|same| gains(&same)) {
+            continue;
+        }
         let Ok(main) = samples.fit(ContactModel::KelvinVoigt) else { continue };
         let (fits, unfitted) = rivals(&samples, main);
         let Some(best) = fits.iter().min_by(|a, b| a.aicc().total_cmp(&b.aicc())) else { continue };
         let share = best.fit.parameters[3 + best.model.parameters()];
-        let gain = (alone.aicc() - best.aicc()) / colour;
-        if gain > NO_SUPPORT + chance && SHARES.contains(&share) && !samples.unexplained(best) {
+        if gains(best) && SHARES.contains(&share) && !samples.unexplained(best) {
             return Some(Ringing { samples, fits, unfitted });
         }
     }
@@ -87,21 +97,33 @@ impl Samples<'_> {
     }
 
     /// First guesses of a mode whose response to the contact `fitted` explains the samples best, the best
-    /// first, each with about twice the logarithm of the likelihood that it gains.
+    /// first, each with about twice the logarithm of the likelihood that it gains. The contact yields to each
+    /// as far as its tangents go.
     fn modes(&self, fitted: &FittedPulse) -> Vec<(f64, [f64; 3])> {
         let (length, fastest) = (self.duration(), self.fastest());
         let stride = (self.times.len() as f64 / (ENOUGH * fastest * length)).max(1.0) as usize;
         let thin = |all: &[f64]| all.iter().copied().step_by(stride).collect::<Vec<f64>>();
-        let (times, values) = (thin(&self.times), thin(&self.values));
+        let (times, values) = (thin(&self.times), DVector::from_vec(thin(&self.values)));
+        let Some(bare) = fitted.at(self, &times).map(DVector::from_vec) else { return Vec::new() };
         let mut p = fitted.fit.parameters.clone();
         let contact = p.len();
-        let Some(bare) = fitted.at(self, &times) else { return Vec::new() };
-        let without: f64 = bare.iter().zip(&values).map(|(b, v)| (v - b).powi(2)).sum();
+        let tangent = |i: usize| {
+            let mut near = fitted.clone();
+            near.fit.parameters[i] += TANGENT * near.fit.parameters[i].abs().max(0.1);
+            Some(DVector::from_vec(near.at(self, &times)?) - &bare)
+        };
+        let Some(tangents) = (0..contact).map(tangent).collect::<Option<Vec<_>>>() else { return Vec::new() };
+        let tangents = DMatrix::from_columns(&tangents).qr().q();
+        let beside = |v: DVector<f64>| &v - &tangents * tangents.tr_mul(&v);
+        let rest = beside(values - &bare);
+        let without = rest.norm_squared();
         let mut line = |frequency: f64, zeta: f64| {
             p.truncate(contact);
             p.extend([1.0, frequency, zeta]);
-            let rings = self.model(fitted.model, &p, &times, None)?;
-            share([&bare, &rings], &values, fitted.fit.parameters[1])
+            let rings = DVector::from_vec(self.model(fitted.model, &p, &times, None)?);
+            let rings = beside(rings - &bare);
+            let (common, square) = (rest.dot(&rings), rings.norm_squared());
+            Some((without - common * common / square, common / square))
         };
         let steps = (STEPS * self.frequencies()).ceil().max(1.0) as usize;
         let frequency = |i: usize| SLOWEST + (fastest - SLOWEST) * i as f64 / steps as f64;
@@ -121,17 +143,4 @@ impl Samples<'_> {
         let gain = |left: f64| self.times.len() as f64 * (without / left).ln();
         least.into_iter().take(GUESSES).map(|(left, mode)| (gain(left), mode)).collect()
     }
-}
-
-/// Sum of squares left of the `values` by the best sum of a baseline, the bare contact and what rings, and
-/// the share of the latter. Both contacts have the baseline `level`.
-fn share([bare, rings]: [&[f64]; 2], values: &[f64], level: f64) -> Option<(f64, f64)> {
-    let row = |(b, r): (&f64, &f64)| Vector3::new(1.0, b - level, r - level);
-    let rows = || bare.iter().zip(rings).map(row);
-    let normal: Matrix3<f64> = rows().map(|row| row * row.transpose()).sum();
-    let right: Vector3<f64> = rows().zip(values).map(|(row, v)| row * *v).sum();
-    let p = normal.cholesky()?.solve(&right);
-    let left: f64 = rows().zip(values).map(|(row, v)| (v - row.dot(&p)).powi(2)).sum();
-    let share = p[2] / (p[1] + p[2]);
-    (left.is_finite() && share.is_finite()).then_some((left, share))
 }

@@ -171,7 +171,7 @@ fn rivalled(train: &Plausible, sounds: &[Sound]) -> Option<String> {
             let [first, other] = apart([time(b) - time(a), time(j) - time(i)]);
             let [begin, later] = apart([time(a), time(i)]);
             format!(
-                "{n} sounds, and two trains of bounces among them are as likely: first flight {first} from {begin} on, or {other} from {later} on"
+                "{n} sounds, and two series of bounces among them are equally likely: first flight {first} from {begin} on, or {other} from {later} on"
             )
         }
     })
