@@ -127,6 +127,7 @@ impl Motion {
         let residual = piston - kinetic - potential - elastic - air - impacts - contacts - seal - flow;
         turn.book =
             Book { piston, kinetic, potential, elastic, air, impacts, contacts, seal, flow, residual };
+        [turn.end, _] = halves(&self.y);
         self.turns += 1;
         self.time = 0.0;
         Ok(turn)
