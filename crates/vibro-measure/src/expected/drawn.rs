@@ -39,7 +39,9 @@ impl<'a> DrawnNoise<'a> {
         let Recorder { rate, step, range, .. } = *self.recorder;
         // The white part has the variance of rounding; the steps add it.
         let white = (self.recorder.white() - rounding(step).powi(2)).max(0.0).sqrt();
-        values.iter_mut().for_each(|value| *value += white * noise.normal());
+        for value in &mut values {
+            *value += white * noise.normal();
+        }
         if let Some((transform, powers)) = &self.coloured {
             let half = 0.5f64.sqrt();
             let last = powers.len() - 1;

@@ -57,7 +57,8 @@ fn hold(what: &str, expected: &Expected, draws: u64, draw: impl Fn(&mut Noise) -
     for seed in 0..draws {
         let (answers, _) = draw(&mut Noise::new(seed)).unwrap_or_default();
         for (name, _) in &expected.answers {
-            let own = answers.iter().find(|(known, _)| known == name);
+            // An answer in doubt, without uncertainty, is none.
+            let own = answers.iter().find(|(known, answer)| known == name && answer.std.is_some());
             held.add(name, own.map_or(f64::NAN, |(_, answer)| answer.value));
         }
     }
