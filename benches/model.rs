@@ -2,6 +2,7 @@
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use std::hint::black_box;
+use vibroimpact::model::drill::{Course, Machine, Rung, run};
 use vibroimpact::model::{Excitation, Impulses, Rig, Sine, orbits, orbits_of, response};
 
 fn orbit(c: &mut Criterion) {
@@ -20,5 +21,14 @@ fn responses(c: &mut Criterion) {
     });
 }
 
-criterion_group!(benches, orbit, responses);
+/// 200 turns of the example at full speed; the last half of the turns is judged.
+fn drill(c: &mut Criterion) {
+    let (machine, course) = (Machine::example(), Course::turns(200));
+    for rung in [Rung::Friction, Rung::Compliant] {
+        let name = format!("drill, 200 turns, {}", rung.name());
+        c.bench_function(&name, |b| b.iter(|| run(black_box(&machine), rung, &course)));
+    }
+}
+
+criterion_group!(benches, orbit, responses, drill);
 criterion_main!(benches);

@@ -11,6 +11,7 @@ pub mod figures;
 mod instrument;
 mod knob;
 mod pulse;
+mod rehearsed;
 mod sweep;
 mod tables;
 
@@ -18,8 +19,9 @@ use super::answer::Answer;
 use super::progress::Progress;
 use crate::campaign::{Campaign, KeyRange};
 use crate::error::{Error, Result};
+use crate::math::Noise;
 use crate::measure::Estimate;
-use crate::measure::expected::{Expected, Tie};
+use crate::measure::expected::{Expected, Heard, Rehearsal, Tie};
 use crate::read::Folder;
 use crate::record::Finding;
 use crate::report::files::Names;
@@ -53,12 +55,24 @@ trait Guess: DeserializeOwned + Clone + 'static {
     /// What of the guess can be changed to know more.
     const KNOBS: &'static [Knob<Self>];
 
+    /// Command whose estimator measures the records.
+    const COMMAND: &'static str;
+
     /// What the tests will tell, all records together.
     ///
     /// # Errors
     /// If a key is impossible or missing, or the record allows no answer.
     fn expected(&self, instrument: &Instrument) -> Result<Expected>;
+
+    /// What one record will tell, and how it is drawn and measured.
+    ///
+    /// # Errors
+    /// As [`Guess::expected`].
+    fn rehearsal(&self, instrument: &Instrument) -> Result<Planned>;
 }
+
+/// What one record will tell, and how such a record is drawn and measured.
+type Planned = (Expected, Box<dyn Fn(&mut Noise) -> Result<Heard> + Sync>);
 
 /// The change of a test, and what it makes of the uncertainties.
 #[derive(Debug, Clone, PartialEq)]
@@ -95,6 +109,8 @@ pub struct Forecast {
     pub changes: Vec<Change>,
     /// Uncertainty over each key.
     pub courses: Vec<Course>,
+    /// What the estimator makes of drawn records; `None` for a test that is not rehearsed.
+    pub rehearsal: Option<Rehearsal>,
     /// Findings.
     pub findings: Vec<Finding>,
 }
@@ -109,7 +125,16 @@ const POWERS: std::ops::RangeInclusive<i32> = -4..=4;
 /// # Errors
 /// If the plan cannot be read, has an impossible key, or a test allows no answer.
 pub fn answer(folder: &Folder, path: &Path, progress: &dyn Progress) -> Result<Answer> {
+    if folder.read(path).is_ok_and(|bytes| bytes.trim_ascii().is_empty()) {
+        return Err(without_test().in_file(path));
+    }
     of(&Campaign::from_path(folder, path, &SECTIONS)?, progress)
+}
+
+fn without_test() -> Error {
+    let tables = SECTIONS[1..].iter().map(|section| format!("[[{section}]]")).collect::<Vec<_>>().join(", ");
+    Error::usage("a plan without a test", format!("one of the tables {tables}"))
+        .hint("docs/commands.md shows a plan under `vibro plan`")
 }
 
 /// What each test of a plan will tell.
@@ -130,10 +155,7 @@ fn of(plan: &Campaign, progress: &dyn Progress) -> Result<Answer> {
         all.push(forecast);
     }
     if all.is_empty() {
-        let tables =
-            SECTIONS[1..].iter().map(|section| format!("[[{section}]]")).collect::<Vec<_>>().join(", ");
-        let error = Error::usage("a plan without a test", format!("one of the tables {tables}"));
-        return Err(error.hint("docs/commands.md shows a plan under `vibro plan`").in_file(plan.path()));
+        return Err(without_test().in_file(plan.path()));
     }
     let mut answer = Answer::default();
     for forecast in &all {
@@ -142,6 +164,7 @@ fn of(plan: &Campaign, progress: &dyn Progress) -> Result<Answer> {
             "answers": forecast.answers.iter().cloned().collect::<std::collections::BTreeMap<_, _>>(),
             "ties": forecast.ties.iter().map(|tie| json!({ "of": tie.of, "correlation": tie.correlation })).collect::<Vec<_>>(),
             "changes": forecast.changes.iter().map(changed).collect::<Vec<_>>(),
+            "rehearsal": forecast.rehearsal.as_ref().map(rehearsed::json),
         });
         let list = answer.result.entry(format!("{}s", forecast.section)).or_insert_with(|| json!([]));
         list.as_array_mut().into_iter().for_each(|list| list.push(one.clone()));
@@ -181,7 +204,9 @@ fn of_kind<G: Guess>(
         let name = (G::SECTION, format!("{} {}", G::TITLE, entry.number));
         let knobs = [&Instrument::knobs()[..], G::KNOBS].concat();
         let expected = |instrument: &Instrument, guess: &G| guess.expected(instrument);
-        let forecast = checked.and_then(|()| forecast(name, &entry.keys, instrument, &knobs, &expected));
+        let forecast = checked
+            .and_then(|()| forecast(name, &entry.keys, instrument, &knobs, &expected))
+            .and_then(|told| rehearsed::rehearsed(told, &entry.keys, instrument));
         all.push(forecast.map_err(|error| plan.fault(&entry, error))?);
         progress.step();
     }
@@ -199,24 +224,29 @@ fn forecast<G: Clone>(
 ) -> Result<Forecast> {
     let planned = expected(instrument, guess)?;
     let after = |knob: &Knob<G>, factor: f64| {
+        if factor == 1.0 {
+            return knob.turned(instrument, guess, factor).map(|_| (1.0, planned.answers.clone()));
+        }
         let (instrument, guess) = knob.turned(instrument, guess, factor)?;
         let answers = expected(&instrument, &guess).ok()?.answers;
         Some((ratio(&planned.answers, &answers)?, answers))
     };
-    let knobs = || knobs.iter().copied();
-    let change = |knob: Knob<G>| {
-        let (factor, answers) = after(&knob, knob.better)?;
-        (factor < 1.0 - WORTH).then(|| Change { what: knob.change.to_owned(), factor, answers })
-    };
-    let mut changes: Vec<Change> = knobs().filter_map(change).collect();
-    crate::record::sort_by_number(&mut changes, |change| change.factor);
-    let course = |knob: Knob<G>| {
+    let (mut changes, mut courses) = (Vec::new(), Vec::new());
+    for knob in knobs {
+        let better = after(knob, knob.better);
+        let course =
+            |by: f64| if by == knob.better { better.as_ref() } else { None }.map(|(factor, _)| *factor);
+        let point = |by: f64| Some((by, course(by).or_else(|| Some(after(knob, by)?.0))?));
         let factors = POWERS.map(|power| 2f64.powf(0.5 * f64::from(power)));
-        let points: Vec<(f64, f64)> = factors.filter_map(|by| Some((by, after(&knob, by)?.0))).collect();
-        let moves = points.iter().any(|(_, factor)| (factor - 1.0).abs() > WORTH);
-        moves.then_some(Course { key: knob.key, points })
-    };
-    let courses = knobs().filter_map(course).collect();
+        let points: Vec<(f64, f64)> = factors.filter_map(point).collect();
+        if points.iter().any(|(_, factor)| (factor - 1.0).abs() > WORTH) {
+            courses.push(Course { key: knob.key, points });
+        }
+        if let Some((factor, answers)) = better.filter(|(factor, _)| *factor < 1.0 - WORTH) {
+            changes.push(Change { what: knob.change.to_owned(), factor, answers });
+        }
+    }
+    crate::record::sort_by_number(&mut changes, |change| change.factor);
     Ok(Forecast {
         section,
         title,
@@ -224,6 +254,7 @@ fn forecast<G: Clone>(
         ties: planned.ties,
         changes,
         courses,
+        rehearsal: None,
         findings: planned.findings,
     })
 }

@@ -113,6 +113,8 @@ pub struct Integrator<S: Scheme, const N: usize> {
     y: [f64; N],
     rate: [f64; N],
     step: f64,
+    /// Size with which the last accepted step would just have met the tolerance; infinite before the first.
+    just: f64,
     tolerance: Tolerance<N>,
     scheme: std::marker::PhantomData<S>,
 }
@@ -126,7 +128,8 @@ impl<S: Scheme, const N: usize> Integrator<S, N> {
         step: f64,
         tolerance: Tolerance<N>,
     ) -> Self {
-        Integrator { time, y, rate: f(time, &y), step, tolerance, scheme: std::marker::PhantomData }
+        let rate = f(time, &y);
+        Integrator { time, y, rate, step, just: f64::INFINITY, tolerance, scheme: std::marker::PhantomData }
     }
 
     /// Time at the end of the last accepted step.
@@ -139,9 +142,19 @@ impl<S: Scheme, const N: usize> Integrator<S, N> {
         &self.y
     }
 
+    /// Derivative at the end of the last accepted step.
+    pub fn rate(&self) -> &[f64; N] {
+        &self.rate
+    }
+
     /// Size of the step to be tried next.
     pub fn next_step(&self) -> f64 {
         self.step
+    }
+
+    /// Makes the step to be tried next no larger than `size`, above 0.
+    pub fn limit_step(&mut self, size: f64) {
+        self.step = self.step.min(size);
     }
 
     /// Takes one step that ends at the time `until` at the latest.
@@ -149,6 +162,20 @@ impl<S: Scheme, const N: usize> Integrator<S, N> {
     /// # Errors
     /// If the tolerance cannot be met with any step that time can resolve, or the solution is not finite.
     pub fn step(&mut self, f: impl Fn(f64, &[f64; N]) -> [f64; N], until: f64) -> Result<Step<N>> {
+        self.forced_step(|t| t, f, until)
+    }
+
+    /// As [`Integrator::step`] for y′ = f(u(t), y): the forcing u does not wait for the stages before it, so
+    /// that a processor computes those of several stages at a time.
+    ///
+    /// # Errors
+    /// As [`Integrator::step`].
+    pub fn forced_step<U: Copy>(
+        &mut self,
+        forcing: impl Fn(f64) -> U,
+        f: impl Fn(U, &[f64; N]) -> [f64; N],
+        until: f64,
+    ) -> Result<Step<N>> {
         let (mut grow, remaining) = (10.0, until - self.time);
         let mut step = self.step;
         loop {
@@ -164,10 +191,13 @@ impl<S: Scheme, const N: usize> Integrator<S, N> {
             }
             let mut rates = [[0.0; N]; STAGES];
             rates[0] = self.rate;
+            let time = self.time;
+            let forced: [U; STAGES] =
+                std::array::from_fn(|stage| forcing(time + S::NODES.get(stage).unwrap_or(&1.0) * h));
             let mut end = self.y;
             for stage in 1..=S::END_STAGE {
                 end = self.stage(&rates, S::ROWS[stage - 1], h);
-                rates[stage] = f(self.time + S::NODES[stage] * h, &end);
+                rates[stage] = f(forced[stage], &end);
             }
             let tolerated = std::array::from_fn(|i| {
                 let size = self.y[i].abs().max(end[i].abs()).max(self.tolerance.floor[i]);
@@ -176,24 +206,29 @@ impl<S: Scheme, const N: usize> Integrator<S, N> {
             let error = S::error(&rates, h, &tolerated);
             // The next size is 0.9 of the one that just meets the tolerance. It is limited to 0.2 to 10 times
             // the present size; after a rejected step it does not grow.
-            let factor = (0.9 * error.powf(-S::STEP_SIZE_EXPONENT)).clamp(0.2, grow);
+            let just = h * error.powf(-S::STEP_SIZE_EXPONENT);
+            let bounded = |size: f64, grow: f64| h * (size / h).clamp(0.2, grow);
             if error <= 1.0 {
                 for stage in S::END_STAGE + 1..S::NODES.len() {
                     let y = self.stage(&rates, S::ROWS[stage - 1], h);
-                    rates[stage] = f(self.time + S::NODES[stage] * h, &y);
+                    rates[stage] = f(forced[stage], &y);
                 }
                 let terms = S::dense(&rates, h, &self.y, &end);
                 let taken = Step { start: self.time, duration: h, end, terms };
                 self.time = if whole { until } else { self.time + h };
                 self.y = end;
                 self.rate = rates[S::END_STAGE];
+                // Where the size that just meets the tolerance falls, it falls on (Gustafsson 1994).
+                let trend = if self.just.is_finite() { (just / self.just).min(1.0) } else { 1.0 };
+                let next = bounded(0.9 * trend * just, grow);
+                self.just = just;
                 // A step cut short by `until` is no reason to reduce the step size.
-                self.step = if h < step { step.max(h * factor) } else { h * factor };
+                self.step = if h < step { step.max(next) } else { next };
                 return Ok(taken);
             }
             grow = 1.0;
             // The estimated error is NaN if the derivatives are not finite.
-            step = h * if factor.is_nan() { 0.2 } else { factor };
+            step = if just.is_nan() { 0.2 * h } else { bounded(0.9 * just, grow) };
         }
     }
 

@@ -16,7 +16,7 @@ use super::Estimate;
 use super::chance::chi_squared_above;
 use super::mains::Hum;
 use damped::{Damped, LINES, OWN, SineGroup, lines};
-pub use expected::{GuessedMode, expected};
+pub use expected::{GuessedMode, expected, rehearse};
 pub use result::{DecayMode, DecayOptions, DecayResult, Level};
 use sines::{ENOUGH, MOST, STEADY, SURE, Sines, decays};
 use std::f64::consts::TAU;

@@ -36,7 +36,7 @@ mod train;
 mod turns;
 
 pub use cycles::{Bandwidth, Cycle, Phases};
-pub use expected::{GuessedBlows, expected};
+pub use expected::{GuessedBlows, expected, rehearse};
 pub use faults::FaultCount;
 pub use floor::NoiseFloor;
 use groups::Offset;

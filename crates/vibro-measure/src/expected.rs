@@ -5,6 +5,12 @@
 //! of its parameters, `(JᵀJ)⁻¹JᵀCJ(JᵀJ)⁻¹`, with onset, offset and gain among them. For white noise this is
 //! the Cramér–Rao bound (Kay 1993, 3.4).
 
+mod drawn;
+mod rehearsal;
+
+pub(crate) use drawn::DrawnNoise;
+pub use rehearsal::{Heard, Refusal, Rehearsal, Rehearsed};
+
 use crate::Estimate;
 use crate::converter::rounding;
 use crate::pulse::LowPass;
@@ -60,7 +66,12 @@ impl Recorder {
             .low_pass
             .as_ref()
             .map_or(0.0, |filter| self.density.powi(2) * filter.autocovariance(apart as f64 / self.rate));
-        filtered + if apart == 0 { self.white() } else { 0.0 }
+        filtered + self.covariance_of_white(apart)
+    }
+
+    /// The part of the covariance that white noise has.
+    fn covariance_of_white(&self, apart: usize) -> f64 {
+        if apart == 0 { self.white() } else { 0.0 }
     }
 
     /// One-sided spectral density of the noise at `frequency` in Hz, squared unit per Hz.
@@ -93,7 +104,8 @@ impl Recorder {
             return Ok(());
         }
         let why = format!("a fit of {samples:.0} values: a plan takes {MOST:.0} at most");
-        Err(Error::refused(why).hint("plan with a lower sampling rate, or a shorter record").setting("rate"))
+        let hint = "plan with a lower sampling rate, or a shorter record; rates are in Hz, times in s";
+        Err(Error::refused(why).hint(hint).setting("rate"))
     }
 }
 

@@ -21,7 +21,7 @@ mod ringing;
 mod sensor;
 
 pub use contact::KelvinVoigt;
-pub use expected::{GuessedPulse, expected};
+pub use expected::{GuessedPulse, expected, rehearse};
 pub use instants::two_times;
 pub use low_pass::LowPass;
 pub use result::{ContactModel, PulseCurve, PulseFit, PulsePicture, PulseResult, Unfitted};

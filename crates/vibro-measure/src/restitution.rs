@@ -14,7 +14,7 @@ mod untold;
 mod velocities;
 
 pub use drop::{Drop, GRAVITY};
-pub use expected::{GuessedDrops, expected};
+pub use expected::{GuessedDrops, expected, rehearse};
 pub use train::Train;
 pub use velocities::Velocities;
 
@@ -212,7 +212,7 @@ const STEP: f64 = 1e-7;
 
 /// Longest contact in s that the uncertainties allow for if no contact time is stated or measured: longer
 /// than steel and most plastics touch.
-const LONGEST: f64 = 1e-3;
+pub const LONGEST: f64 = 1e-3;
 
 /// Doubt about a drop where too many flights of a train are longer than its first.
 fn grown(trains: &[Train]) -> Option<Doubt> {

@@ -1,11 +1,12 @@
 //! Planned records of a hammer drill: `[[drill]]` of a plan.
 
+use super::Planned;
 use super::instrument::Instrument;
 use super::knob::Knob;
 use crate::campaign::KeyRange;
 use crate::error::{Error, Result};
-use crate::measure::drill::{AngleOrigin, Beam, GuessedBlows, expected};
-use crate::measure::expected::Expected;
+use crate::measure::drill::{AngleOrigin, Beam, DrillOptions, GuessedBlows, expected, rehearse};
+use crate::measure::expected::{Expected, Recorder};
 use serde::Deserialize;
 
 /// Blows of one body, and the laser that sees it.
@@ -49,6 +50,7 @@ impl super::Guess for Guess {
         KeyRange::from_zero("°", &["beam_angle", "beam_angle_std"]).at_most(90.0),
         KeyRange::above_zero("s", &["contact", "fit_duration"]).times(),
     ];
+    const COMMAND: &'static str = "drill";
     const KNOBS: &'static [Knob<Guess>] = &[
         Knob::new(
             "uncertainty of the beam angle",
@@ -57,12 +59,26 @@ impl super::Guess for Guess {
             |_, guess, by| guess.beam_angle_std.as_mut().map(|std| *std *= by).is_some(),
         ),
         Knob::new("length of the fits", "fits twice as long", 2.0, |_, guess, by| {
-            guess.fit_duration = Some(guess.fit_duration.unwrap_or(0.5e-3) * by);
+            guess.fit_duration = Some(guess.fit_duration.unwrap_or(DrillOptions::FIT) * by);
             true
         }),
     ];
 
     fn expected(&self, instrument: &Instrument) -> Result<Expected> {
+        let recorder = instrument.recorder(None)?;
+        // The beam errs alike in all records.
+        let longer = instrument.records() * recorder.duration;
+        expected(&self.blows()?, &Recorder { duration: longer, ..recorder })
+    }
+
+    fn rehearsal(&self, instrument: &Instrument) -> Result<Planned> {
+        let (blows, recorder) = (self.blows()?, instrument.recorder(None)?);
+        Ok((expected(&blows, &recorder)?, Box::new(rehearse(&blows, &recorder))))
+    }
+}
+
+impl Guess {
+    fn blows(&self) -> Result<GuessedBlows> {
         let missing = |key: &str, such: &str| {
             Error::usage(format!("a [[drill]] without {key}"), "").hint(format!("add {key} = {such}"))
         };
@@ -70,7 +86,7 @@ impl super::Guess for Guess {
             self.beam_angle.ok_or_else(|| missing("beam_angle", "0, in degrees"))?,
             self.beam_from.ok_or_else(|| missing("beam_from", "\"axis\""))?,
         )?;
-        let guess = GuessedBlows {
+        Ok(GuessedBlows {
             rate: self.speed.ok_or_else(|| missing("speed", "45, in Hz"))?,
             before: self.before.ok_or_else(|| missing("before", "7.5, in m/s"))?,
             after: self.after.ok_or_else(|| missing("after", "-1.5, in m/s"))?,
@@ -82,10 +98,6 @@ impl super::Guess for Guess {
             beam_std: self.beam_angle_std.unwrap_or(0.0),
             contact: self.contact,
             fit: self.fit_duration,
-        };
-        let recorder = instrument.recorder(None)?;
-        // The beam errs alike in all records.
-        let longer = instrument.records() * recorder.duration;
-        expected(&guess, &crate::measure::expected::Recorder { duration: longer, ..recorder })
+        })
     }
 }

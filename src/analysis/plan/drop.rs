@@ -1,11 +1,12 @@
 //! Planned drops and trains of bounces: `[[drop]]` of a plan.
 
+use super::Planned;
 use super::instrument::Instrument;
 use super::knob::Knob;
 use crate::campaign::KeyRange;
 use crate::error::{Error, Result};
 use crate::measure::expected::Expected;
-use crate::measure::restitution::{GuessedDrops, expected};
+use crate::measure::restitution::{GuessedDrops, LONGEST, expected, rehearse};
 use serde::Deserialize;
 
 /// Drops of one height.
@@ -45,6 +46,7 @@ impl super::Guess for Guess {
         KeyRange::above_zero("s", &["onset_std"]).times(),
         KeyRange::from_zero("s", &["contact_time_std"]).times(),
     ];
+    const COMMAND: &'static str = "restitution";
     const KNOBS: &'static [Knob<Guess>] = &[
         Knob::new("timing noise", "half the timing noise", 0.5, |_, guess, by| {
             guess.onset_std.as_mut().map(|std| *std *= by).is_some()
@@ -56,13 +58,24 @@ impl super::Guess for Guess {
             guess.height.as_mut().map(|height| *height *= by).is_some()
         }),
         Knob::new("contact time", "a contact time known to 0.1 ms", 0.17, |_, guess, by| {
-            // What is assumed where none is stated, ± 1/√3 ms.
-            let stated = guess.contact_time_std.replace(by * 1e-3 / 3f64.sqrt());
+            // Of what is assumed where none is stated.
+            let stated = guess.contact_time_std.replace(by * LONGEST / 3f64.sqrt());
             stated.is_none()
         }),
     ];
 
     fn expected(&self, instrument: &Instrument) -> Result<Expected> {
+        expected(&self.drops(instrument)?)
+    }
+
+    fn rehearsal(&self, instrument: &Instrument) -> Result<Planned> {
+        let drops = self.drops(instrument)?;
+        Ok((expected(&drops)?, Box::new(rehearse(&drops))))
+    }
+}
+
+impl Guess {
+    fn drops(&self, instrument: &Instrument) -> Result<GuessedDrops> {
         let missing = |key: &'static str, such: &str| {
             Error::usage(format!("a [[drop]] without {key}"), "").hint(format!("add {key} = {such}"))
         };
@@ -71,7 +84,7 @@ impl super::Guess for Guess {
             (Some(_), None) => return Err(missing("height_std", "0.001, in m")),
             (None, _) => None,
         };
-        expected(&GuessedDrops {
+        Ok(GuessedDrops {
             height,
             restitution: self.restitution.ok_or_else(|| missing("restitution", "0.6"))?,
             first_flight: self.first_flight,

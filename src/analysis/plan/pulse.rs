@@ -1,11 +1,12 @@
 //! Planned contact pulses: `[[pulse]]` of a plan.
 
+use super::Planned;
 use super::instrument::Instrument;
 use super::knob::Knob;
 use crate::campaign::KeyRange;
 use crate::error::{Error, Result};
 use crate::measure::expected::Expected;
-use crate::measure::pulse::{GuessedPulse, KelvinVoigt, expected};
+use crate::measure::pulse::{GuessedPulse, KelvinVoigt, expected, rehearse};
 use serde::Deserialize;
 use std::f64::consts::TAU;
 
@@ -47,12 +48,25 @@ impl super::Guess for Guess {
         KeyRange::above_zero("N/m", &["stiffness"]),
         KeyRange::above_zero("m/s", &["velocity"]),
     ];
+    const COMMAND: &'static str = "pulse";
     const KNOBS: &'static [Knob<Guess>] =
         &[Knob::new("velocity of approach", "twice the velocity of approach", 2.0, |_, guess, by| {
             guess.velocity.as_mut().map(|velocity| *velocity *= by).is_some()
         })];
 
     fn expected(&self, instrument: &Instrument) -> Result<Expected> {
+        // The record is as long as the fit needs it.
+        Ok(instrument.averaged(expected(&self.contact()?, &instrument.recorder(Some(1.0))?)?))
+    }
+
+    fn rehearsal(&self, instrument: &Instrument) -> Result<Planned> {
+        let (contact, recorder) = (self.contact()?, instrument.recorder(Some(1.0))?);
+        Ok((expected(&contact, &recorder)?, Box::new(rehearse(&contact, &recorder))))
+    }
+}
+
+impl Guess {
+    fn contact(&self) -> Result<GuessedPulse> {
         let Guess { xi, mass, .. } = *self;
         let speed = self.velocity.ok_or_else(|| missing("velocity", "0.5, in m/s"))?;
         let frequency = match (self.duration, self.stiffness, mass) {
@@ -68,9 +82,7 @@ impl super::Guess for Guess {
         let frequency = frequency
             .ok_or_else(|| Error::usage(format!("a damping ratio of {xi}"), "0 to below 1").setting("xi"))?;
         let force = self.record == Quantity::Force;
-        let guess = GuessedPulse { xi, frequency, speed, mass, force };
-        // The record is as long as the fit needs it.
-        Ok(instrument.averaged(expected(&guess, &instrument.recorder(Some(1.0))?)?))
+        Ok(GuessedPulse { xi, frequency, speed, mass, force })
     }
 }
 

@@ -236,6 +236,8 @@ pub fn planned(
     let all = places.len() - first;
     let blind = Finding::note("plan-points-left-out").count("n", all - candidates.len()).count("all", all);
     found.findings.extend((candidates.len() < all).then_some(blind));
+    let masses = ["m1", "m2"].map(|mass| plan.fit.parameters.iter().any(|p| p.name() == mass));
+    found.findings.extend((masses == [false; 2]).then(|| Finding::note("plan-masses-known")));
     found.findings.extend(rig_left_out("[rig]", &plan.rig_left_out()));
     Ok((found, suggested))
 }

@@ -17,9 +17,10 @@ const DECAY: &str = "[[decay]]\nmodes = [{ frequency = 25, zeta = 0.01, amplitud
 /// Uncertainties grow with the noise, and fall with the root of the number of records.
 #[test]
 fn noise_and_records_count_as_they_should() {
-    let once = planned(&format!("{INSTRUMENT}{DECAY}")).unwrap();
-    let four = planned(&format!("{INSTRUMENT}averages = 4\n{DECAY}")).unwrap();
-    let noisy = planned(&format!("{}{DECAY}", INSTRUMENT.replace("0.01", "0.03"))).unwrap();
+    let bound = format!("{INSTRUMENT}rehearsals = 0\n");
+    let once = planned(&format!("{bound}{DECAY}")).unwrap();
+    let four = planned(&format!("{bound}averages = 4\n{DECAY}")).unwrap();
+    let noisy = planned(&format!("{}{DECAY}", bound.replace("0.01", "0.03"))).unwrap();
     for name in ["frequency", "zeta", "amplitude"] {
         let one = std(&once, "decays", name);
         // The covariance is linear in that of the noise, but for roundings of the matrices.
@@ -42,7 +43,8 @@ fn a_record_that_is_long_enough_need_not_be_longer() {
 /// With bits, the step of the converter is noise of q/√12: 10 bits over ±5 are 0.0098, and 0.0028 of noise.
 #[test]
 fn a_coarse_converter_is_noise() {
-    let text = |noise: &str| format!("[instrument]\nrate = 2000\nduration = 4\n{noise}\n{DECAY}");
+    let text =
+        |noise: &str| format!("[instrument]\nrate = 2000\nduration = 4\nrehearsals = 0\n{noise}\n{DECAY}");
     let bits = planned(&text("bits = 10\nrange = 5")).unwrap();
     let noise = planned(&text(&format!("noise = {}", 10.0 / 1024.0 / 12f64.sqrt()))).unwrap();
     let ratio = std(&bits, "decays", "zeta") / std(&noise, "decays", "zeta");
@@ -92,4 +94,35 @@ fn mistakes_point_at_their_line() {
     }
     let error = planned(&format!("[instrument]\nrate = 2000\n{DECAY}")).unwrap_err().to_string();
     assert!(error.contains("noise"), "{error}");
+}
+
+/// What is refused, and how it is said: `findings` of the first test, as code and share.
+fn shares(answer: &Answer) -> Vec<(String, [f64; 2])> {
+    let share =
+        |finding: &Finding| Some((finding.code.to_string(), [finding.get("n")?, finding.get("all")?]));
+    answer.findings.iter().filter_map(|(_, finding)| share(finding)).collect()
+}
+
+/// Two modes 0.2 bandwidths apart look like one: the bound knows both, `vibro decay` finds one.
+#[test]
+fn modes_that_the_command_cannot_part_are_not_promised() {
+    let modes = "modes = [{ frequency = 25, zeta = 0.01, amplitude = 1 }, { frequency = 25.1, zeta = 0.01, amplitude = 0.6 }]\n";
+    let answer = planned(&format!("{INSTRUMENT}rehearsals = 6\n[[decay]]\n{modes}")).unwrap();
+    let one = &answer.result["decays"][0];
+    let lost = one["answers"].as_object().unwrap().values().filter(|answer| answer["std"].is_null()).count();
+    assert!(lost >= 3, "{one}");
+    assert_eq!(one["rehearsal"]["records"], 6);
+    let unanswered = shares(&answer).into_iter().find(|(code, _)| code == "plan-unanswered").unwrap();
+    assert!(unanswered.1[0] > 3.0 && unanswered.1[1] == 6.0, "{unanswered:?}");
+}
+
+/// A clear decay is measured as expected, and nothing is said of it.
+#[test]
+fn a_test_that_holds_is_left_alone() {
+    let answer = planned(&format!("{INSTRUMENT}rehearsals = 6\n{DECAY}")).unwrap();
+    let rehearsal = &answer.result["decays"][0]["rehearsal"];
+    assert!(rehearsal["answered"].as_object().unwrap().values().all(|n| *n == 6), "{rehearsal}");
+    assert!(answer.findings.iter().all(|(_, finding)| !finding.code.starts_with("plan-")), "{rehearsal}");
+    let none = planned(&format!("{INSTRUMENT}rehearsals = 0\n{DECAY}")).unwrap();
+    assert!(none.result["decays"][0]["rehearsal"].is_null());
 }

@@ -74,11 +74,13 @@ pub fn differences(
             found.push(Difference::of("angle of the blow after top dead centre", &angle, model));
         }
     }
-    if striker.is_some() {
+    // Energy and rate of the chain are those of its first body.
+    let first = chain.bodies.first().is_some_and(|name| name.eq_ignore_ascii_case(BODIES[0]));
+    if first {
         let energies = chain.blow_energy.as_ref().zip(turn.run.blow_energy);
         found.extend(energies.map(|(measured, model)| Difference::of("blow energy", measured, model)));
     }
-    if let Some(rate) = chain.blow_rate {
+    if let Some(rate) = chain.blow_rate.filter(|_| first) {
         let rate =
             Estimate::new(rate, None, "1/min", hits.map_or(0, |hits| hits.n), "impacts a turn times speed");
         found.push(Difference::of("blow rate", &rate, 60.0 * turn.run.rate));

@@ -24,7 +24,7 @@ pub struct TurnModel<'a> {
 #[derive(Debug, Clone)]
 pub struct ModelTurn {
     pub run: Run,
-    /// Mean positions in m at even angles, of each measured body.
+    /// Mean positions in m at even angles from the beginning to the end of a turn, of each measured body.
     positions: Vec<Vec<f64>>,
 }
 
@@ -38,9 +38,11 @@ impl TurnModel<'_> {
         let mut run = run(machine, self.rung, &Course { samples, ..self.course })?;
         let turns = run.turns.len() as f64;
         let mean = |body: usize| {
-            let mut mean = vec![0.0; samples];
+            let mut mean = vec![0.0; samples + 1];
             for turn in &run.turns {
-                mean.iter_mut().zip(&turn.samples).for_each(|(m, s)| *m += s.positions[body] / turns);
+                // A turn of a pattern of several does not end where it began.
+                let positions = turn.samples.iter().map(|s| s.positions[body]).chain([turn.end[body]]);
+                mean.iter_mut().zip(positions).for_each(|(m, x)| *m += x / turns);
             }
             mean
         };

@@ -66,8 +66,10 @@ const SCALED: Concern = At(&[
 ]);
 
 /// Every code of a doubt.
-pub const CONCERNS: [(&str, Concern); 80] = [
+pub const CONCERNS: [(&str, Concern); 81] = [
     ("rig-left-out", Nothing(MODEL)),
+    // What most drawn records lack.
+    ("plan-unanswered", At(&["decays/*/answers", "drops/*/answers"])),
     ("drill-left-out", At(&["fit/keys/*/estimate"])),
     ("decay-unexplained", MODE),
     ("decay-changes", MODE),

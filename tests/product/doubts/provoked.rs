@@ -25,7 +25,7 @@ fn case(name: &'static str, arguments: &str, file: Option<&Path>, codes: &'stati
 
 /// Records that provoke doubts of all analyses but fits, written to a folder.
 pub fn cases(folder: &Path) -> Vec<Case> {
-    let all = [readers, decays, functions, impacts, pulses, restitutions, spectra, sweeps, drills];
+    let all = [readers, decays, functions, impacts, pulses, restitutions, spectra, sweeps, drills, plans];
     let each = all.into_iter().enumerate().flat_map(|(i, cases)| {
         let own = folder.join(i.to_string());
         std::fs::create_dir(&own).unwrap();
@@ -283,6 +283,14 @@ fn restitutions(_: &Path) -> Vec<Case> {
             &["drop-flights-grow"],
         ),
     ]
+}
+
+/// A plan of a decay below its noise.
+fn plans(folder: &Path) -> Vec<Case> {
+    let text = "[instrument]\nrate = 1000\nduration = 2\nnoise = 1\nrehearsals = 5\n\n[[decay]]\nmodes = [{ frequency = 25, zeta = 0.05, amplitude = 0.2 }]\n";
+    let path = folder.join("plan.toml");
+    std::fs::write(&path, text).unwrap();
+    vec![case("a planned decay below the noise", "plan", Some(&path), &["plan-unanswered"])]
 }
 
 fn spectra(folder: &Path) -> Vec<Case> {

@@ -7,13 +7,15 @@ use vibro_record::Result;
 /// Instants of a known motion to a sample of the record. Turns of a record begin anywhere between two
 /// samples, so that its average has them all.
 const INSTANTS: usize = 4;
+/// Most instants at which a motion is to be known: a fiftieth of a degree between two of them.
+const MOST: usize = 20_000;
 /// Standard deviations at which the scatter of the impacts' phase ends.
 const FAR: f64 = 5.0;
 
 impl Body {
     /// Even instants of a turn at which [`Body::shown`] is to know the motion.
     pub fn instants(&self) -> usize {
-        INSTANTS * self.samples()
+        (INSTANTS * self.samples()).min(MOST)
     }
 
     /// Samples of a turn of the record.
@@ -22,7 +24,8 @@ impl Body {
     }
 
     /// Mean velocity (m/s) at the phases of the average if the body moved through these positions (m), at
-    /// even instants of a turn, the first of them `ahead` turns before the pulse of the crank.
+    /// even instants from the beginning of a turn, `ahead` turns before the pulse of the crank, to its end.
+    /// The end need not be where the turn began: a mean over turns may drift.
     ///
     /// The velocity is sampled, smoothed and averaged like the record. Impacts whose phase scatters from turn
     /// to turn blur the average; as many turns as were measured show all of that scatter.
@@ -30,14 +33,15 @@ impl Body {
     /// # Errors
     /// If the turn is too short for the smoothing.
     pub fn shown(&self, positions: &[f64], ahead: f64) -> Result<Vec<f64>> {
-        let (n, all) = (self.samples(), self.instants());
+        let (n, all) = (self.samples(), INSTANTS * self.samples());
+        let last = positions.len().saturating_sub(2);
         let position = |i: usize| {
-            let at = (i % all) as f64 / all as f64 * positions.len() as f64;
-            let (k, part) = (at as usize, at.fract());
-            positions[k] + part * (positions[(k + 1) % positions.len()] - positions[k])
+            let at = i as f64 / all as f64 * (last + 1) as f64;
+            let k = (at as usize).min(last);
+            positions[k] + (at - k as f64) * (positions[k + 1] - positions[k])
         };
         // Means between two instants: an impact between them is exact.
-        let velocity = |i: usize| (position(i + 1) - position(i)) * all as f64 * self.speed[0];
+        let velocity = |i: usize| (position(i % all + 1) - position(i % all)) * all as f64 * self.speed[0];
         let mut mean = vec![0.0; self.phase.len()];
         for first in 0..INSTANTS {
             // Three turns, so that the smoothing of the middle one sees its neighbours.
@@ -96,10 +100,16 @@ mod tests {
         };
         // The instants of another record: they need not be those of this one.
         let all = body.instants() + 7;
-        let positions: Vec<f64> = (0..all).map(|i| (TAU * i as f64 / all as f64).sin()).collect();
+        // A mean of turns drifts by what the last of them is ahead of the first.
+        let drift = 2.0;
+        let position = |i: usize| {
+            let part = i as f64 / all as f64;
+            (TAU * part).sin() + drift * part
+        };
+        let positions: Vec<f64> = (0..=all).map(position).collect();
         let shown = body.shown(&positions, 0.3).unwrap();
         for (phase, v) in body.phase.iter().zip(&shown) {
-            let expected = TAU * 45.0 * (TAU * (phase + 0.3)).cos();
+            let expected = 45.0 * (TAU * (TAU * (phase + 0.3)).cos() + drift);
             // The slope of straight lines between 9000 positions errs by half the angle between two of them.
             assert!((v - expected).abs() < TAU * 45.0 * 0.5 * TAU / all as f64, "{phase}: {v} {expected}");
         }

@@ -3,9 +3,12 @@
 use super::damped::{Damped, SineGroup};
 use super::mode;
 use super::sines::{ENOUGH, range};
-use crate::expected::{Expected, Recorder};
+use super::{DecayMode, DecayOptions, decay};
+use crate::expected::{DrawnNoise, Expected, Heard, Recorder};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
+use vibro_math::Noise;
+use vibro_record::units::Unit;
 use vibro_record::{Error, Result, sort_by_number};
 
 /// A mode as it is guessed before the test.
@@ -32,7 +35,9 @@ pub fn expected(modes: &[GuessedMode], recorder: &Recorder, unit: &'static str) 
     let strongest = strongest.ok_or_else(|| Error::usage("a decay without a mode", "one mode or more"))?;
     if let Some(high) = modes.iter().find(|mode| mode.frequency > 0.5 * recorder.rate) {
         let found = format!("a mode at {} Hz, sampled at {} Hz", high.frequency, recorder.rate);
-        return Err(Error::usage(found, "a sampling rate above twice the frequency").setting("rate"));
+        return Err(
+            Error::usage(found, "a sampling rate above twice the frequency, both in Hz").setting("rate")
+        );
     }
     recorder.holds(modes.iter().map(|mode| mode.amplitude).sum())?;
     // Samples behind the sixth time constant of the strongest mode are not used.
@@ -71,4 +76,64 @@ pub fn expected(modes: &[GuessedMode], recorder: &Recorder, unit: &'static str) 
         found.tie(&group.fit, &names);
     }
     Ok(found)
+}
+
+/// Largest relative distance of a found mode from the planned one.
+const NEAR: f64 = 0.05;
+
+/// Draws records of these modes, released behind a tenth of silence, and measures them by [`super::decay`].
+///
+/// # Errors
+/// As that.
+pub fn rehearse(
+    modes: &[GuessedMode],
+    recorder: &Recorder,
+    unit: Unit,
+) -> impl Fn(&mut Noise) -> Result<Heard> + use<> {
+    let mut modes = modes.to_vec();
+    sort_by_number(&mut modes, |mode| mode.frequency);
+    let before = recorder.samples() / 10;
+    let rate = recorder.rate;
+    let gains: Vec<f64> = modes
+        .iter()
+        .map(|mode| recorder.low_pass.as_ref().map_or(1.0, |filter| filter.gain(mode.frequency)))
+        .collect();
+    let value = |i: usize| {
+        let t = (i as f64 - before as f64) / rate;
+        let motion = |(mode, gain): (&GuessedMode, &f64)| {
+            let omega = TAU * mode.frequency;
+            let decayed = gain * mode.amplitude * (-mode.zeta * omega * t).exp();
+            decayed * (omega * (1.0 - mode.zeta * mode.zeta).sqrt() * t).cos()
+        };
+        if i < before { 0.0 } else { modes.iter().zip(&gains).map(motion).sum() }
+    };
+    let truth: Vec<f64> = (0..before + recorder.samples()).map(value).collect();
+    let release = before as f64 / rate;
+    let recorder = recorder.clone();
+    move |noise| {
+        let drawn = DrawnNoise::of(&recorder, truth.len());
+        let found = decay(&drawn.record(truth.clone(), unit.clone(), noise), &DecayOptions::default())?;
+        let mut left: Vec<&DecayMode> = found.modes.iter().collect();
+        let mut answers = Vec::new();
+        for (k, mode) in modes.iter().enumerate() {
+            let off = |found: &DecayMode| (found.frequency.value - mode.frequency).abs();
+            // A found mode answers for the planned one that is nearest to it.
+            let nearest = |found: &DecayMode| {
+                modes.iter().all(|other| off(found) <= (found.frequency.value - other.frequency).abs())
+            };
+            let place = (0..left.len())
+                .filter(|i| off(left[*i]) < NEAR * mode.frequency && nearest(left[*i]))
+                .min_by(|a, b| off(left[*a]).total_cmp(&off(left[*b])));
+            let Some(own) = place.map(|place| left.remove(place)) else { continue };
+            // The part that is fitted may begin a few samples beside the release.
+            let late = TAU * own.frequency.value * own.zeta.value * (found.start - release);
+            let mut amplitude = own.amplitude.clone();
+            amplitude.value *= late.exp();
+            let of = if modes.len() > 1 { format!(" {}", k + 1) } else { String::new() };
+            answers.push((format!("frequency{of}"), own.frequency.clone()));
+            answers.push((format!("zeta{of}"), own.zeta.clone()));
+            answers.push((format!("amplitude{of}"), amplitude));
+        }
+        Ok((answers, found.findings))
+    }
 }

@@ -2,9 +2,11 @@
 
 use super::faults::State;
 use super::parabola::Parabola;
-use super::{Beam, DrillOptions};
+use super::{Beam, DrillOptions, Edge, Slices, drill};
 use crate::Estimate;
-use crate::expected::{Expected, Recorder};
+use crate::expected::{DrawnNoise, Expected, Heard, Recorder};
+use vibro_math::Noise;
+use vibro_record::units::Unit;
 use vibro_record::{Error, Result};
 
 /// Blows as they are guessed before the test.
@@ -34,6 +36,16 @@ pub struct GuessedBlows {
     pub fit: Option<f64>,
 }
 
+impl GuessedBlows {
+    fn options(&self) -> DrillOptions {
+        let mut options = DrillOptions::new(self.sensitivity, self.beam, 1, Edge::Rising);
+        options.contact = self.contact.unwrap_or(options.contact);
+        options.fit = self.fit.unwrap_or(options.fit);
+        (options.mass, options.struck_mass) = (self.mass, self.struck_mass);
+        options
+    }
+}
+
 /// Coefficients of the samples of a parabola in its value at the middle of the contact, the nearest sample
 /// first.
 fn weights(options: &DrillOptions, rate: f64) -> Option<Vec<f64>> {
@@ -55,9 +67,7 @@ fn weights(options: &DrillOptions, rate: f64) -> Option<Vec<f64>> {
 /// # Errors
 /// If the record holds fewer than two blows, or a fit has too few samples.
 pub fn expected(guess: &GuessedBlows, recorder: &Recorder) -> Result<Expected> {
-    let mut options = DrillOptions::new(guess.sensitivity, guess.beam, 1, super::Edge::Rising);
-    options.contact = guess.contact.unwrap_or(options.contact);
-    options.fit = guess.fit.unwrap_or(options.fit);
+    let options = guess.options();
     let n = (guess.rate * recorder.duration).floor();
     if n < 2.0 {
         let why = format!("{} s hold fewer than two blows", recorder.duration);
@@ -100,4 +110,48 @@ pub fn expected(guess: &GuessedBlows, recorder: &Recorder) -> Result<Expected> {
         found.put("energy_given", &estimate(given, of_noise, 2.0 * given, 2.0 * given, "J", mean));
     }
     Ok(found)
+}
+
+/// Turns of the crank at the first sample of a drawn record, and from there to its pulse; part of a turn that
+/// the pulse lasts.
+const BEGIN: f64 = 0.4;
+const TO_PULSE: f64 = 0.3;
+const PULSE: f64 = 0.1;
+
+/// Draws records of the blows beside pulses of the crank, and measures them by [`super::drill`]. Between two
+/// blows the velocity is a parabola without a mean.
+///
+/// # Errors
+/// As that.
+pub fn rehearse(guess: &GuessedBlows, recorder: &Recorder) -> impl Fn(&mut Noise) -> Result<Heard> + use<> {
+    let (guess, recorder) = (guess.clone(), recorder.clone());
+    let n = recorder.samples();
+    let turn = move |i: usize| guess.rate * i as f64 / recorder.rate + BEGIN;
+    let high = |i: usize| (turn(i) + TO_PULSE).fract() < PULSE;
+    let pulses: Vec<f64> = (0..n).map(|i| if high(i) { 5.0 } else { 0.0 }).collect();
+    let unit = guess.sensitivity * guess.beam.factor;
+    move |noise| {
+        let strength: Vec<f64> =
+            (0..turn(n) as usize + 2).map(|_| 1.0 + guess.scatter * noise.normal()).collect();
+        let value = |i: usize| {
+            let (k, s) = (turn(i) as usize, turn(i).fract());
+            let (from, to) = (guess.after * strength[k], guess.before * strength[k + 1]);
+            let bend = 3.0 * (from + to);
+            (from + s * (to - from - bend + s * bend)) / unit
+        };
+        let volts = Unit::parse("V").ok_or_else(|| Error::refused("the unit of a record"))?;
+        let drawn = DrawnNoise::of(&recorder, n);
+        let record = drawn.record((0..n).map(value).collect(), volts, noise);
+        let channels = vec![&record.values[..], &pulses[..]];
+        let found = drill(&Slices { rate: recorder.rate, channels }, &guess.options(), None)?;
+        let all = [
+            ("before", &found.before),
+            ("after", &found.after),
+            ("restitution", &found.restitution),
+            ("energy", &found.energy),
+            ("energy_given", &found.energy_given),
+        ];
+        let known = all.into_iter().filter_map(|(name, estimate)| Some((name.to_owned(), estimate.clone()?)));
+        Ok((known.collect(), found.findings))
+    }
 }

@@ -184,6 +184,9 @@ pub struct DrillOptions {
 }
 
 impl DrillOptions {
+    /// Length of the fits in s where none is stated.
+    pub const FIT: f64 = 0.5e-3;
+
     /// Lengths of a contact and of a fit beside it, in samples.
     pub(super) fn lengths(&self, rate: f64) -> (f64, f64) {
         (self.contact * rate, self.fit * rate)
@@ -201,7 +204,7 @@ impl DrillOptions {
             mass: None,
             struck_mass: None,
             contact: 0.2e-3,
-            fit: 0.5e-3,
+            fit: DrillOptions::FIT,
             longest_dropout: 2e-3,
             delay: 0.0,
             points: 720,

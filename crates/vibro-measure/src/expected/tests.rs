@@ -1,16 +1,13 @@
 //! Predictions against records that are drawn through the instrument and measured by the estimators.
 
 use super::*;
-use crate::decay::{self, DecayOptions, GuessedMode};
-use crate::drill::{self, AngleOrigin, Beam, DrillOptions, Edge, GuessedBlows, Slices};
-use crate::pulse::{self, GuessedPulse, Instrument, PulseOptions};
-use crate::restitution::{self, Drop, GuessedDrops, Measured, Train};
-use nalgebra::{DMatrix, DVector};
+use crate::decay::{self, GuessedMode};
+use crate::drill::{self, AngleOrigin, Beam, GuessedBlows};
+use crate::pulse::{self, GuessedPulse};
+use crate::restitution::{self, GuessedDrops};
 use std::collections::BTreeMap;
-use std::f64::consts::TAU;
 use vibro_math::Noise;
 use vibro_record::units::Unit;
-use vibro_record::{Axis, Meta, Trace};
 
 /// Errors of the answers of many records, over the expected uncertainty.
 struct Held<'a> {
@@ -54,88 +51,27 @@ impl<'a> Held<'a> {
 const MANY: u64 = 200;
 const FEW: u64 = 4;
 
-/// Draws records through an instrument.
-struct Drawn<'a> {
-    recorder: &'a Recorder,
-    /// Root of the covariance of the noise that a low-pass has coloured; `None` for white noise.
-    coloured: Option<DMatrix<f64>>,
-}
-
-impl<'a> Drawn<'a> {
-    fn through(recorder: &'a Recorder, n: usize) -> Drawn<'a> {
-        let covariance = || DMatrix::from_fn(n, n, |i, j| recorder.covariance(i.abs_diff(j)));
-        let root = || covariance().cholesky().unwrap().unpack();
-        Drawn { recorder, coloured: (!recorder.is_white()).then(root) }
-    }
-
-    /// A record with noise, rounded to the steps of the converter. White noise of the covariance is that of
-    /// rounding, too: it is not added twice.
-    fn record(&self, truth: &Trace, noise: &mut Noise) -> Trace {
-        let Recorder { rate, step, .. } = *self.recorder;
-        let white = 0.5 * rate * self.recorder.spectrum(0.0) - (step / 12f64.sqrt()).powi(2);
-        let mut trace = truth.clone();
-        let n = trace.values.len();
-        let normal: Vec<f64> = (0..n).map(|_| noise.normal()).collect();
-        let added = match &self.coloured {
-            Some(root) => root.view((0, 0), (n, n)) * DVector::from_vec(normal),
-            None => DVector::from_vec(normal) * white.max(0.0).sqrt(),
-        };
-        for (value, added) in trace.values.iter_mut().zip(&added) {
-            *value += added;
-            if step > 0.0 {
-                *value = (*value / step).round() * step;
-            }
-        }
-        trace
-    }
-}
-
-fn trace(rate: f64, unit: &str, values: Vec<f64>) -> Trace {
-    let meta = Meta::new("drawn", Unit::parse(unit).unwrap());
-    Trace { meta, axis: Axis::time(0.0, 1.0 / rate, values.len()), values }
-}
-
-/// Draws decays of these modes (frequency in Hz, ζ, amplitude), released after a tenth of the record.
-fn decays(what: &str, modes: &[(f64, f64, f64)], recorder: &Recorder, draws: u64) {
-    let guessed =
-        modes.iter().map(|&(frequency, zeta, amplitude)| GuessedMode { frequency, zeta, amplitude });
-    let expected = decay::expected(&guessed.collect::<Vec<_>>(), recorder, "m").unwrap();
-    let mut held = Held::to(&expected);
-    let before = recorder.samples() / 10;
-    let value = |i: usize| {
-        let t = (i as f64 - before as f64) / recorder.rate;
-        let motion = |&(frequency, zeta, amplitude): &(f64, f64, f64)| {
-            let omega = TAU * frequency;
-            amplitude * (-zeta * omega * t).exp() * (omega * (1.0 - zeta * zeta).sqrt() * t).cos()
-        };
-        if i < before { 0.0 } else { modes.iter().map(motion).sum() }
-    };
-    let (n, release) = (before + recorder.samples(), before as f64 / recorder.rate);
-    let truth = trace(recorder.rate, "m", (0..n).map(value).collect());
-    let drawn = Drawn::through(recorder, n);
+/// Holds what is expected to records that are drawn and measured.
+fn hold(what: &str, expected: &Expected, draws: u64, draw: impl Fn(&mut Noise) -> Result<Heard>) {
+    let mut held = Held::to(expected);
     for seed in 0..draws {
-        let found = decay::decay(&drawn.record(&truth, &mut Noise::new(seed)), &DecayOptions::default());
-        let (start, found) = found.map(|found| (found.start, found.modes)).unwrap_or_default();
-        for (k, (frequency, ..)) in modes.iter().enumerate() {
-            let near = |mode: &&decay::DecayMode| (mode.frequency.value / frequency - 1.0).abs() < 0.05;
-            let mode = found.iter().filter(near).min_by(|a, b| {
-                let off = |mode: &decay::DecayMode| (mode.frequency.value - frequency).abs();
-                off(a).total_cmp(&off(b))
-            });
-            let ending = if modes.len() > 1 { format!(" {}", k + 1) } else { String::new() };
-            let mut add = |name: &str, of: fn(&decay::DecayMode) -> f64| {
-                held.add(&format!("{name}{ending}"), mode.map_or(f64::NAN, of));
-            };
-            add("frequency", |mode| mode.frequency.value);
-            add("zeta", |mode| mode.zeta.value);
-            // The part that is fitted may begin a few samples beside the release.
-            let late =
-                |mode: &decay::DecayMode| TAU * mode.frequency.value * mode.zeta.value * (start - release);
-            let value = mode.map_or(f64::NAN, |mode| mode.amplitude.value * late(mode).exp());
-            held.add(&format!("amplitude{ending}"), value);
+        let (answers, _) = draw(&mut Noise::new(seed)).unwrap_or_default();
+        for (name, _) in &expected.answers {
+            // An answer in doubt, without uncertainty, is none.
+            let own = answers.iter().find(|(known, answer)| known == name && answer.std.is_some());
+            held.add(name, own.map_or(f64::NAN, |(_, answer)| answer.value));
         }
     }
     held.check(what, draws);
+}
+
+/// Draws decays of these modes (frequency in Hz, ζ, amplitude).
+fn decays(what: &str, modes: &[(f64, f64, f64)], recorder: &Recorder, draws: u64) {
+    let guessed =
+        modes.iter().map(|&(frequency, zeta, amplitude)| GuessedMode { frequency, zeta, amplitude });
+    let guessed: Vec<GuessedMode> = guessed.collect();
+    let expected = decay::expected(&guessed, recorder, "m").unwrap();
+    hold(what, &expected, draws, decay::rehearse(&guessed, recorder, Unit::parse("m").unwrap()));
 }
 
 fn all_decays(draws: u64) {
@@ -146,32 +82,9 @@ fn all_decays(draws: u64) {
     decays("decay of two modes", &[(25.0, 0.01, 1.0), (27.0, 0.012, 0.6)], &recorder, draws);
 }
 
-/// Draws pulses with onsets at any part of a sampling interval.
 fn pulses(what: &str, guess: &GuessedPulse, recorder: &Recorder, draws: u64) {
     let expected = pulse::expected(guess, recorder).unwrap();
-    let mut held = Held::to(&expected);
-    let instrument = recorder.low_pass.clone().map_or(Instrument::Flat, Instrument::LowPass);
-    let options = PulseOptions { instrument, mass: guess.mass };
-    let drawn = Drawn::through(recorder, guess.record(recorder, 0.0).unwrap().values.len());
-    for seed in 0..draws {
-        let mut noise = Noise::new(seed);
-        let truth = guess.record(recorder, noise.uniform()).unwrap();
-        let found = pulse::pulse(&drawn.record(&truth, &mut noise), &options).ok();
-        let mut add = |name: &str, of: &dyn Fn(&pulse::PulseResult) -> f64| {
-            held.add(name, found.as_ref().map_or(f64::NAN, of));
-        };
-        let optional = |estimate: &Option<Estimate>| estimate.as_ref().map_or(f64::NAN, |e| e.value);
-        add("xi", &|f| f.xi.value);
-        add("frequency", &|f| f.frequency.value);
-        add("restitution", &|f| f.restitution.value);
-        add("duration", &|f| f.duration.value);
-        add("stiffness", &|f| optional(&f.stiffness));
-        add("damping", &|f| optional(&f.damping));
-        add("initial_velocity", &|f| optional(&f.initial_velocity));
-        add("peak", &|f| optional(&f.peak));
-        add("impulse", &|f| optional(&f.impulse));
-    }
-    held.check(what, draws);
+    hold(what, &expected, draws, pulse::rehearse(guess, recorder));
 }
 
 /// A contact of 0.23 ms with 6.3 km/s² at the peak, and a recorder that takes 23 samples of it.
@@ -199,42 +112,8 @@ fn pulses_in_filtered_noise(draws: u64) {
     pulses("pulse in filtered noise", &guess, &recorder, draws);
 }
 
-/// Draws series of drops; without a stated contact time each series has one of 0 to 1 ms.
 fn drops(what: &str, guess: &GuessedDrops, draws: u64) {
-    let expected = restitution::expected(guess).unwrap();
-    let mut held = Held::to(&expected);
-    let [height, height_std] = guess.height.unwrap();
-    let full = Drop { height, ..Drop::default() }.full_flight().unwrap();
-    for seed in 0..draws {
-        let mut noise = Noise::new(7000 + seed);
-        for _ in 0..16 {
-            noise.normal();
-        }
-        let contact = if guess.contact_time_std.is_some() { 0.0 } else { noise.between(0.0, 1e-3) };
-        let mut train = || {
-            let (mut flight, mut time, mut times) = (full, 0.0, vec![guess.onset_std * noise.normal()]);
-            for _ in 1..guess.impacts {
-                flight *= guess.restitution * (guess.scatter * noise.normal()).exp();
-                time += flight + contact;
-                times.push(time + guess.onset_std * noise.normal());
-            }
-            let intervals = times.windows(2).map(|w| w[1] - w[0]).collect();
-            Train { intervals, onset_std: Some(guess.onset_std), ..Train::default() }
-        };
-        let trains: Vec<Train> = (0..guess.drops).map(|_| train()).collect();
-        let height = height + height_std * noise.normal();
-        let drop = Drop { height, height_std: Some(height_std), ..Drop::default() }.beginning(&trains);
-        let contact_time = guess.contact_time_std.map(|_| 0.0);
-        let measured = Measured { drop: Some(drop), trains, contact_time, ..Measured::default() };
-        let found = restitution::restitution(&measured).map(|found| found.by).unwrap_or_default();
-        for (method, name) in
-            [("drop", "restitution_by_drop"), ("flight times", "restitution_by_flight_times")]
-        {
-            let own = found.iter().find(|way| way.method == method);
-            held.add(name, own.map_or(f64::NAN, |way| way.restitution.value));
-        }
-    }
-    held.check(what, draws);
+    hold(what, &restitution::expected(guess).unwrap(), draws, restitution::rehearse(guess));
 }
 
 fn all_drops(draws: u64) {
@@ -257,42 +136,9 @@ fn all_drops(draws: u64) {
     );
 }
 
-/// Draws records of blows. Between two blows the velocity is a parabola without a mean.
 fn blows(what: &str, guess: &GuessedBlows, recorder: &Recorder, draws: u64) {
     let expected = drill::expected(guess, recorder).unwrap();
-    let mut held = Held::to(&expected);
-    let n = recorder.samples();
-    let drawn = Drawn::through(recorder, n);
-    let turn = |i: usize| guess.rate * i as f64 / recorder.rate + 0.4;
-    let pulses: Vec<f64> = (0..n).map(|i| if (turn(i) + 0.3).fract() < 0.1 { 5.0 } else { 0.0 }).collect();
-    let unit = guess.sensitivity * guess.beam.factor;
-    for seed in 0..draws {
-        let mut noise = Noise::new(9000 + seed);
-        for _ in 0..16 {
-            noise.normal();
-        }
-        let strength: Vec<f64> =
-            (0..turn(n) as usize + 2).map(|_| 1.0 + guess.scatter * noise.normal()).collect();
-        let value = |i: usize| {
-            let (k, s) = (turn(i) as usize, turn(i).fract());
-            let (from, to) = (guess.after * strength[k], guess.before * strength[k + 1]);
-            let bend = 3.0 * (from + to);
-            (from + s * (to - from - bend + s * bend)) / unit
-        };
-        let truth = trace(recorder.rate, "V", (0..n).map(value).collect());
-        let record = drawn.record(&truth, &mut noise);
-        let mut options = DrillOptions::new(guess.sensitivity, guess.beam, 1, Edge::Rising);
-        (options.mass, options.struck_mass) = (guess.mass, guess.struck_mass);
-        let channels = vec![&record.values[..], &pulses[..]];
-        let found = drill::drill(&Slices { rate: recorder.rate, channels }, &options, None).unwrap();
-        let optional = |estimate: &Option<Estimate>| estimate.as_ref().map_or(f64::NAN, |e| e.value);
-        held.add("before", optional(&found.before));
-        held.add("after", optional(&found.after));
-        held.add("restitution", optional(&found.restitution));
-        held.add("energy", optional(&found.energy));
-        held.add("energy_given", optional(&found.energy_given));
-    }
-    held.check(what, draws);
+    hold(what, &expected, draws, drill::rehearse(guess, recorder));
 }
 
 fn all_blows(draws: u64) {

@@ -3,8 +3,8 @@
 use super::fit::{FittedPulse, Samples};
 use super::located::{Located, locate};
 use super::normalised::Normalised;
-use super::{ContactModel, Instrument, KelvinVoigt, PulseOptions, samples_of, spring_and_damper};
-use crate::expected::{Expected, Recorder};
+use super::{ContactModel, Instrument, KelvinVoigt, PulseOptions, pulse, samples_of, spring_and_damper};
+use crate::expected::{DrawnNoise, Expected, Heard, Recorder};
 use crate::mean::together;
 use nalgebra::DMatrix;
 use vibro_math::Noise;
@@ -151,6 +151,38 @@ fn at(guess: &GuessedPulse, recorder: &Recorder, phase: f64, drawn: Option<Noise
     let names = ["onset", "baseline", "initial_velocity", "xi", "frequency"];
     found.tie(&fitted.fit, &names.into_iter().map(str::to_owned).enumerate().collect::<Vec<_>>());
     Ok(found)
+}
+
+/// Draws records of the pulse with onsets at any part of a sampling interval, and measures them by
+/// [`super::pulse`].
+///
+/// # Errors
+/// As that.
+pub fn rehearse(guess: &GuessedPulse, recorder: &Recorder) -> impl Fn(&mut Noise) -> Result<Heard> + use<> {
+    let (guess, recorder) = (*guess, recorder.clone());
+    let instrument = recorder.low_pass.clone().map_or(Instrument::Flat, Instrument::LowPass);
+    let options = PulseOptions { instrument, mass: guess.mass };
+    move |noise| {
+        let truth = guess.record(&recorder, noise.uniform())?;
+        let drawn = DrawnNoise::of(&recorder, truth.values.len());
+        let found = pulse(&drawn.record(truth.values, truth.meta.unit, noise), &options)?;
+        let fitted = [
+            ("xi", &found.xi),
+            ("frequency", &found.frequency),
+            ("restitution", &found.restitution),
+            ("duration", &found.duration),
+        ];
+        let optional = [
+            ("stiffness", &found.stiffness),
+            ("damping", &found.damping),
+            ("initial_velocity", &found.initial_velocity),
+            ("peak", &found.peak),
+            ("impulse", &found.impulse),
+        ];
+        let optional = optional.into_iter().filter_map(|(name, estimate)| Some((name, estimate.as_ref()?)));
+        let all = fitted.into_iter().chain(optional);
+        Ok((all.map(|(name, estimate)| (name.to_owned(), estimate.clone())).collect(), found.findings))
+    }
 }
 
 /// Caution where the low-pass makes most of the pulse's shape, or all of it.

@@ -3,9 +3,10 @@
 use super::drop::Drop;
 use super::fit::{Flight, FlightNoise, known};
 use super::flights::MANY;
-use super::{LONGEST, STEP};
+use super::{LONGEST, Measured, STEP, Train, restitution};
 use crate::Estimate;
-use crate::expected::Expected;
+use crate::expected::{Expected, Heard};
+use vibro_math::Noise;
 use vibro_record::{Error, Result};
 
 /// Drops as they are guessed before the test.
@@ -106,4 +107,39 @@ pub fn expected(guess: &GuessedDrops) -> Result<Expected> {
         return Err(few.hint("three impacts or more, or the height of the fall").setting("impacts"));
     }
     Ok(found)
+}
+
+/// Draws series of drops, and measures them by [`super::restitution`]. Without a stated contact time each
+/// series has one between 0 and the longest.
+///
+/// # Errors
+/// As that, and if the guess is impossible.
+pub fn rehearse(guess: &GuessedDrops) -> impl Fn(&mut Noise) -> Result<Heard> + use<> {
+    let guess = *guess;
+    move |noise| {
+        let full = guess.flights()?[0] / guess.restitution;
+        let contact = guess.contact_time_std.map_or_else(|| noise.between(0.0, LONGEST), |_| 0.0);
+        let mut train = || {
+            let (mut flight, mut time, mut times) = (full, 0.0, vec![guess.onset_std * noise.normal()]);
+            for _ in 1..guess.impacts {
+                flight *= guess.restitution * (guess.scatter * noise.normal()).exp();
+                time += flight + contact;
+                times.push(time + guess.onset_std * noise.normal());
+            }
+            let intervals = times.windows(2).map(|pair| pair[1] - pair[0]).collect();
+            Train { intervals, onset_std: Some(guess.onset_std), ..Train::default() }
+        };
+        let trains: Vec<Train> = (0..guess.drops.max(1)).map(|_| train()).collect();
+        let drop = guess.fall().map(|fall| {
+            let [height, std] = guess.height.unwrap_or_default();
+            Drop { height: height + std * noise.normal(), ..fall }.beginning(&trains)
+        });
+        let contact_time = guess.contact_time_std.map(|_| 0.0);
+        let contact_time_std = guess.contact_time_std.filter(|std| *std > 0.0);
+        let measured = Measured { drop, trains, contact_time, contact_time_std, ..Measured::default() };
+        let found = restitution(&measured)?;
+        let named = |method: &str| format!("restitution_by_{}", method.replace(' ', "_"));
+        let answers = found.by.iter().map(|way| (named(way.method), way.restitution.clone())).collect();
+        Ok((answers, found.findings))
+    }
 }

@@ -15,7 +15,7 @@ const REFERENCE_DENSITY: f64 = 1.185;
 /// Temperature T₀ in K of the standard reference atmosphere.
 const REFERENCE_TEMPERATURE: f64 = 293.15;
 /// Ratio of the pressures above which the flow is linear.
-const LINEAR_RATIO: f64 = 0.995;
+pub(super) const LINEAR_RATIO: f64 = 0.995;
 /// Choked mass flow of an ideal nozzle of air, over A p₁/√(RT₁): √κ (2/(κ + 1))^{(κ+1)/(2κ−2)}, κ = 1.4.
 const NOZZLE: f64 = 0.684_731_456_377_270_5;
 

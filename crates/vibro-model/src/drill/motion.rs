@@ -1,8 +1,9 @@
 //! Motion of the impact unit from event to event.
 
 use super::chain::{Chain, STUCK};
+use super::flow::FlowRegime;
 use super::machine::{Interface, Machine};
-use super::plant::{GAS, PRESSURE, Plant, SIZE, STRIKER_WORK, Stage, Vector, Watch, halves};
+use super::plant::{GAS, PRESSURE, Plant, SIZE, Stage, Vector, Watch, halves};
 use super::run::Start;
 use super::rungs::Rung;
 use super::turn::{Book, Extremes, Impact, Sample, Turn};
@@ -46,8 +47,8 @@ pub(super) struct Motion {
     time: f64,
     next_step: f64,
     tolerance: Tolerance<SIZE>,
-    /// First touch of each compliant contact: time since the start, and velocities.
-    touched: [(f64, [f64; 2]); 4],
+    /// First touch of each compliant contact: time since the start, velocities, and the step before.
+    touched: [(f64, [f64; 2], f64); 4],
     /// Accepted steps so far, and the most that may be.
     pub steps: usize,
     pub most_steps: usize,
@@ -82,8 +83,8 @@ impl Motion {
         let sealed = m.flow.is_sealed();
         y[PRESSURE] = if sealed { m.cushion.sealed_pressure(volume) } else { m.cushion.ambient };
         y[GAS] = m.cushion.gas(m.cushion.ambient, if sealed { m.cushion.rest_volume() } else { volume });
-        let (way, work) = (2.0 * m.crank.radius, m.striker.mass * speed * speed);
-        let floor = [way, way, way, speed, speed, speed, m.cushion.ambient, y[GAS], work, work, work, work];
+        let way = 2.0 * m.crank.radius;
+        let floor = [way, way, way, speed, speed, speed, m.cushion.ambient, y[GAS]];
         plant.stretch = m.flow.stretch(y[0]);
         plant.flow = m.flow.regime(y[PRESSURE], m.cushion.ambient);
         let mut motion = Motion {
@@ -93,7 +94,7 @@ impl Motion {
             turns: 0,
             time: 0.0,
             tolerance: Tolerance { relative, floor },
-            touched: [(0.0, [0.0; 2]); 4],
+            touched: [(0.0, [0.0; 2], 0.0); 4],
             steps: 0,
             most_steps: usize::MAX,
             turn: Turn::default(),
@@ -116,19 +117,17 @@ impl Motion {
     /// Follows a whole turn; `samples` states at even angles are kept. With `None` impulses, extremes and the
     /// loss by flow are not computed either.
     pub fn turn(&mut self, samples: Option<usize>) -> Result<Turn> {
-        self.y[STRIKER_WORK..].fill(0.0);
         let (before, air) = (self.energies(), self.stored_air());
         self.fly(samples)?;
         let after = self.energies();
         let [kinetic, potential, elastic] = std::array::from_fn(|i| after[i] - before[i]);
         let air = self.stored_air() - air;
-        let [.., piston, seal, contacts] = self.y;
         let mut turn = self.take_turn();
-        let impacts = turn.book.impacts;
-        let flow = turn.book.flow;
+        let Book { piston, impacts, contacts, seal, flow, .. } = turn.book;
         let residual = piston - kinetic - potential - elastic - air - impacts - contacts - seal - flow;
         turn.book =
             Book { piston, kinetic, potential, elastic, air, impacts, contacts, seal, flow, residual };
+        [turn.end, _] = halves(&self.y);
         self.turns += 1;
         self.time = 0.0;
         Ok(turn)
@@ -161,17 +160,17 @@ impl Motion {
         let period = self.plant.machine.crank.period();
         for _ in 0..MOST_EVENTS {
             let (y, plant) = (self.y, &self.plant);
-            let rate = |t: f64, y: &Vector| plant.rate(t, y);
+            let rate = |t: f64, y: &Vector| plant.rate(plant.machine.crank.at(t), y);
             let mut integrator =
                 Integrator::<Dop853, SIZE>::new(rate, self.time, y, self.next_step, self.tolerance);
             let mut event = None;
             while event.is_none() && self.time < period {
-                let step = integrator.step(|t, y| self.plant.rate(t, y), period)?;
+                let crank = self.plant.machine.crank;
+                let step = integrator.forced_step(|t| crank.at(t), |x, y| self.plant.rate(x, y), period)?;
                 self.steps += 1;
                 if self.steps > self.most_steps {
                     return Err(too_many("integration steps", self.most_steps, self.now()));
                 }
-                self.next_step = integrator.next_step();
                 event = self.first_event(&step);
                 let duration = event.map_or(step.duration, |(t, _)| t);
                 if let Some(samples) = samples {
@@ -179,17 +178,17 @@ impl Motion {
                 }
                 self.y = step.at(duration);
                 self.time = if event.is_none() { integrator.time() } else { step.start + duration };
+                let rate = integrator.rate();
+                let bound = self.plant.step_bound(&self.y, rate, self.tolerance.relative);
+                integrator.limit_step(bound);
+                self.next_step = integrator.next_step();
                 if self.plant.volume(self.time, &self.y) <= self.plant.machine.cushion.dead_volume {
                     let now = significant(self.now(), 6);
                     return Err(Error::refused(format!("at {now} s the striker strikes the driving piston"))
                         .hint("check leakage and vents: the air cushion must keep them apart"));
                 }
             }
-            let Some((duration, watch)) = event else { return Ok(()) };
-            if let Watch::Flows(_) = watch {
-                // The slope of the flow is steep where it begins.
-                self.next_step = self.next_step.min(20.0 * duration.max(1e-6 * period));
-            }
+            let Some((_, watch)) = event else { return Ok(()) };
             self.apply(watch)?;
         }
         Err(too_many("events in a turn", MOST_EVENTS, self.now()))
@@ -243,7 +242,12 @@ impl Motion {
             let turn = &mut self.turn;
             turn.handle += weight * duration * handle;
             turn.damper += weight * duration * damper;
-            turn.book.flow += weight * duration * self.plant.flow_loss(step.start + node * duration, &y);
+            let book = &mut turn.book;
+            let sums = [&mut book.piston, &mut book.seal, &mut book.contacts, &mut book.flow];
+            let crank = self.plant.machine.crank.at(step.start + node * duration);
+            for (sum, power) in sums.into_iter().zip(self.plant.powers(crank, &y)) {
+                *sum += weight * duration * power;
+            }
             let here = Extremes { handle: [handle; 2], damper: [damper; 2], pressure: [y[PRESSURE]; 2] };
             turn.extremes = turn.extremes.with(&here);
         }
@@ -275,13 +279,16 @@ impl Motion {
         match watch {
             Watch::Meets(k) if self.plant.laws[k].is_none() => return self.collide(),
             Watch::Meets(k) => {
-                self.touched[k] = (self.now(), both(k, &self.y));
+                self.touched[k] = (self.now(), both(k, &self.y), self.next_step);
                 self.plant.stages[k] = Stage::Pushing;
-                self.next_step = self.next_step.min(0.05 * self.plant.contact_time(k, &self.y));
+                self.next_step =
+                    self.next_step.min(self.plant.first_step(k, &self.y, self.tolerance.relative));
             }
             Watch::Separates(k) => {
                 self.plant.stages[k] = Stage::Apart;
-                let ((time, before), after) = (self.touched[k], both(k, &self.y));
+                let ((time, before, step), after) = (self.touched[k], both(k, &self.y));
+                // Without the contact the motion is as smooth as before it.
+                self.next_step = self.next_step.max(step);
                 let square = |v: &[f64; 2]| (v[0] - v[1]).powi(2);
                 let lost = 0.5 * (square(&before) - square(&after)) / self.plant.chain.compliance(k);
                 let duration = self.now() - time;
@@ -299,7 +306,14 @@ impl Motion {
                 self.plant.slip = direction;
                 return self.settle(Some(STUCK));
             }
-            Watch::Flows(regime) => self.plant.flow = regime,
+            Watch::Flows(regime) => {
+                let from = std::mem::replace(&mut self.plant.flow, regime);
+                if [from, regime].contains(&FlowRegime::Even) {
+                    // The flow is steep beside the regime of even pressures, and as good as linear in it.
+                    let (step, old) = (self.plant.even_step(self.time, &self.y), self.next_step);
+                    self.next_step = if regime == FlowRegime::Even { old.max(step) } else { old.min(step) };
+                }
+            }
             Watch::Vents(stretch) => self.plant.stretch = stretch,
         }
         self.settle(None)

@@ -4,31 +4,32 @@
 //! borders of a stage are linear too, and their first crossing in a step's polynomial cannot be missed.
 
 use super::chain::{CONSTRAINTS, Chain, ROWS, Restraint, STUCK};
-use super::flow::{Flow, FlowRegime, GAS_CONSTANT};
+use super::flow::{Flow, FlowRegime, GAS_CONSTANT, LINEAR_RATIO};
 use super::machine::{Interface, Machine};
 use super::motion::{NO_SPEED, PARTING};
 use super::rungs::Rung;
 use crate::law::{Law, LawDamping};
 
 /// Size of the state: positions and velocities of striker, intermediate piston and bit, pressure and mass of
-/// the air, and four energies.
-pub(super) const SIZE: usize = 12;
+/// the air.
+pub(super) const SIZE: usize = 8;
 /// State: see [`SIZE`].
 pub(super) type Vector = [f64; SIZE];
 /// Pressure in Pa.
 pub(super) const PRESSURE: usize = 6;
 /// Mass of the air in kg.
 pub(super) const GAS: usize = 7;
-/// Work in J of the air on the striker, against ambient pressure, since the turn's start.
-pub(super) const STRIKER_WORK: usize = 8;
-/// Work in J of the piston on the air, against ambient pressure.
-pub(super) const PISTON_WORK: usize = 9;
-/// Energy in J lost in the seal.
-pub(super) const SEAL_LOSS: usize = 10;
-/// Energy in J lost in compliant contacts.
-pub(super) const CONTACT_LOSS: usize = 11;
 /// Pull in N, and relative pull of a curved contact, that counts as none: a billionth of a weight of 1 N.
 const NO_FORCE: f64 = 1e-9;
+/// Part of the time to a branch point of a force that a step may take, multiple of the time since one that
+/// the first step takes, and factor on the tolerance in the first step into a curved contact. Larger steps
+/// are found to be rejected.
+const BEFORE_BRANCH: f64 = 0.6;
+const BEHIND_BRANCH: f64 = 3.0;
+const FIRST_ERROR: f64 = 5e4;
+/// Largest step times natural frequency (rad/s) of a contact. Steps at the limit of stability, at about 6,
+/// have an end within the tolerance, but a dense output that is a thousand times worse.
+const STABLE: f64 = 5.0;
 /// Number of components that forces depend on.
 const LINEAR: usize = 7;
 
@@ -291,12 +292,48 @@ impl Plant {
         }
     }
 
-    /// Time scale T in s of a contact that begins: with the approach speed V, V² = k(VT)^{n+1}/M.
-    pub fn contact_time(&self, k: usize, y: &Vector) -> f64 {
+    /// Bound in s on a step from here at the present rates: most of the time to a branch point of a force,
+    /// where a flow ends or a curved contact parts; within the stability of a contact that stays.
+    pub fn step_bound(&self, y: &Vector, rate: &Vector, tolerance: f64) -> f64 {
+        let time = |left: f64, speed: f64| if speed > 0.0 { left / speed } else { f64::INFINITY };
+        let over = y[PRESSURE] - self.machine.cushion.ambient;
+        let even = match self.flow {
+            _ if self.conductance == [0.0; 2] => f64::INFINITY,
+            FlowRegime::Out => time(over, -rate[PRESSURE]),
+            FlowRegime::In => time(-over, rate[PRESSURE]),
+            _ => f64::INFINITY,
+        };
+        let pushing = (0..4).filter(|k| self.stages[*k] == Stage::Pushing);
+        let contact = pushing.filter_map(|k| {
+            let law = self.laws[k]?;
+            let [depth, approach] = self.indentation(k, y);
+            let slope = law.exponent * law.stiffness * depth.max(0.0).powf(law.exponent - 1.0);
+            let stable = STABLE / (slope * self.chain.compliance(k)).sqrt();
+            let branch = if law.is_linear() { f64::INFINITY } else { BEFORE_BRANCH * time(depth, -approach) };
+            // What is left of a force at its end is within the tolerance.
+            Some(stable.min(branch).max(self.first_step(k, y, tolerance)))
+        });
+        contact.fold(BEFORE_BRANCH * even, f64::min)
+    }
+
+    /// Step in s for a contact that begins, or ends. With its speed V it has a time scale T,
+    /// V² = k(VT)^{n+1}/M; a force that begins with the power n of the time gives an error with the power
+    /// n + 1.
+    pub fn first_step(&self, k: usize, y: &Vector, tolerance: f64) -> f64 {
         let Some(law) = self.laws[k] else { return f64::INFINITY };
-        let speed = self.indentation(k, y)[1].max(NO_SPEED);
+        let speed = self.indentation(k, y)[1].abs().max(NO_SPEED);
         let rise = law.exponent + 1.0;
-        (self.chain.compliance(k) * law.stiffness).powf(-1.0 / rise) * speed.powf((2.0 - rise) / rise)
+        let time =
+            (self.chain.compliance(k) * law.stiffness).powf(-1.0 / rise) * speed.powf((2.0 - rise) / rise);
+        time * if law.is_linear() { 0.1 } else { (FIRST_ERROR * tolerance).powf(1.0 / rise) }
+    }
+
+    /// First step in s behind a border of the regime of even pressures, which lie half of it from the branch
+    /// point of the flow.
+    pub fn even_step(&self, t: f64, y: &Vector) -> f64 {
+        let rate = self.rate(self.machine.crank.at(t), y)[PRESSURE];
+        let half = (1.0 - LINEAR_RATIO) * self.machine.cushion.ambient;
+        BEHIND_BRANCH * half / rate.abs().max(f64::MIN_POSITIVE)
     }
 
     fn law_force(&self, k: usize, y: &Vector) -> f64 {
@@ -381,22 +418,32 @@ impl Plant {
         [flow, GAS_CONSTANT * at * flow]
     }
 
-    /// Power in W that the air loses by flow, at a time (s) of the turn: `−∂E/∂p (n/V) RTṁ`.
-    pub fn flow_loss(&self, t: f64, y: &Vector) -> f64 {
-        let [_, filled] = self.flow(self.volume(t, y), y);
-        if filled == 0.0 {
-            return 0.0;
-        }
-        let cushion = &self.machine.cushion;
-        -cushion.exponent * cushion.expansion(y[PRESSURE]) * filled
+    /// Powers in W of the piston on the air against ambient pressure, and lost in the seal, in compliant
+    /// contacts and by the flow −∂E/∂p (n/V) `RTṁ`; with position and velocity of the piston.
+    pub fn powers(&self, [piston, piston_velocity]: [f64; 2], y: &Vector) -> [f64; 4] {
+        let (cushion, seal) = (&self.machine.cushion, self.machine.striker);
+        let [_, filled] = self.flow(cushion.volume(y[0], piston), y);
+        let flow =
+            if filled == 0.0 { 0.0 } else { -cushion.exponent * cushion.expansion(y[PRESSURE]) * filled };
+        let indented = (0..4).filter(|k| matches!(self.stages[*k], Stage::Pushing | Stage::Released));
+        let lost = |k: usize| {
+            let [depth, approach] = self.indentation(k, y);
+            let [force, elastic] = self.law_forces(k, [depth, approach]);
+            let force = if self.stages[k] == Stage::Pushing { force } else { 0.0 };
+            (force - elastic) * approach
+        };
+        [
+            (y[PRESSURE] - cushion.ambient) * cushion.area * piston_velocity,
+            (seal.friction * self.slip + seal.damping * y[3]) * y[3],
+            indented.map(lost).sum(),
+            flow,
+        ]
     }
 
-    /// Derivative of the state.
+    /// Derivative of the state, with position and velocity of the piston.
     #[inline]
-    pub fn rate(&self, t: f64, y: &Vector) -> Vector {
-        let m = &self.machine;
-        let (cushion, seal) = (&m.cushion, &m.striker);
-        let [piston, piston_velocity] = m.crank.at(t);
+    pub fn rate(&self, [piston, piston_velocity]: [f64; 2], y: &Vector) -> Vector {
+        let cushion = &self.machine.cushion;
         let mut rate = [0.0; SIZE];
         rate[..3].copy_from_slice(&y[3..6]);
         let mut accelerations = self.accelerations[LINEAR];
@@ -404,19 +451,8 @@ impl Plant {
             accelerations.iter_mut().zip(column).for_each(|(sum, weight)| *sum += weight * y);
         }
         rate[3..6].copy_from_slice(&accelerations);
-        let mut extra = [0.0; 3];
-        for (k, row) in ROWS.iter().take(4).enumerate() {
-            if let (Stage::Pushing | Stage::Released, Some(law)) = (self.stages[k], &self.laws[k]) {
-                let [depth, approach] = self.indentation(k, y);
-                let [force, elastic] = self.law_forces(k, [depth, approach]);
-                let force = if self.stages[k] == Stage::Pushing { force } else { 0.0 };
-                rate[CONTACT_LOSS] += (force - elastic) * approach;
-                if !law.is_linear() {
-                    extra.iter_mut().zip(row).for_each(|(sum, row)| *sum += row * force);
-                }
-            }
-        }
         if self.curved {
+            let extra = self.curved_forces(y);
             for (rate, row) in rate[3..6].iter_mut().zip(&self.restraint.response) {
                 *rate += row.iter().zip(&extra).map(|(p, f)| p * f).sum::<f64>();
             }
@@ -427,10 +463,6 @@ impl Plant {
         let [flow, filled] = self.flow(volume, y);
         rate[GAS] = flow;
         rate[PRESSURE] = cushion.exponent / volume * (filled - pressure * growth);
-        let push = (pressure - cushion.ambient) * cushion.area;
-        rate[STRIKER_WORK] = push * y[3];
-        rate[PISTON_WORK] = push * piston_velocity;
-        rate[SEAL_LOSS] = (seal.friction * self.slip + seal.damping * y[3]) * y[3];
         rate
     }
 }

@@ -142,6 +142,9 @@ pub struct Turn {
     pub momentum: f64,
     /// States at even angles; the number is that of [`Course::samples`](super::Course::samples).
     pub samples: Vec<Sample>,
+    /// Positions in m of striker, intermediate piston and bit at its end.
+    #[serde(skip)]
+    pub end: [f64; 3],
 }
 
 impl Turn {
