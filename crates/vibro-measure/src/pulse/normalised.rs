@@ -211,10 +211,10 @@ impl<'a> Normalised<'a> {
         if count > 0.0 { beyond * widened(count as usize) } else { 0.0 }
     }
 
-    /// Standard uncertainty of the duration of a power law, in lengths of the pulse, for ends that the samples
-    /// do not show. Its exponents are free because no law is known: the law of the fit may not go on where
-    /// the force is below the noise. There the ends of the contact lie anywhere. A part at an end is not
-    /// shown as long as the pulse without it has a sum of squares larger by one variance or less.
+    /// Standard uncertainty of the duration of a power law, in lengths of the pulse, for ends that the
+    /// samples do not show. Its exponents are free because no law is known: the law of the fit may not go on
+    /// where the force is below the noise. There the ends of the contact lie anywhere. A part at an end is
+    /// not shown as long as the pulse without it has a sum of squares larger by one variance or less.
     fn unseen(&self, fitted: &FittedPulse) -> Option<f64> {
         let (model, fit) = (fitted.model, &fitted.fit);
         let contact = model.rebound(&fit.parameters[4..3 + model.parameters()])?;
