@@ -229,6 +229,22 @@ impl Rebound {
         most * self.duration / duration
     }
 
+    /// Lengths in s of the parts at the beginning and at the end of a contact that lasts `duration` seconds
+    /// which are `hidden`: given are ∫a² dt and ∫a dt over the part, of the deceleration a in m/s² for each
+    /// m/s of approach.
+    pub(super) fn ends(&self, duration: f64, hidden: impl Fn(f64, f64) -> bool) -> [f64; 2] {
+        let scale = duration / self.duration;
+        let part = |values: &mut dyn Iterator<Item = &f64>| {
+            let (mut squares, mut sum) = (0.0, 0.0);
+            let within = values.map(|a| a / scale).take_while(|a| {
+                (squares, sum) = (squares + a * a * STEP * scale, sum + a * STEP * scale);
+                hidden(squares, sum)
+            });
+            within.count().saturating_sub(1) as f64 * STEP * scale
+        };
+        [part(&mut self.deceleration.iter()), part(&mut self.deceleration.iter().rev())]
+    }
+
     fn between(&self, place: f64) -> f64 {
         let on = |values: &[f64], place: f64| {
             let at = place as usize;

@@ -211,6 +211,22 @@ impl<'a> Normalised<'a> {
         if count > 0.0 { beyond * widened(count as usize) } else { 0.0 }
     }
 
+    /// Standard uncertainty of the duration of a power law, in lengths of the pulse, for ends that the
+    /// samples do not show. Its exponents are free because no law is known: the law of the fit may not go on
+    /// where the force is below the noise. There the ends of the contact lie anywhere. A part at an end is
+    /// not shown as long as the pulse without it has a sum of squares larger by one variance or less.
+    fn unseen(&self, fitted: &FittedPulse) -> Option<f64> {
+        let (model, fit) = (fitted.model, &fitted.fit);
+        let contact = model.rebound(&fit.parameters[4..3 + model.parameters()])?;
+        let one = fit.variance() * fitted.whiteness.inflation.powi(2) * self.step / self.length;
+        // Behind a low-pass a short part is seen as its impulse.
+        let passes = self.filter.as_ref().map_or(f64::INFINITY, |filter| 2.0 * filter.autocovariance(0.0));
+        let hidden =
+            |squares: f64, sum: f64| fit.parameters[2].powi(2) * squares.min(sum * sum * passes) < one;
+        let [begin, end] = contact.ends(fit.parameters[3], hidden);
+        Some(begin.hypot(end) / f64::sqrt(3.0))
+    }
+
     /// The largest sample above the baseline of a fit, in N; without an uncertainty where the top is clipped.
     pub fn peak_read(&self, fitted: &FittedPulse, noise: f64, mass: Option<f64>) -> Option<Estimate> {
         let factor = self.to_force(mass)?;
@@ -327,6 +343,12 @@ impl<'a> Normalised<'a> {
             let impulse = |p: &[f64]| of(p, &|c| gained(c.restitution()), &|c| gained(c.restitution));
             let level = level * (fitted.end() - fit.parameters[0]);
             put("impulse", force * self.length, "N s", level, &impulse);
+        }
+        if *model == ContactModel::PowerLaw
+            && let Some(duration) = parameters.get_mut("duration")
+        {
+            let unseen = self.length * self.unseen(fitted).unwrap_or(f64::NAN);
+            duration.std = duration.std.map(|std| std.max(unseen));
         }
         let mut follow = |name, factor: f64, unit, of: &dyn Fn(&[f64]) -> Option<f64>| {
             if let Some((value, std)) = propagated(shape, &scale, variance, of) {
