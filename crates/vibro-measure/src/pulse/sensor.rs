@@ -66,10 +66,11 @@ pub(super) fn ringing<'a>(scale: &'a Normalised<'_>, bare: &[FittedPulse]) -> Op
         }
         let samples = samples(Some(mode));
         let gains = |fit: &FittedPulse| (alone.aicc() - fit.aicc()) / colour > NO_SUPPORT + chance;
-        if !samples.fit(best.model).is_ok_and(|same| gains(&same)) {
+        let Ok(main) = samples.fit(ContactModel::KelvinVoigt) else { continue };
+        // The other models are fitted where one of these is likely.
+        if !gains(&main) && !samples.fit(best.model).is_ok_and(|same| gains(&same)) {
             continue;
         }
-        let Ok(main) = samples.fit(ContactModel::KelvinVoigt) else { continue };
         let (fits, unfitted) = rivals(&samples, main);
         let Some(best) = fits.iter().min_by(|a, b| a.aicc().total_cmp(&b.aicc())) else { continue };
         let share = best.fit.parameters[3 + best.model.parameters()];
