@@ -293,12 +293,13 @@ impl Workbench {
     ) -> Result<Value> {
         let (text, section, number) = self.with_table(table)?;
         // All of the record, also where a part of it is used: its ends are dragged.
-        let text = match WrittenTable::all(&text)?
-            .iter()
-            .any(|one| one.section == section && one.number == number && one.value("span").is_some())
-        {
-            true => Campaign::text_with(&text, (&section, number), "span", "")?,
-            false => text,
+        let is_cut = |one: &WrittenTable| {
+            one.section == section && one.number == number && one.value("span").is_some()
+        };
+        let text = if WrittenTable::all(&text)?.iter().any(is_cut) {
+            Campaign::text_with(&text, (&section, number), "span", "")?
+        } else {
+            text
         };
         let campaign = analysis::parse(&self.folder, &self.path(), text)?;
         let (trace, files) = analysis::raw_trace(&campaign, (&section, number), file)?;
