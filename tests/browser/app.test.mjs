@@ -382,6 +382,33 @@ test("the trace shows the impacts that a proposed value finds, and a button take
   assert.match(await report(page).locator("body").innerText(), /echo\tflight times\t0\.6/);
 }));
 
+test("what is pressed while a value is taken is pressed, and the next field keeps its place and its focus", { skip }, () => open({}, async (page) => {
+  await drop(page, { "echo.csv": bounces({ echo: 0.3 }) });
+  await ran(page);
+  const field = (key) => page.locator(`.card input[data-field$=' ${key}']`), text = () => page.locator("#text").inputValue();
+  const keys = () => page.locator(".card > .row code").allInnerTexts();
+  const before = await keys();
+  await field("height").fill("50 cm");
+  // Slowly, as a hand does: the value is taken before the button is let go.
+  const offer = page.locator(".card button", { hasText: /^set / }).first(), name = (await offer.innerText()).replace("set ", "");
+  const box = await offer.boundingBox();
+  await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
+  await page.mouse.down();
+  await page.waitForFunction(() => document.getElementById("text").value.includes("height = 0.5"));
+  await page.waitForTimeout(300);
+  await page.mouse.up();
+  await page.waitForFunction((name) => document.getElementById("text").value.includes(name), name);
+  await page.waitForFunction(() => !app.running);
+  assert.match(await text(), /height = 0\.5\n/);
+  assert.deepEqual(await keys(), before);
+  // By the keyboard, too.
+  await field("height").fill("0.51");
+  await page.keyboard.press("Tab");
+  await page.waitForFunction(() => document.getElementById("text").value.includes("height = 0.51"));
+  await page.waitForFunction(() => !app.running);
+  assert.match(await page.evaluate(() => document.activeElement.dataset.field ?? ""), new RegExp(` ${before[1]}$`));
+}));
+
 test("all is reached by the keyboard alone", { skip }, () => open({}, async (page) => {
   const press = async (name) => {
     for (let k = 0; k < 80; k++) {

@@ -94,13 +94,32 @@ class Tables {
     Object.assign(this, { host, set, kind, look, find, channels, kinds: [] });
     // Values that were refused stand, with the reason, until they are typed anew.
     [this.refused, this.redraws, this.wrong] = [[], false, new Map()];
-    // Keys that had a value stay where they were when it is taken away.
-    this.stood = new Set();
+    // Keys of each table outside of its folds: they stay, in their order, whatever becomes of their values.
+    this.stood = new Map();
     // Places of the cards: they stay when the text has a table elsewhere.
     this.places = new Map();
+    this.guard();
+  }
+
+  /** What a person presses stays below the pointer until it is let go: else the click would meet something else. */
+  guard() {
+    let later;
+    const free = () => {
+      this.held = false;
+      this.waiting?.();
+    };
+    // A list of a browser may keep the end of the press to itself.
+    addEventListener("pointerdown", ({ target }) => {
+      this.held = !target.closest?.("select");
+      clearTimeout(later);
+      later = setTimeout(free, 1500);
+    }, true);
+    for (const end of ["pointerup", "pointercancel"]) addEventListener(end, () => setTimeout(free), true);
   }
 
   show(tables, problems) {
+    this.waiting = this.held ? () => this.show(tables, problems) : null;
+    if (this.held) return;
     // A browser may say that a field was left when it is only drawn anew: what is half typed in it is no value.
     this.redraws = true;
     this.draw(tables, problems);
@@ -128,8 +147,8 @@ class Tables {
     if (!tables.length) this.host.append(make("p", { textContent: none }));
     const input = field && this.host.querySelector(`[data-field="${CSS.escape(field)}"]`);
     if (!input) return;
-    input.value = value;
-    input.focus();
+    if (!input.matches("button, summary")) input.value = value;
+    input.focus({ preventScroll: true });
     input.setSelectionRange?.(selectionStart, selectionEnd);
   }
 
@@ -177,18 +196,25 @@ class Tables {
     const said = this.said(table, wrong.filter((one) => !atKey(one)).map(({ text }) => here(text)));
     for (const text of said) card.append(make("p", { className: "refused", textContent: text }));
     const proposed = proposedIn(said).filter(({ key }) => table.keys.some((row) => row.key === key));
-    const take = ({ key, value }) => make("button", { textContent: `set ${key} = ${value}`, onclick: () => this.set(id, key, value).catch((error) => { wrongs.textContent = here(error.message); }) });
+    const press = (textContent, onclick) => {
+      const button = make("button", { textContent, onclick });
+      button.dataset.field = `${id} ${textContent}`;
+      return button;
+    };
+    const take = ({ key, value }) => press(`set ${key} = ${value}`, () => this.set(id, key, value).catch((error) => { wrongs.textContent = here(error.message); }));
     const wrongs = make("span", { className: "wrong" });
     if (proposed.length) card.append(make("div", { className: "does" }, ...proposed.map(take), wrongs));
     // Keys that an error names stand with those that are in use; the title names the file.
     const named = namedIn([...said, ...wrong.map(({ text }) => text)]), isTitle = (row) => row.key === "file" && fromToml(row.value) === table.files;
-    for (const { key } of table.keys.filter(({ value }) => value !== "")) this.stood.add(`${id} ${key}`);
     // A name that nobody asks for is one of the further settings.
     const isName = (row) => row.key === "name" && row.known !== "missing" && !named.includes("name");
-    const isNamed = ({ key }) => named.includes(key) || this.stood.has(`${id} ${key}`);
-    const shown = (row) => (isTitle(row) || (row.known === "possible" && row.shared && !isNamed(row)) ? "reading" : isName(row) ? "possible" : isNamed(row) && ["open", "possible"].includes(row.known) ? "named" : row.known);
-    const rows = (...known) => table.keys.filter((row) => known.includes(shown(row))).map((row) => this.row(row, id, table));
-    card.append(...rows("missing"), ...rows("named"), ...rows("guessed", "stated", "found"));
+    const stood = this.stood.get(id) ?? new Set(), isOpen = (row) => ["open", "possible"].includes(row.known);
+    const shown = (row) => (isTitle(row) ? "reading" : isName(row) ? "possible" : !isOpen(row) || named.includes(row.key) ? "used" : row.shared && row.known === "possible" ? "reading" : row.known);
+    const used = table.keys.filter((row) => shown(row) === "used");
+    for (const row of [...used.filter(({ known }) => known === "missing"), ...used]) stood.add(row.key);
+    this.stood.set(id, stood);
+    const rows = (all) => all.map((row) => this.row(row, id, table));
+    card.append(...rows(Array.from(stood, (key) => table.keys.find((row) => row.key === key && !isTitle(row) && !isName(row))).filter(Boolean)));
     for (const { line, text } of wrong) {
       const input = card.querySelector(`[data-line="${line}"]`);
       input?.setAttribute("aria-invalid", "true");
@@ -197,14 +223,15 @@ class Tables {
     }
     const folds = { open: (n) => (n === 1 ? "1 value that would help" : `${n} values that would help`), possible: (n) => `more settings (${n})`, reading: (n) => `how the file is read (${n})` };
     for (const [known, title] of Object.entries(folds)) {
-      const all = rows(known);
-      if (all.length) card.append(make("details", { className: known }, make("summary", { textContent: title(all.length) }), ...all));
+      const all = rows(table.keys.filter((row) => shown(row) === known && (!stood.has(row.key) || isTitle(row) || isName(row)))), summary = make("summary", { textContent: title(all.length) });
+      summary.dataset.field = `${id} ${known}`;
+      if (all.length) card.append(make("details", { className: known }, summary, ...all));
     }
     const does = make("div", { className: "does" });
     if (valueOf(table, "file")) {
-      does.append(make("button", { textContent: "see the record", onclick: () => this.look(id) }));
+      does.append(press("see the record", () => this.look(id)));
     }
-    if (table.line) does.append(make("button", { textContent: "in the text", onclick: () => this.find(table.line) }));
+    if (table.line) does.append(press("in the text", () => this.find(table.line)));
     card.append(does);
     return card;
   }
@@ -227,6 +254,7 @@ class Tables {
     if (!known || !valueOf(table, "file")) return make("p", { className: "kind", textContent: about || table.section });
     const choice = make("select", { title: "Measure it as another kind" });
     choice.setAttribute("aria-label", `Kind of ${table.files}`);
+    choice.dataset.field = `${id} kind`;
     this.kinds.forEach(([section, title]) => choice.append(make("option", { value: section, textContent: title, selected: section === table.section })));
     choice.onchange = () => this.kind(id, choice.value);
     const title = this.kinds.find(([section]) => section === table.section)[1];
@@ -265,12 +293,16 @@ class Tables {
       }
     };
     // A field that was drawn anew while it was typed in has not changed for the browser.
-    input.onkeydown = (event) => { if (event.key === "Enter") input.onchange(); };
+    input.onkeydown = (event) => {
+      this.told = event.key === "Enter" ? id : null;
+      row.classList.toggle("told", this.told === id);
+      if (this.told) input.onchange();
+    };
     // The label has the first words already.
-    const asked = why && why.startsWith(labelOf(one)) ? why.slice(labelOf(one).length).replace(/^ in \S+?(;|$)/, "").trim() : why;
+    const asked = why && why.startsWith(labelOf(one)) ? why.slice(labelOf(one).length).replace(/^ in [^ ,;]+[,;]?/, "").trim() : why;
     const reason = known === "guessed" ? `guessed: ${why}` : known === "missing" ? `missing${asked ? `: ${asked}` : ""}` : why;
     const label = make("label", { htmlFor: id }, labelOf(one), " ", make("code", { textContent: key }));
-    const row = make("div", { className: `row ${known}` }, label, input, ...(unit ? [make("span", { className: "unit", textContent: unit })] : []));
+    const row = make("div", { className: `row ${known}${this.told === id ? " told" : ""}` }, label, input, ...(unit ? [make("span", { className: "unit", textContent: unit })] : []));
     if (picks.length && !isChoice) {
       input.setAttribute("list", `${id}-picks`);
       row.append(make("datalist", { id: `${id}-picks` }, ...picks.map((value) => make("option", { value }))));

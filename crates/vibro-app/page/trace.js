@@ -277,7 +277,7 @@ class TraceView {
     const all = [], { picture, first, last } = this.data, can = this.picks();
     if (can.includes("threshold")) {
       const height = this.height(), own = Number(this.value("threshold")), part = own || THRESHOLD[this.table.section];
-      all.push({ name: own ? "threshold" : "threshold (default)", level: part * height, key: "threshold", to: (x, y) => rounded(Math.max(Math.abs(this.level(y)) / height, 1e-3), 0.01) });
+      all.push({ name: `${own ? "threshold" : "threshold (default)"} ${part}: ${quantity(part * height, this.data.unit)}`, level: part * height, key: "threshold", to: (x, y) => rounded(Math.max(Math.abs(this.level(y)) / height, 1e-3), 0.01) });
     }
     if (can.includes("refractory")) {
       const begins = this.times.find((t) => t >= picture.from) ?? this.times[0] ?? this.largest(), dead = Number(this.value("refractory")) || 0;
@@ -306,7 +306,7 @@ class TraceView {
       const { pen, height } = { pen: this.canvas.getContext("2d"), height: this.canvas.clientHeight };
       if (line) {
         value = line.to(moved, offsetY);
-        this.drawHandle(pen, line.level !== undefined ? { name: value, level: this.level(offsetY) } : { name: value, place: this.at(moved) }, this.canvas.clientWidth, height - 20);
+        this.drawHandle(pen, line.level !== undefined ? { name: `${value} of the median height: ${quantity(Math.abs(this.level(offsetY)), this.data.unit)}`, level: this.level(offsetY) } : { name: value, place: this.at(moved) }, this.canvas.clientWidth, height - 20);
         if (this.inputs[line.key]) this.inputs[line.key].value = value;
       } else {
         pen.globalAlpha = 0.2;

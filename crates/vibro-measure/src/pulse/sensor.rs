@@ -3,7 +3,7 @@
 use super::fit::{FittedPulse, Samples};
 use super::normalised::Normalised;
 use super::result::Unfitted;
-use super::{ContactModel, rivals};
+use super::{ContactModel, LowPass, rivals};
 use crate::residuals::NO_SUPPORT;
 use nalgebra::{DMatrix, DVector};
 
@@ -74,7 +74,7 @@ pub(super) fn ringing<'a>(scale: &'a Normalised<'_>, bare: &[FittedPulse]) -> Op
         let (fits, unfitted) = rivals(&samples, main);
         let Some(best) = fits.iter().min_by(|a, b| a.aicc().total_cmp(&b.aicc())) else { continue };
         let share = best.fit.parameters[3 + best.model.parameters()];
-        if gains(best) && SHARES.contains(&share) && !samples.unexplained(best) {
+        if gains(best) && SHARES.contains(&share) && samples.rings_on(best, &alone) && !samples.unexplained(best) {
             return Some(Ringing { samples, fits, unfitted });
         }
     }
@@ -90,6 +90,15 @@ impl Samples<'_> {
     /// Duration of the samples, in lengths of the pulse.
     fn duration(&self) -> f64 {
         self.times.last().zip(self.times.first()).map_or(0.0, |(last, first)| last - first)
+    }
+
+    /// Whether the samples behind the contact, too, support the mode of a fit over those `without`. A contact of
+    /// another shape looks like a mode only while it lasts.
+    fn rings_on(&self, fitted: &FittedPulse, without: &FittedPulse) -> bool {
+        let end = fitted.end() + self.filter.map_or(0.0, LowPass::delay);
+        let from = self.times.partition_point(|t| *t <= end);
+        let squares = |fit: &FittedPulse| fit.fit.residuals[from..].iter().map(|r| r * r).sum::<f64>();
+        (self.times.len() - from) as f64 * (squares(without) / squares(fitted)).ln() > NO_SUPPORT
     }
 
     /// Number of frequencies of a mode that the samples tell apart.

@@ -171,7 +171,7 @@ fn rivalled(train: &Plausible, sounds: &[Sound]) -> Option<String> {
             let [first, other] = apart([time(b) - time(a), time(j) - time(i)]);
             let [begin, later] = apart([time(a), time(i)]);
             format!(
-                "{n} sounds, and two series of bounces among them are equally likely: first flight {first} from {begin} on, or {other} from {later} on"
+                "{n} sounds: two series of bounces are equally likely, one from {begin} on (first flight {first}), one from {later} on ({other})"
             )
         }
     })

@@ -34,7 +34,7 @@ pub(super) struct Untold {
 impl Untold {
     /// Adds to an error the first advice that finds the bounces when tried.
     pub fn advise(&self, refused: Error, read: Read<'_>) -> Error {
-        const QUIETER: &str = "a threshold above what is no bounce";
+        const QUIETER: &str = "a higher threshold, which leaves out quieter sounds";
         const SOONER: &str = "a pause that joins an echo to its impact";
         let pause = self.pause(read).map(|pause| format!("{pause:.2}"));
         let threshold = self.threshold(read).map(|threshold| format!("{threshold:.2}"));
