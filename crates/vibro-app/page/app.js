@@ -40,7 +40,12 @@ class App {
     // Edited: not as it was proposed. Unsaved: the edits are nowhere else.
     [this.edited, this.unsaved, this.setting, this.looking] = [false, false, Promise.resolve(), Promise.resolve()];
     const ask = (what, more) => this.program.ask(what, more);
-    this.trace = new TraceView(at("trace"), { ask, set, events: (...of) => this.events(...of), proposed: (table) => proposedIn(this.cards.said(table)) });
+    // Stopped, the program gets its files again.
+    const attempt = (more) => this.work("trying what is proposed", () => ask("try", more).catch((error) => {
+      if (error instanceof Refused) return null;
+      throw error;
+    }));
+    this.trace = new TraceView(at("trace"), { ask, attempt, set, events: (...of) => this.events(...of), proposed: (table) => proposedIn(this.cards.said(table)) });
     this.drawn = new Map();
     this.wire();
     this.program.ready.then(() => { document.body.dataset.ready = "yes"; }, (error) => this.trouble(`This browser cannot run the program: ${error.message}`));
@@ -175,6 +180,7 @@ class App {
     }
     this.drawn.clear();
     this.trace.close();
+    if (known === null) this.cards.forget();
     [at("bench").hidden, at("drop").hidden] = [false, true];
     at("keep").textContent = KEEP;
     if (known === null) [this.results, this.edited, this.unsaved, this.history, this.undone, at("report").srcdoc] = [null, false, false, [], [], ""];

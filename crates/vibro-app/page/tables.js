@@ -58,7 +58,8 @@ const OF_CHANNEL = ["channel", "reference", "velocity", "force", "response", "ha
 function choices({ key, unit, meaning = "" }, table, channels) {
   if (OF_CHANNEL.includes(key)) {
     const names = channels(table).filter((name) => name !== "");
-    return { picks: names, all: new Set(names).size === names.length && names.every((name) => fromToml(toToml(name)) === name) };
+    // A reference may be in another file, and a force in several channels: those are typed.
+    return { picks: names, all: key === "channel" && names.length > 0 && new Set(names).size === names.length && names.every((name) => fromToml(toToml(name)) === name) };
   }
   const keys = table.keys.map((row) => row.key);
   const listed = Array.from(meaning.matchAll(/`([a-z][a-z0-9/-]*)`/g), ([, word]) => word).filter((word) => !keys.includes(word));
@@ -68,8 +69,8 @@ function choices({ key, unit, meaning = "" }, table, channels) {
 /** Keys that an error names, such as `low_pass`. */
 const namedIn = (texts) => texts.flatMap((text) => Array.from(text.matchAll(/`([a-z_]+)(?: = [^`]*)?`/g), ([, key]) => key));
 
-/** Keys with the values that an error proposes, such as `threshold = 0.43`. */
-const proposedIn = (texts) => texts.flatMap((text) => Array.from(text.matchAll(/`([a-z_]+) = ([^`]+)`/g), ([, key, value]) => ({ key, value })));
+/** Keys of the trace with the values that an error proposes, such as `threshold = 0.43`: these were tried. */
+const proposedIn = (texts) => texts.flatMap((text) => Array.from(text.matchAll(/`([a-z_]+) = ([^`]+)`/g), ([, key, value]) => ({ key, value }))).filter(({ key }) => key in PICKS);
 
 /** What is typed, by the unit of a key. */
 const SUCH_AS = { m: "57 cm", Hz: "20 kHz", s: "3 ms", kg: "250 g", "m/s": "1.5", "°": "30" };
@@ -84,29 +85,16 @@ function identity(tables, k) {
   return `${own}\n${tables.slice(0, k).filter((table) => of(table) === own).length}`;
 }
 
-/** The tables of the campaign as cards with fields. */
-class Tables {
-  /**
-   * `set(identity, key, value)` states a value; `kind(identity, section)` makes it another kind;
-   * `look(identity)` shows the trace; `find(line)` shows the text; `channels(table)` are those of its file.
-   */
-  constructor(host, { set, kind, look, find, channels }) {
-    Object.assign(this, { host, set, kind, look, find, channels, kinds: [] });
-    // Values that were refused stand, with the reason, until they are typed anew.
-    [this.refused, this.redraws, this.wrong] = [[], false, new Map()];
-    // Keys of each table outside of its folds: they stay, in their order, whatever becomes of their values.
-    this.stood = new Map();
-    // Places of the cards: they stay when the text has a table elsewhere.
-    this.places = new Map();
-    this.guard();
-  }
-
-  /** What a person presses stays below the pointer until it is let go: else the click would meet something else. */
-  guard() {
+/** What a person presses stays below the pointer until it is let go: else the click would meet something else. */
+class Pressed {
+  constructor() {
+    [this.held, this.waiting] = [false, new Map()];
     let later;
     const free = () => {
       this.held = false;
-      this.waiting?.();
+      const all = Array.from(this.waiting.values());
+      this.waiting.clear();
+      all.forEach((todo) => todo());
     };
     // A list of a browser may keep the end of the press to itself.
     addEventListener("pointerdown", ({ target }) => {
@@ -117,9 +105,42 @@ class Tables {
     for (const end of ["pointerup", "pointercancel"]) addEventListener(end, () => setTimeout(free), true);
   }
 
-  show(tables, problems) {
-    this.waiting = this.held ? () => this.show(tables, problems) : null;
-    if (this.held) return;
+  /** Does something at once, or when nothing is pressed any more; of several with one name the last. */
+  after(name, todo) {
+    if (this.held) this.waiting.set(name, todo);
+    else {
+      this.waiting.delete(name);
+      todo();
+    }
+  }
+}
+
+const pressed = new Pressed();
+
+/** The tables of the campaign as cards with fields. */
+class Tables {
+  /**
+   * `set(identity, key, value)` states a value; `kind(identity, section)` makes it another kind;
+   * `look(identity)` shows the trace; `find(line)` shows the text; `channels(table)` are those of its file.
+   */
+  constructor(host, { set, kind, look, find, channels }) {
+    Object.assign(this, { host, set, kind, look, find, channels, kinds: [] });
+    // Values that were refused stand, with the reason, until they are typed anew.
+    [this.refused, this.redraws, this.wrong] = [[], false, new Map()];
+    this.forget();
+  }
+
+  /** Begins with other files. */
+  forget() {
+    // Keys of each table outside of its folds: they stay, in their order, whatever becomes of their values.
+    this.stood = new Map();
+    // Places of the cards: they stay when the text has a table elsewhere.
+    this.places = new Map();
+  }
+
+  show(tables, problems) { pressed.after("tables", () => this.redraw(tables, problems)); }
+
+  redraw(tables, problems) {
     // A browser may say that a field was left when it is only drawn anew: what is half typed in it is no value.
     this.redraws = true;
     this.draw(tables, problems);
@@ -135,7 +156,7 @@ class Tables {
     // At first those that wait for a value.
     const waits = (k) => tables[k].keys.some(({ known }) => known === "missing");
     const order = tables.map((_, k) => k).sort((a, b) => waits(b) - waits(a));
-    const ids = tables.map((_, k) => identity(tables, k).split("\n").slice(1).join("\n"));
+    const ids = tables.map(({ files }, k) => `${files}\n${tables.slice(0, k).filter((other) => other.files === files).length}`);
     for (const k of order) if (!this.places.has(ids[k])) this.places.set(ids[k], this.places.size);
     this.host.replaceChildren(...order.sort((a, b) => this.places.get(ids[a]) - this.places.get(ids[b])).map((k) => cards[k]));
     this.tables = tables;
@@ -147,7 +168,7 @@ class Tables {
     if (!tables.length) this.host.append(make("p", { textContent: none }));
     const input = field && this.host.querySelector(`[data-field="${CSS.escape(field)}"]`);
     if (!input) return;
-    if (!input.matches("button, summary")) input.value = value;
+    if (input.matches("input")) input.value = value;
     input.focus({ preventScroll: true });
     input.setSelectionRange?.(selectionStart, selectionEnd);
   }

@@ -36,14 +36,14 @@ function writeSteps(pen, { from, to }, across, unit, width, foot) {
 /** The raw trace of a table, with what was detected, and lines that the mouse drags. */
 class TraceView {
   /** `events(table, file, results)` are the times of what was detected; `proposed(table)` the keys with values that its refusal names. */
-  constructor(host, { ask, set, events, proposed }) {
-    Object.assign(this, { host, ask, set, events, proposed });
+  constructor(host, { ask, attempt, set, events, proposed }) {
+    Object.assign(this, { host, ask, attempt, set, events, proposed });
     [this.part, this.times, this.trials] = [[null, null], [], []];
   }
 
   async open(tables, id, file = 0) {
     const k = tables.findIndex((_, k) => identity(tables, k) === id);
-    if (this.id !== id || this.file !== file) [this.part, this.times, this.trials] = [[null, null], [], []];
+    if (this.id !== id || this.file !== file) [this.part, this.times, this.trials, this.tried] = [[null, null], [], [], undefined];
     Object.assign(this, { tables, id, k, table: tables[k], file });
     this.host.hidden = false;
     await this.load();
@@ -52,7 +52,7 @@ class TraceView {
 
   close() {
     this.host.hidden = true;
-    this.id = undefined;
+    this.id = this.tried = undefined;
   }
 
   /** The table as it is now; what is dragged is shown anew. */
@@ -62,6 +62,7 @@ class TraceView {
     const k = tables.findIndex((_, k) => identity(tables, k) === this.id);
     if (k < 0) return this.close();
     Object.assign(this, { tables, k, table: tables[k] });
+    await new Promise((resolve) => { pressed.after(Symbol("trace"), resolve); });
     await this.load().catch((error) => { this.said.textContent = inShort(error.message); });
   }
 
@@ -82,25 +83,27 @@ class TraceView {
     if (!this.lost) this.times = found;
     this.build();
     this.draw();
-    await this.tryOut();
+    this.tryOut();
   }
 
   /** Shows what would be detected with each value that the refusal of the record proposes. */
   async tryOut() {
     const proposed = this.proposed(this.table).filter(({ key }) => this.picks().includes(key)).slice(0, TRIALS.length);
-    const of = JSON.stringify([this.id, this.file, proposed]);
+    const of = JSON.stringify([this.id, this.file, proposed, this.table.keys.map(({ key, value }) => [key, value])]);
     if (of === this.tried) return;
     [this.tried, this.trials] = [of, []];
     for (const one of proposed) {
-      const results = await this.ask("try", { table: this.k, ...one }).catch(() => null);
-      if (this.tried !== of) return;
+      const results = await this.attempt({ table: this.k, ...one });
+      if (this.tried !== of || this.id === undefined) return;
       const times = results ? this.events(this.table, this.data.files[this.file], results) : [];
       // Two values may find the same impacts.
       const known = this.trials.some((other) => other.times.length === times.length && other.times.every((t, i) => Math.abs(t - times[i]) < this.pixel()));
       if (times.length && !known) this.trials.push({ ...one, times });
     }
-    this.offer();
-    this.draw();
+    pressed.after("offer", () => {
+      this.offer();
+      this.draw();
+    });
   }
 
   /** Buttons for what was tried out, in the colours of its lines, and what else can be done. */

@@ -13,6 +13,8 @@ use serde_json::{Map, Value, json};
 
 /// First seed of the drawn records.
 const SEED: u64 = 9000;
+/// Most reasons that are told, the most frequent first.
+const MOST_REASONS: usize = 3;
 /// Factor on an uncertainty from which it is reported: the bound predicts the scatter of records to 20 %.
 const WIDER: f64 = 1.2;
 
@@ -41,7 +43,9 @@ pub fn rehearsed<G: Guess>(mut told: Forecast, guess: &G, instrument: &Instrumen
     }
     let mut numbers: Vec<&mut dyn Uncertain> =
         lost.into_iter().map(|answer| answer as &mut dyn Uncertain).collect();
-    for (refusal, count) in &rehearsal.refusals {
+    let none = (Refusal::Refused("answers without an uncertainty".to_owned()), n);
+    let without = (rehearsal.refusals.is_empty() && !numbers.is_empty()).then_some(&none);
+    for (refusal, count) in rehearsal.refusals.iter().take(MOST_REASONS).chain(without) {
         let why = match refusal {
             Refusal::Refused(why) => why.clone(),
             Refusal::Doubted(doubt) => sentence(doubt, Voice::Command),

@@ -40,7 +40,7 @@ impl Body {
             let k = (at as usize).min(last);
             positions[k] + (at - k as f64) * (positions[k + 1] - positions[k])
         };
-        // Means between two instants: an impact between them is exact.
+        // Means between two instants: an impact between them is exact to their distance.
         let velocity = |i: usize| (position(i % all + 1) - position(i % all)) * all as f64 * self.speed[0];
         let mut mean = vec![0.0; self.phase.len()];
         for first in 0..INSTANTS {

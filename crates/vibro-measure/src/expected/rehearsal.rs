@@ -63,7 +63,12 @@ impl Rehearsal {
         for refusal in heard.iter().flat_map(|heard| missing(expected, heard)) {
             let same = |known: &Refusal| match (known, &refusal) {
                 (Refusal::Doubted(a), Refusal::Doubted(b)) => a.code == b.code,
-                (a, b) => a == b,
+                // Reasons that differ in their numbers alone are one.
+                (Refusal::Refused(a), Refusal::Refused(b)) => a
+                    .split(|c: char| c.is_ascii_digit())
+                    .filter(|part| part.len() > 1)
+                    .eq(b.split(|c: char| c.is_ascii_digit()).filter(|part| part.len() > 1)),
+                _ => false,
             };
             match refusals.iter_mut().find(|(known, _)| same(known)) {
                 Some((_, n)) => *n += 1,

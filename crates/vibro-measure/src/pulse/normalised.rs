@@ -46,7 +46,7 @@ const BESIDE: f64 = 2.0;
 const RINGS: f64 = 2.0 * BESIDE;
 
 /// Duration of the tail of the low-pass, in its delays: a first-order tail has fallen to e⁻³ then.
-const TAIL: f64 = 3.0;
+pub(super) const TAIL: f64 = 3.0;
 
 /// The record does not rest after the pulse where its residuals there exceed those of the fit by this factor
 /// (root mean squares).
@@ -347,8 +347,8 @@ impl<'a> Normalised<'a> {
         if *model == ContactModel::PowerLaw
             && let Some(duration) = parameters.get_mut("duration")
         {
-            let unseen = self.length * self.unseen(fitted).unwrap_or(f64::NAN);
-            duration.std = duration.std.map(|std| std.max(unseen));
+            let unseen = self.unseen(fitted);
+            duration.std = duration.std.zip(unseen).map(|(std, unseen)| std.max(self.length * unseen));
         }
         let mut follow = |name, factor: f64, unit, of: &dyn Fn(&[f64]) -> Option<f64>| {
             if let Some((value, std)) = propagated(shape, &scale, variance, of) {

@@ -1,7 +1,7 @@
 //! A mode of the sensor, fitted together with the contact.
 
 use super::fit::{FittedPulse, Samples};
-use super::normalised::Normalised;
+use super::normalised::{Normalised, TAIL};
 use super::result::Unfitted;
 use super::{ContactModel, LowPass, rivals};
 use crate::residuals::NO_SUPPORT;
@@ -33,8 +33,11 @@ const GUESSES: usize = 3;
 /// tangents.
 const GUESSED: [f64; 2] = [0.4, 0.7];
 
-/// Part of a parameter by which it is moved for a tangent.
-const TANGENT: f64 = 1e-4;
+/// Part of a parameter by which it is moved for a tangent: integrated contacts are smooth to 1e-5 only.
+const TANGENT: f64 = 5e-3;
+
+/// Least tangent over the pulse: a smaller one is rounding.
+const LEAST_TANGENT: f64 = 1e-9;
 
 /// Parameters of a mode.
 const PARAMETERS: f64 = 3.0;
@@ -68,13 +71,18 @@ pub(super) fn ringing<'a>(scale: &'a Normalised<'_>, bare: &[FittedPulse]) -> Op
         let gains = |fit: &FittedPulse| (alone.aicc() - fit.aicc()) / colour > NO_SUPPORT + chance;
         let Ok(main) = samples.fit(ContactModel::KelvinVoigt) else { continue };
         // The other models are fitted where one of these is likely.
-        if !gains(&main) && !samples.fit(best.model).is_ok_and(|same| gains(&same)) {
+        let same = || samples.fit(best.model).is_ok_and(|same| gains(&same));
+        if !gains(&main) && (best.model == ContactModel::KelvinVoigt || !same()) {
             continue;
         }
         let (fits, unfitted) = rivals(&samples, main);
         let Some(best) = fits.iter().min_by(|a, b| a.aicc().total_cmp(&b.aicc())) else { continue };
         let share = best.fit.parameters[3 + best.model.parameters()];
-        if gains(best) && SHARES.contains(&share) && samples.rings_on(best, &alone) && !samples.unexplained(best) {
+        if gains(best)
+            && SHARES.contains(&share)
+            && samples.rings_on(best, &alone)
+            && !samples.unexplained(best)
+        {
             return Some(Ringing { samples, fits, unfitted });
         }
     }
@@ -95,7 +103,7 @@ impl Samples<'_> {
     /// Whether the samples behind the contact, too, support the mode of a fit over those `without`. A contact of
     /// another shape looks like a mode only while it lasts.
     fn rings_on(&self, fitted: &FittedPulse, without: &FittedPulse) -> bool {
-        let end = fitted.end() + self.filter.map_or(0.0, LowPass::delay);
+        let end = fitted.end() + TAIL * self.filter.map_or(0.0, LowPass::delay);
         let from = self.times.partition_point(|t| *t <= end);
         let squares = |fit: &FittedPulse| fit.fit.residuals[from..].iter().map(|r| r * r).sum::<f64>();
         (self.times.len() - from) as f64 * (squares(without) / squares(fitted)).ln() > NO_SUPPORT
@@ -117,12 +125,15 @@ impl Samples<'_> {
         let Some(bare) = fitted.at(self, &times).map(DVector::from_vec) else { return Vec::new() };
         let mut p = fitted.fit.parameters.clone();
         let contact = p.len();
-        let tangent = |i: usize| {
+        let towards = |i: usize, side: f64| {
             let mut near = fitted.clone();
-            near.fit.parameters[i] += TANGENT * near.fit.parameters[i].abs().max(0.1);
+            near.fit.parameters[i] += side * TANGENT * near.fit.parameters[i].abs().max(0.1);
             Some(DVector::from_vec(near.at(self, &times)?) - &bare)
         };
-        let Some(tangents) = (0..contact).map(tangent).collect::<Option<Vec<_>>>() else { return Vec::new() };
+        // At a bound the other side is taken.
+        let tangent = |i: usize| towards(i, 1.0).or_else(|| towards(i, -1.0));
+        let is_shown = |tangent: &DVector<f64>| tangent.norm() > LEAST_TANGENT * bare.norm();
+        let tangents: Vec<_> = (0..contact).filter_map(tangent).filter(is_shown).collect();
         let tangents = DMatrix::from_columns(&tangents).qr().q();
         let beside = |v: DVector<f64>| &v - &tangents * tangents.tr_mul(&v);
         let rest = beside(values - &bare);

@@ -114,8 +114,8 @@ impl Motion {
         self.turns as f64 * self.plant.machine.crank.period() + self.time
     }
 
-    /// Follows a whole turn; `samples` states at even angles are kept. With `None` impulses, extremes and the
-    /// loss by flow are not computed either.
+    /// Follows a whole turn; `samples` states at even angles are kept. With `None` impulses, extremes and
+    /// the energies that pass are not computed either.
     pub fn turn(&mut self, samples: Option<usize>) -> Result<Turn> {
         let (before, air) = (self.energies(), self.stored_air());
         self.fly(samples)?;
@@ -190,6 +190,10 @@ impl Motion {
             }
             let Some((_, watch)) = event else { return Ok(()) };
             self.apply(watch)?;
+            // Another contact may push on.
+            let rate = self.plant.rate(self.plant.machine.crank.at(self.time), &self.y);
+            let bound = self.plant.step_bound(&self.y, &rate, self.tolerance.relative);
+            self.next_step = self.next_step.min(bound);
         }
         Err(too_many("events in a turn", MOST_EVENTS, self.now()))
     }
