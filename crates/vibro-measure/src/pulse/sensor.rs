@@ -100,8 +100,8 @@ impl Samples<'_> {
         self.times.last().zip(self.times.first()).map_or(0.0, |(last, first)| last - first)
     }
 
-    /// Whether the samples behind the contact, too, support the mode of a fit over those `without`. A contact of
-    /// another shape looks like a mode only while it lasts.
+    /// Whether the samples behind the contact, too, support the mode of a fit over one `without`. A contact
+    /// of another shape looks like a mode only while it lasts.
     fn rings_on(&self, fitted: &FittedPulse, without: &FittedPulse) -> bool {
         let end = fitted.end() + TAIL * self.filter.map_or(0.0, LowPass::delay);
         let from = self.times.partition_point(|t| *t <= end);
