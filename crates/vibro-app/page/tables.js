@@ -7,8 +7,8 @@ const here = (message) => inShort(message).replaceAll(/\bline \d+: /g, "");
 /** Parts and multiples of a unit. */
 const STEPS = { µ: 1e-6, u: 1e-6, m: 1e-3, c: 1e-2, "": 1, k: 1e3, M: 1e6 };
 
-/** May be a thousand, or one with decimals. */
-const THOUSAND = /\d,\d{3}(?!\d)/;
+/** May be a thousand, or one with decimals. Nothing that begins with 0 is a thousand. */
+const THOUSAND = /[1-9]\d*,\d{3}(?!\d)/;
 
 /** A number that a person types with its unit, in the unit of the key: 57 cm as 0.57 where that is m. */
 function inUnit(text, unit) {
@@ -34,7 +34,7 @@ function asList(text, unit) {
 function toToml(typed, unit = "", isList = true) {
   if (unit && !isList && /^[-+]?\d[\d.,]*\s+\d/.test(typed.trim())) throw new Error(`${typed}: one number is wanted here. Type it without a gap`);
   // 1,000 may be a thousand: it stays text, which no number takes.
-  const text = unit ? (isList ? asList(typed.trim(), unit) : null) ?? inUnit(typed.trim(), unit) : typed.trim(), number = text.replace(/^(-?\d+),(?!\d{3}$)(\d+)$/, "$1.$2").replace(/^(-?)\./, "$10.");
+  const text = unit ? (isList ? asList(typed.trim(), unit) : null) ?? inUnit(typed.trim(), unit) : typed.trim(), number = text.replace(/^(-?0+),(\d+)$/, "$1.$2").replace(/^(-?\d+),(?!\d{3}$)(\d+)$/, "$1.$2").replace(/^(-?)\./, "$10.");
   if (text === "" || /^(true|false|["'[{].*|[-+]?\d[\d_]*(\.\d+)?([eE][-+]?\d+)?)$/s.test(number)) return number;
   return JSON.stringify(text);
 }

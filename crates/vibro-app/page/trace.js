@@ -369,7 +369,7 @@ class TraceView {
     try {
       await this.set(this.id, key, value());
     } catch (error) {
-      this.said.replaceChildren(make("span", { className: "wrong", textContent: inShort(error.message) }));
+      this.said.replaceChildren(make("span", { className: "wrong", textContent: here(error.message) }));
       this.inputs[key]?.setAttribute("aria-invalid", "true");
     }
   }
