@@ -217,12 +217,13 @@ class Tables {
     const said = this.said(table, wrong.filter((one) => !atKey(one)).map(({ text }) => here(text)));
     for (const text of said) card.append(make("p", { className: "refused", textContent: text }));
     const proposed = proposedIn(said).filter(({ key }) => table.keys.some((row) => row.key === key));
-    const press = (textContent, onclick) => {
-      const button = make("button", { textContent, onclick });
-      button.dataset.field = `${id} ${textContent}`;
-      return button;
+    // Found again when the card is drawn anew.
+    const button = (textContent, onclick) => {
+      const made = make("button", { textContent, onclick });
+      made.dataset.field = `${id} ${textContent}`;
+      return made;
     };
-    const take = ({ key, value }) => press(`set ${key} = ${value}`, () => this.set(id, key, value).catch((error) => { wrongs.textContent = here(error.message); }));
+    const take = ({ key, value }) => button(`set ${key} = ${value}`, () => this.set(id, key, value).catch((error) => { wrongs.textContent = here(error.message); }));
     const wrongs = make("span", { className: "wrong" });
     if (proposed.length) card.append(make("div", { className: "does" }, ...proposed.map(take), wrongs));
     // Keys that an error names stand with those that are in use; the title names the file.
@@ -250,9 +251,9 @@ class Tables {
     }
     const does = make("div", { className: "does" });
     if (valueOf(table, "file")) {
-      does.append(press("see the record", () => this.look(id)));
+      does.append(button("see the record", () => this.look(id)));
     }
-    if (table.line) does.append(press("in the text", () => this.find(table.line)));
+    if (table.line) does.append(button("in the text", () => this.find(table.line)));
     card.append(does);
     return card;
   }

@@ -94,7 +94,7 @@ class TraceView {
     [this.tried, this.trials] = [of, []];
     for (const one of proposed) {
       const results = await this.attempt({ table: this.k, ...one });
-      if (this.tried !== of || this.id === undefined) return;
+      if (this.tried !== of) return;
       const times = results ? this.events(this.table, this.data.files[this.file], results) : [];
       // Two values may find the same impacts.
       const known = this.trials.some((other) => other.times.length === times.length && other.times.every((t, i) => Math.abs(t - times[i]) < this.pixel()));

@@ -293,14 +293,7 @@ impl Workbench {
     ) -> Result<Value> {
         let (text, section, number) = self.with_table(table)?;
         // All of the record, also where a part of it is used: its ends are dragged.
-        let is_cut = |one: &WrittenTable| {
-            one.section == section && one.number == number && one.value("span").is_some()
-        };
-        let text = if WrittenTable::all(&text)?.iter().any(is_cut) {
-            Campaign::text_with(&text, (&section, number), "span", "")?
-        } else {
-            text
-        };
+        let text = Campaign::text_with(&text, (&section, number), "span", "")?;
         let campaign = analysis::parse(&self.folder, &self.path(), text)?;
         let (trace, files) = analysis::raw_trace(&campaign, (&section, number), file)?;
         let n = trace.axis.len();

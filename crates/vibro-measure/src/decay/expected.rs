@@ -109,9 +109,8 @@ pub fn rehearse(
     };
     let truth: Vec<f64> = (0..before + recorder.samples()).map(value).collect();
     let release = before as f64 / rate;
-    let recorder = recorder.clone();
+    let drawn = DrawnNoise::of(recorder, truth.len());
     move |noise| {
-        let drawn = DrawnNoise::of(&recorder, truth.len());
         let found = decay(&drawn.record(truth.clone(), unit.clone(), noise), &DecayOptions::default())?;
         let mut left: Vec<&DecayMode> = found.modes.iter().collect();
         let mut answers = Vec::new();

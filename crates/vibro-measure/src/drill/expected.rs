@@ -124,9 +124,9 @@ const PULSE: f64 = 0.1;
 /// # Errors
 /// As that.
 pub fn rehearse(guess: &GuessedBlows, recorder: &Recorder) -> impl Fn(&mut Noise) -> Result<Heard> + use<> {
-    let (guess, recorder) = (guess.clone(), recorder.clone());
-    let n = recorder.samples();
-    let turn = move |i: usize| guess.rate * i as f64 / recorder.rate + BEGIN;
+    let (guess, n, rate) = (guess.clone(), recorder.samples(), recorder.rate);
+    let drawn = DrawnNoise::of(recorder, n);
+    let turn = move |i: usize| guess.rate * i as f64 / rate + BEGIN;
     let high = |i: usize| (turn(i) + TO_PULSE).fract() < PULSE;
     let pulses: Vec<f64> = (0..n).map(|i| if high(i) { 5.0 } else { 0.0 }).collect();
     let unit = guess.sensitivity * guess.beam.factor;
@@ -140,10 +140,9 @@ pub fn rehearse(guess: &GuessedBlows, recorder: &Recorder) -> impl Fn(&mut Noise
             (from + s * (to - from - bend + s * bend)) / unit
         };
         let volts = Unit::parse("V").ok_or_else(|| Error::refused("the unit of a record"))?;
-        let drawn = DrawnNoise::of(&recorder, n);
         let record = drawn.record((0..n).map(value).collect(), volts, noise);
         let channels = vec![&record.values[..], &pulses[..]];
-        let found = drill(&Slices { rate: recorder.rate, channels }, &guess.options(), None)?;
+        let found = drill(&Slices { rate, channels }, &guess.options(), None)?;
         let all = [
             ("before", &found.before),
             ("after", &found.after),

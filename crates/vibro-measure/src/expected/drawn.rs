@@ -12,14 +12,14 @@ use vibro_signal::fft::Transform;
 ///
 /// Noise that a low-pass has coloured is drawn by its covariance on a circle of twice the record, whose
 /// eigenvalues are the spectrum (Dietrich & Newsam 1997).
-pub(crate) struct DrawnNoise<'a> {
-    recorder: &'a Recorder,
+pub(crate) struct DrawnNoise {
+    recorder: Recorder,
     coloured: Option<(Transform, Vec<f64>)>,
 }
 
-impl<'a> DrawnNoise<'a> {
+impl DrawnNoise {
     /// For records of up to `n` samples.
-    pub fn of(recorder: &'a Recorder, n: usize) -> DrawnNoise<'a> {
+    pub fn of(recorder: &Recorder, n: usize) -> DrawnNoise {
         let coloured = || {
             let circle = (2 * n).next_power_of_two();
             let apart = |i: usize| i.min(circle - i);
@@ -31,12 +31,12 @@ impl<'a> DrawnNoise<'a> {
             let powers = lines.iter().map(power).collect();
             (transform, powers)
         };
-        DrawnNoise { recorder, coloured: (!recorder.is_white()).then(coloured) }
+        DrawnNoise { recorder: recorder.clone(), coloured: (!recorder.is_white()).then(coloured) }
     }
 
     /// A record of these values in a unit, with noise, within the range and in the steps of the converter.
     pub fn record(&self, mut values: Vec<f64>, unit: Unit, noise: &mut Noise) -> Trace {
-        let Recorder { rate, step, range, .. } = *self.recorder;
+        let Recorder { rate, step, range, .. } = self.recorder;
         // The white part has the variance of rounding; the steps add it.
         let white = (self.recorder.white() - rounding(step).powi(2)).max(0.0).sqrt();
         for value in &mut values {
