@@ -267,7 +267,7 @@ impl Keys {
         doubt_with_record(&channels.findings, &mut found);
         found.findings.splice(..0, channels.findings.into_iter().chain(twice));
         let mut answer = answer(source.name, &found)?;
-        let body = self.body.as_ref().map(|body| Body::of(source.name, body, self.mass, &found));
+        let body = self.body.as_ref().map(|body| Body::of(source.name, body, &options, &found));
         answer.bodies.extend(body);
         Ok(answer)
     }

@@ -124,6 +124,7 @@ mod tests {
             speed: [45.0, 0.2],
             crank: true,
             rate: 1e5,
+            instrument: None,
             smoothing: None,
             turns: 100,
             hits: hits.collect(),

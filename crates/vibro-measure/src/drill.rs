@@ -190,6 +190,7 @@ pub fn drill_each(
     };
     let over_range = result.over_range(&survey);
     result.findings = result::findings(&result, options, marks.sharp, still.is_some());
+    result.findings.extend(faults::recurring(&states, &turns.whole));
     result.findings.extend(over_range);
     result.findings.extend(slow);
     Ok(result)

@@ -9,7 +9,7 @@ mod drawn;
 mod rehearsal;
 
 pub(crate) use drawn::DrawnNoise;
-pub use rehearsal::{Heard, Refusal, Rehearsal, Rehearsed};
+pub use rehearsal::{Heard, Refusal, Rehearsal, Rehearsed, Shown};
 
 use crate::Estimate;
 use crate::converter::rounding;

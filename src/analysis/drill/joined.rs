@@ -199,6 +199,7 @@ mod tests {
             speed: [speed, 0.1],
             crank: true,
             rate: 1e5,
+            instrument: None,
             smoothing: None,
             turns: 100,
             hits: Vec::new(),

@@ -21,6 +21,8 @@ pub struct Guess {
     after: Option<f64>,
     /// Relative standard deviation of the velocities from blow to blow.
     scatter: Option<f64>,
+    /// Standard deviation in m/s of the velocity after blows of one strength.
+    after_scatter: Option<f64>,
     /// Mass of the body in kg.
     mass: Option<f64>,
     /// The struck mass in kg.
@@ -45,6 +47,7 @@ impl super::Guess for Guess {
     const RANGES: &'static [KeyRange] = &[
         KeyRange::above_zero("m/s", &["before"]),
         KeyRange::any("m/s", &["after"]),
+        KeyRange::from_zero("m/s", &["after_scatter"]),
         KeyRange::above_zero("kg", &["struck_mass"]),
         KeyRange::above_zero("", &["sensitivity"]),
         KeyRange::from_zero("°", &["beam_angle", "beam_angle_std"]).at_most(90.0),
@@ -91,6 +94,7 @@ impl Guess {
             before: self.before.ok_or_else(|| missing("before", "7.5, in m/s"))?,
             after: self.after.ok_or_else(|| missing("after", "-1.5, in m/s"))?,
             scatter: self.scatter.unwrap_or(0.0),
+            after_scatter: self.after_scatter.unwrap_or(0.0),
             mass: self.mass,
             struck_mass: self.struck_mass,
             sensitivity: self.sensitivity.unwrap_or(1.0),

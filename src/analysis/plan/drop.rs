@@ -31,6 +31,8 @@ pub struct Guess {
     contact_time_std: Option<f64>,
 }
 
+/// Highest fall in m: a larger number is a height in mm.
+const HIGHEST: f64 = 30.0;
 /// Relative scatter of R from bounce to bounce where none is stated.
 const SCATTER: f64 = 0.02;
 
@@ -38,7 +40,7 @@ impl super::Guess for Guess {
     const SECTION: &'static str = "drop";
     const TITLE: &'static str = "Drop";
     const RANGES: &'static [KeyRange] = &[
-        KeyRange::above_zero("m", &["height"]),
+        KeyRange::above_zero("m", &["height"]).at_most(HIGHEST),
         KeyRange::from_zero("m", &["height_std"]),
         KeyRange::above_zero("s", &["first_flight"]).times(),
         KeyRange::above_zero("", &["restitution"]).within(1e-9, 1.0),

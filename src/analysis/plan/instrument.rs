@@ -37,6 +37,9 @@ pub struct Instrument {
 /// that are known to 16 %.
 const REHEARSALS: usize = 20;
 
+/// Most samples of a planned record, which is drawn for each rehearsal.
+const MOST_SAMPLES: f64 = 1e7;
+
 impl Instrument {
     /// Name of the table.
     pub const SECTION: &'static str = "instrument";
@@ -97,6 +100,13 @@ impl Instrument {
         };
         let rate = self.rate.ok_or_else(|| missing("rate", "51200, in Hz"))?;
         let duration = self.duration.or(duration).ok_or_else(|| missing("duration", "2, in s"))?;
+        if rate * duration > MOST_SAMPLES {
+            let found = format!("a record of {:.3e} samples, {rate} Hz times {duration} s", rate * duration);
+            let expected = format!("{MOST_SAMPLES:e} at most");
+            return Err(Error::usage(found, expected)
+                .hint("plan a shorter duration with averages = N")
+                .setting("duration"));
+        }
         let step = self.range.zip(self.bits).map_or(0.0, |(range, bits)| 2.0 * range / 2f64.powf(bits));
         let (noise, density) = (self.noise.unwrap_or(0.0), self.noise_density.unwrap_or(0.0));
         if step + noise + density == 0.0 {

@@ -32,12 +32,16 @@ pub fn rehearsed<G: Guess>(mut told: Forecast, guess: &G, instrument: &Instrumen
     let heard: Vec<Result<Heard>> =
         (0..n).into_par_iter().map(|k| draw(&mut Noise::new(SEED + k as u64))).collect();
     let rehearsal = Rehearsal::of(&one, &heard);
-    let widening = |name: &str| rehearsal.answers.iter().find(|answer| answer.name == name)?.widening;
+    let shown = |name: &str| rehearsal.answers.iter().find(|answer| answer.name == name)?.shown;
+    let of_one = |name: &str| one.answers.iter().find(|(known, _)| known == name)?.1.std;
     let mut lost: Vec<&mut Estimate> = Vec::new();
     let changed = told.changes.iter_mut().flat_map(|change| &mut change.answers);
     for (name, answer) in told.answers.iter_mut().chain(changed) {
-        match widening(name) {
-            Some(factor) => answer.std = answer.std.map(|std| std * factor),
+        match shown(name).zip(of_one(name)) {
+            // The mean of several records keeps the bias of each.
+            Some((shown, one)) => {
+                answer.std = answer.std.map(|std| (std * shown.scatter).hypot(one * shown.bias));
+            }
             None => lost.push(answer),
         }
     }
@@ -61,7 +65,7 @@ pub fn rehearsed<G: Guess>(mut told: Forecast, guess: &G, instrument: &Instrumen
         };
         told.findings.push(finding);
     }
-    let wider = rehearsal.answers.iter().filter_map(|answer| Some((answer, answer.widening?)));
+    let wider = rehearsal.answers.iter().filter_map(|answer| Some((answer, answer.shown?.factor())));
     let wider = wider.filter(|(_, factor)| *factor > WIDER);
     let wider: Vec<String> =
         wider.map(|(answer, factor)| format!("{} ×{factor:.1}", tables::words(&answer.name))).collect();
@@ -81,6 +85,6 @@ pub fn json(rehearsal: &Rehearsal) -> Value {
     json!({
         "records": rehearsal.records,
         "answered": all(&|i| json!(rehearsal.answers[i].answered)),
-        "factor": all(&|i| json!(rehearsal.answers[i].widening)),
+        "factor": all(&|i| json!(rehearsal.answers[i].shown.map(|shown| shown.factor()))),
     })
 }

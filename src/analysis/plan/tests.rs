@@ -80,6 +80,7 @@ fn mistakes_point_at_their_line() {
             "the lower",
         ),
         ("[[drill]]\nspeed = 45\n", "line 1", "beam_angle"),
+        ("[[drop]]\nheight = 570\n", "line 2", "height is 570"),
         ("[[impact]]\n", "line 1", "unknown table `impact`"),
         ("", "", "a plan without a test"),
     ] {
@@ -94,6 +95,9 @@ fn mistakes_point_at_their_line() {
     }
     let error = planned(&format!("[instrument]\nrate = 2000\n{DECAY}")).unwrap_err().to_string();
     assert!(error.contains("noise"), "{error}");
+    let long = INSTRUMENT.replace("4", "1e6");
+    let error = planned(&format!("{long}{DECAY}")).unwrap_err().to_string();
+    assert!(error.contains("2.000e9 samples") && error.contains("averages"), "{error}");
 }
 
 /// What is refused, and how it is said: `findings` of the first test, as code and share.

@@ -45,7 +45,7 @@ fn record(machine: &Machine, motion: &Run, body: usize, (rate, pulse): (f64, f64
     let masses = [machine.striker.mass, machine.intermediate.mass, machine.bit.mass];
     let options = DrillOptions { mass: Some(masses[body]), ..options };
     let found = drill(&Slices { rate, channels: vec![&velocity, &pulse] }, &options, None).unwrap();
-    Body::of(BODIES[body], BODIES[body], Some(masses[body]), &found)
+    Body::of(BODIES[body], BODIES[body], &options, &found)
 }
 
 fn entry(fit: &[&str], pulse_angle: Option<f64>) -> DrillModelEntry {

@@ -1,7 +1,7 @@
 //! A body of a machine, as its run shows it.
 
 use crate::Estimate;
-use crate::drill::{Corner, Drill, Group, TurnsFrom};
+use crate::drill::{Corner, Drill, DrillOptions, Group, TurnsFrom};
 use serde::{Deserialize, Serialize};
 
 /// A body of a machine, as its run shows it.
@@ -19,6 +19,8 @@ pub struct Body {
     pub crank: bool,
     /// Samples a second of its record.
     pub rate: f64,
+    /// Highest frequency in Hz that its instrument passes, where it is known.
+    pub instrument: Option<f64>,
     /// Smoothing of the average.
     pub smoothing: Option<Corner>,
     /// Turns in the average.
@@ -55,17 +57,18 @@ pub struct Hits {
 }
 
 impl Body {
-    /// The body of a measured run.
-    pub fn of(record: &str, name: &str, mass: Option<f64>, found: &Drill) -> Body {
+    /// The body of a run that was measured with these options.
+    pub fn of(record: &str, name: &str, options: &DrillOptions, found: &Drill) -> Body {
         let hits =
             found.groups.iter().enumerate().filter_map(|(number, group)| Hits::of(found, number, group));
         Body {
             record: record.to_owned(),
             name: name.to_owned(),
-            mass,
+            mass: options.mass,
             speed: [found.speed.value, found.speed_variation],
             crank: found.turns_from == TurnsFrom::Reference,
             rate: 1.0 / found.excerpt_time.1,
+            instrument: options.instrument,
             smoothing: found.smoothing,
             turns: found.averaged,
             hits: hits.collect(),

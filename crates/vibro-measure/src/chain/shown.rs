@@ -1,7 +1,7 @@
 //! What the average turn of a record shows of a known motion.
 
 use super::body::Body;
-use crate::drill::value;
+use crate::drill::{Corner, value};
 use vibro_record::Result;
 
 /// Instants of a known motion to a sample of the record. Turns of a record begin anywhere between two
@@ -27,7 +27,8 @@ impl Body {
     /// even instants from the beginning of a turn, `ahead` turns before the pulse of the crank, to its end.
     /// The end need not be where the turn began: a mean over turns may drift.
     ///
-    /// The velocity is sampled, smoothed and averaged like the record. Impacts whose phase scatters from turn
+    /// The velocity is sampled, smoothed and averaged like the record. A low-pass without delay stands for the
+    /// band of the instrument, where it is known and below half the sampling rate. Impacts whose phase scatters from turn
     /// to turn blur the average; as many turns as were measured show all of that scatter.
     ///
     /// # Errors
@@ -47,12 +48,13 @@ impl Body {
             // Three turns, so that the smoothing of the middle one sees its neighbours.
             let turns: Vec<f64> = (0..3 * n).map(|k| velocity(first + INSTANTS * k)).collect();
             let rate = n as f64 * self.speed[0];
-            let smooth = self.smoothing.map(|corner| corner.smooth(&turns, rate)).transpose()?;
-            let smooth = smooth.as_deref().unwrap_or(&turns);
+            let band = self.instrument.filter(|highest| *highest < 0.5 * rate).map(Corner::ZeroPhaseLowPass);
+            let smooth = |turns: Vec<f64>, corner: Corner| corner.smooth(&turns, rate);
+            let turns = [band, self.smoothing].into_iter().flatten().try_fold(turns, smooth)?;
             let offset = (first as f64 + 0.5) / INSTANTS as f64;
             for (mean, phase) in mean.iter_mut().zip(&self.phase) {
                 let at = (phase + ahead).rem_euclid(1.0) + 1.0;
-                *mean += value(smooth, at * n as f64 - offset).unwrap_or(f64::NAN) / INSTANTS as f64;
+                *mean += value(&turns, at * n as f64 - offset).unwrap_or(f64::NAN) / INSTANTS as f64;
             }
         }
         Ok(self.blurred(&mean))
@@ -90,6 +92,7 @@ mod tests {
             speed: [45.0, 0.0],
             crank: true,
             rate: 1e5,
+            instrument: None,
             smoothing: None,
             turns: 30,
             hits: Vec::new(),
@@ -107,11 +110,18 @@ mod tests {
             (TAU * part).sin() + drift * part
         };
         let positions: Vec<f64> = (0..=all).map(position).collect();
-        let shown = body.shown(&positions, 0.3).unwrap();
-        for (phase, v) in body.phase.iter().zip(&shown) {
-            let expected = 45.0 * (TAU * (TAU * (phase + 0.3)).cos() + drift);
-            // The slope of straight lines between 9000 positions errs by half the angle between two of them.
-            assert!((v - expected).abs() < TAU * 45.0 * 0.5 * TAU / all as f64, "{phase}: {v} {expected}");
+        // An instrument that passes half of 135 Hz passes 1/(1 + (45/135)⁴) of 45 Hz.
+        for (instrument, gain) in [(None, 1.0), (Some(135.0), 81.0 / 82.0), (Some(1e6), 1.0)] {
+            let body = Body { instrument, ..body.clone() };
+            let shown = body.shown(&positions, 0.3).unwrap();
+            for (phase, v) in body.phase.iter().zip(&shown) {
+                let expected = 45.0 * (gain * TAU * (TAU * (phase + 0.3)).cos() + drift);
+                // The slope of straight lines between 9000 positions errs by half the angle between two.
+                assert!(
+                    (v - expected).abs() < TAU * 45.0 * 0.5 * TAU / all as f64,
+                    "{phase}: {v} {expected}"
+                );
+            }
         }
     }
 }

@@ -18,8 +18,10 @@ pub struct GuessedBlows {
     pub before: f64,
     /// Velocity after it in m/s, negative for a rebound.
     pub after: f64,
-    /// Relative standard deviation of the velocities from blow to blow.
+    /// Relative standard deviation of the velocities from blow to blow, which grow and fall together.
     pub scatter: f64,
+    /// Standard deviation in m/s of the velocity after a blow of given strength.
+    pub after_scatter: f64,
     /// Mass in kg, for the energies.
     pub mass: Option<f64>,
     /// The struck mass in kg, at rest before the blow.
@@ -84,30 +86,39 @@ pub fn expected(guess: &GuessedBlows, recorder: &Recorder) -> Result<Expected> {
         weights.iter().enumerate().map(|a| weights.iter().enumerate().map(|b| product(a, b)).sum::<f64>());
     let noise = unit * unit * pairs.sum::<f64>();
     let beam = guess.beam.per_degree * guess.beam_std;
-    let GuessedBlows { before, after, scatter, .. } = *guess;
+    let GuessedBlows { before, after, scatter, after_scatter, .. } = *guess;
     let count = n as usize;
-    let estimate = |value: f64, of_noise: f64, of_scatter: f64, of_beam: f64, unit, method: &str| {
-        let std = ((of_noise * of_noise * noise + (of_scatter * scatter).powi(2)) / n).sqrt();
-        Estimate::new(value, Some(std.hypot(of_beam * beam)), unit, count, method)
+    // How an answer moves with the noise of one velocity, the strength of a blow, the velocity after it, and
+    // the beam.
+    let estimate = |value: f64, [of_noise, of_strength, of_after, of_beam]: [f64; 4], unit, method: &str| {
+        let own = (of_strength * scatter).hypot(of_after * after_scatter);
+        let std = (of_noise * of_noise * noise + own * own) / n;
+        Estimate::new(value, Some(std.sqrt().hypot(of_beam * beam)), unit, count, method)
     };
     let mean = "parabolas beside the contact, mean over the blows";
     let mut found = Expected::default();
-    found.put("before", &estimate(before, 1.0, before, before, "m/s", mean));
-    found.put("after", &estimate(after, 1.0, after, after, "m/s", mean));
+    found.put("before", &estimate(before, [1.0, before, 0.0, before], "m/s", mean));
+    found.put("after", &estimate(after, [1.0, after, 1.0, after], "m/s", mean));
     let ratio = guess.mass.zip(guess.struck_mass).map_or(0.0, |(mass, struck)| mass / struck);
     let value = (ratio * (before - after) - after) / before;
     // The approach moves R by (ratio − R)/v, the rebound by −(1 + ratio)/v; a blow that is faster as a whole
     // leaves R.
     let of_noise = (ratio - value).hypot(1.0 + ratio) / before;
-    found.put("restitution", &estimate(value, of_noise, 0.0, 0.0, "1", "ratio of the sums over the blows"));
+    let method = "ratio of the sums over the blows";
+    let of_after = (1.0 + ratio) / before;
+    found.put("restitution", &estimate(value, [of_noise, 0.0, of_after, 0.0], "1", method));
     if let Some(mass) = guess.mass {
+        // The mean square of a strength that scatters by s is 1 + s², its variance 4s² + 2s⁴.
+        let (square, of_strength) = (1.0 + scatter * scatter, (4.0 + 2.0 * scatter * scatter).sqrt());
         let energy = 0.5 * mass * before * before;
         let mean = "½ m v² before, mean over the blows";
-        found.put("energy", &estimate(energy, mass * before, 2.0 * energy, 2.0 * energy, "J", mean));
+        let moved = [mass * before, of_strength * energy, 0.0, 2.0 * energy];
+        found.put("energy", &estimate(energy * square, moved, "J", mean));
         let given = 0.5 * mass * (before * before - after * after);
         let mean = "½ m (v² before − v² after), mean over the blows";
-        let of_noise = mass * before.hypot(after);
-        found.put("energy_given", &estimate(given, of_noise, 2.0 * given, 2.0 * given, "J", mean));
+        let moved = [mass * before.hypot(after), of_strength * given, mass * after, 2.0 * given];
+        let value = given * square - 0.5 * mass * after_scatter * after_scatter;
+        found.put("energy_given", &estimate(value, moved, "J", mean));
     }
     Ok(found)
 }
@@ -119,7 +130,7 @@ const TO_PULSE: f64 = 0.3;
 const PULSE: f64 = 0.1;
 
 /// Draws records of the blows beside pulses of the crank, and measures them by [`super::drill`]. Between two
-/// blows the velocity is a parabola without a mean.
+/// blows the velocity is a parabola without a mean. The beam of each record is off by an angle of its own.
 ///
 /// # Errors
 /// As that.
@@ -131,11 +142,16 @@ pub fn rehearse(guess: &GuessedBlows, recorder: &Recorder) -> impl Fn(&mut Noise
     let pulses: Vec<f64> = (0..n).map(|i| if high(i) { 5.0 } else { 0.0 }).collect();
     let unit = guess.sensitivity * guess.beam.factor;
     move |noise| {
-        let strength: Vec<f64> =
-            (0..turn(n) as usize + 2).map(|_| 1.0 + guess.scatter * noise.normal()).collect();
+        let unit = unit * (1.0 + guess.beam.per_degree * guess.beam_std * noise.normal());
+        // Velocities before and after each blow.
+        let mut blow = |_| {
+            let strength = 1.0 + guess.scatter * noise.normal();
+            (guess.before * strength, guess.after * strength + guess.after_scatter * noise.normal())
+        };
+        let blows: Vec<(f64, f64)> = (0..turn(n) as usize + 2).map(&mut blow).collect();
         let value = |i: usize| {
             let (k, s) = (turn(i) as usize, turn(i).fract());
-            let (from, to) = (guess.after * strength[k], guess.before * strength[k + 1]);
+            let (from, to) = (blows[k].1, blows[k + 1].0);
             let bend = 3.0 * (from + to);
             (from + s * (to - from - bend + s * bend)) / unit
         };

@@ -1,7 +1,9 @@
 //! Faults of a laser vibrometer: drop-outs and speckle spikes are found and bridged, over-range is found.
 
 use super::survey::{ChannelStatistics, noise};
+use super::turns::Turn;
 use std::ops::Range;
+use vibro_record::Finding;
 
 /// State of a sample after faults were bridged.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -113,6 +115,35 @@ pub(super) fn repair(
         }
     }
     (states, count)
+}
+
+/// Parts of a turn; two neighbours are one phase.
+const PARTS: usize = 100;
+/// Turns with a fault at one phase over those that faults anywhere in the turn would give.
+const RECURS: f64 = 3.0;
+
+/// Finding on the phase at which at least half of four turns or more have a bridged fault, and more than
+/// chance gives.
+pub(super) fn recurring(states: &[State], turns: &[Turn]) -> Option<Finding> {
+    let begins = |i: &usize| states[*i] == State::Bridged && states[i - 1] != State::Bridged;
+    let (mut struck, mut faults) = ([0; PARTS], 0);
+    for turn in turns {
+        let mut own = [false; PARTS];
+        for i in ((turn.start.ceil() as usize).max(1)..turn.end as usize).filter(begins) {
+            let part = (PARTS as f64 * (i as f64 - turn.start) / (turn.end - turn.start)) as usize;
+            (own[part % PARTS], own[(part + 1) % PARTS]) = (true, true);
+            faults += 1;
+        }
+        struck.iter_mut().zip(own).for_each(|(struck, own)| *struck += usize::from(own));
+    }
+    let (part, &most) = struck.iter().enumerate().max_by_key(|(_, struck)| **struck)?;
+    let all = turns.len();
+    let by_chance = all as f64 * -(-2.0 * f64::from(faults) / (all * PARTS) as f64).exp_m1();
+    let recurs = most >= 4 && 2 * most >= all && most as f64 > RECURS * by_chance;
+    let phase = part as f64 / PARTS as f64;
+    let finding =
+        || Finding::caution("drill-faults-recur").number("phase", phase).count("n", most).count("all", all);
+    recurs.then(finding)
 }
 
 /// A measured velocity that is searched for faults.
@@ -267,6 +298,29 @@ mod tests {
                 State::Lost => assert!((40_000..40_900).contains(&i)),
             }
         }
+    }
+
+    /// A fault at 0.3 of each turn recurs, one at any place does not.
+    #[test]
+    fn faults_at_one_phase_recur() {
+        let turns: Vec<Turn> = (0..40)
+            .map(|k| Turn { start: 0.5 + 500.0 * f64::from(k), end: 500.5 + 500.0 * f64::from(k) })
+            .collect();
+        let states = |place: &mut dyn FnMut() -> f64| {
+            let mut states = vec![State::Good; 20_002];
+            for turn in &turns {
+                let at = (turn.start + 500.0 * place()) as usize;
+                states[at..at + 5].fill(State::Bridged);
+            }
+            recurring(&states, &turns)
+        };
+        let mut noise = Noise::new(1);
+        let found = states(&mut || 0.3 + 0.004 * (noise.uniform() - 0.5)).unwrap();
+        assert!(
+            found.get("n") == Some(40.0) && (found.get("phase").unwrap() - 0.3).abs() < 0.011,
+            "{found:?}"
+        );
+        assert_eq!(states(&mut || 0.98 * noise.uniform()), None);
     }
 
     #[test]

@@ -25,9 +25,24 @@ pub struct Rehearsed {
     pub name: String,
     /// Number of records with this answer and its uncertainty.
     pub answered: usize,
-    /// Factor from the expected uncertainty to the one that drawn records show, 1 or more; `None` where most
-    /// records have no answer.
-    pub widening: Option<f64>,
+    /// What the records show beside it; `None` where most have no answer.
+    pub shown: Option<Shown>,
+}
+
+/// Uncertainty that drawn records show, in units of the expected one of a record.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Shown {
+    /// Standard uncertainty about the mean of many records, 1 or more.
+    pub scatter: f64,
+    /// Error of that mean: no number of records lowers it. 0 where chance explains it.
+    pub bias: f64,
+}
+
+impl Shown {
+    /// Standard uncertainty of one record in units of the expected one.
+    pub fn factor(&self) -> f64 {
+        self.scatter.hypot(self.bias)
+    }
 }
 
 /// What the estimator makes of drawn records, beside what is expected of them.
@@ -56,8 +71,8 @@ impl Rehearsal {
             });
             let own: Vec<(f64, f64)> = own.collect();
             let most = 2 * own.len() > heard.len();
-            let widening = told.std.filter(|_| most).map(|std| widening(std, &own));
-            Rehearsed { name: name.clone(), answered: own.len(), widening }
+            let shown = told.std.filter(|_| most).map(|std| Shown::by(std, &own));
+            Rehearsed { name: name.clone(), answered: own.len(), shown }
         });
         let mut refusals: Vec<(Refusal, usize)> = Vec::new();
         for refusal in heard.iter().flat_map(|heard| missing(expected, heard)) {
@@ -99,18 +114,29 @@ fn missing(expected: &Expected, heard: &Result<Heard>) -> Vec<Refusal> {
     absent.into_iter().chain(doubts.map(|doubt| Refusal::Doubted(doubt.clone()))).collect()
 }
 
-/// Factor on an expected uncertainty by errors and stated uncertainties of records: that of the median
-/// statement, or of the root mean square error, where chance does not explain that it is larger.
-fn widening(std: f64, own: &[(f64, f64)]) -> f64 {
-    let n = own.len();
-    let stated: Vec<f64> = own.iter().map(|(_, stated)| *stated).collect();
-    let middle = median(&stated);
-    let chance = 3.0 * OF_MEDIAN * if n > 1 { scatter(&stated) } else { middle } / (n as f64).sqrt();
-    let squares: f64 = own.iter().map(|(error, _)| (error / std).powi(2)).sum();
-    let larger = squares > chi_squared_at(1.0 - FALSE_ALARM, n);
-    let stated = if middle - chance > std { middle / std } else { 1.0 };
-    let erring = if larger { (squares / n as f64).sqrt() } else { 1.0 };
-    stated.max(erring)
+impl Shown {
+    /// By errors and stated uncertainties of records of which `std` is expected. The mean error is a bias, and
+    /// the median statement or the scatter of the errors counts, where chance does not explain it.
+    fn by(std: f64, own: &[(f64, f64)]) -> Shown {
+        let n = own.len() as f64;
+        let errors: Vec<f64> = own.iter().map(|(error, _)| error / std).collect();
+        let mean = errors.iter().sum::<f64>() / n;
+        let about = |middle: f64| errors.iter().map(|error| (error - middle).powi(2)).sum::<f64>();
+        // Of errors as large as expected, or as they scatter where that is more.
+        let spread = (about(mean) / (n - 1.0).max(1.0)).sqrt().max(1.0);
+        let bias =
+            if mean.powi(2) * n > spread.powi(2) * chi_squared_at(1.0 - FALSE_ALARM, 1) { mean } else { 0.0 };
+        let free = own.len() - usize::from(bias != 0.0 && own.len() > 1);
+        let larger = about(bias) > chi_squared_at(1.0 - FALSE_ALARM, free);
+        let erring = if larger { (about(bias) / free as f64).sqrt() } else { 1.0 };
+        let stated: Vec<f64> = own.iter().map(|(_, stated)| stated / std).collect();
+        let middle = median(&stated);
+        let chance = 3.0 * OF_MEDIAN * if own.len() > 1 { scatter(&stated) } else { middle } / n.sqrt();
+        // A statement covers the bias, too.
+        let stated =
+            if middle - chance > 1.0 { (middle * middle - bias * bias).max(1.0).sqrt() } else { 1.0 };
+        Shown { scatter: stated.max(erring), bias: bias.abs() }
+    }
 }
 
 #[cfg(test)]
@@ -138,17 +164,33 @@ mod tests {
     #[test]
     fn records_as_expected_change_nothing() {
         let rehearsal = Rehearsal::of(&expected(), &heard(1.0, 0.001));
-        assert_eq!(rehearsal.answers, [Rehearsed { name: "zeta".into(), answered: 20, widening: Some(1.0) }]);
+        assert_eq!(
+            rehearsal.answers,
+            [Rehearsed { name: "zeta".into(), answered: 20, shown: Some(Shown { scatter: 1.0, bias: 0.0 }) }]
+        );
         assert!(rehearsal.refusals.is_empty());
     }
 
     /// Errors of twice the expected uncertainty count as they are found; 20 of them know it to 16 %.
     #[test]
     fn larger_errors_and_larger_statements_widen() {
-        let widening =
-            |factor, stated| Rehearsal::of(&expected(), &heard(factor, stated)).answers[0].widening;
-        assert!((widening(2.0, 0.001).unwrap() - 2.0).abs() < 0.96, "{:?}", widening(2.0, 0.001));
-        assert_eq!(widening(1.0, 0.003), Some(0.003 / 0.001));
+        let shown =
+            |factor, stated| Rehearsal::of(&expected(), &heard(factor, stated)).answers[0].shown.unwrap();
+        assert!((shown(2.0, 0.001).factor() - 2.0).abs() < 0.96, "{:?}", shown(2.0, 0.001));
+        assert_eq!(shown(1.0, 0.003), Shown { scatter: 0.003 / 0.001, bias: 0.0 });
+    }
+
+    /// Records that all err by four expected uncertainties, and scatter as expected: their mean is known to
+    /// 1/√20.
+    #[test]
+    fn a_bias_is_told_from_scatter() {
+        let mut heard = heard(1.0, 0.001);
+        for (answers, _) in heard.iter_mut().flatten() {
+            answers[0].1.value += 0.004;
+        }
+        let shown = Rehearsal::of(&expected(), &heard).answers[0].shown.unwrap();
+        assert_eq!(shown.scatter, 1.0);
+        assert!((shown.bias - 4.0).abs() < 3.0 / 20f64.sqrt(), "{shown:?}");
     }
 
     #[test]
@@ -164,7 +206,7 @@ mod tests {
             }
         }
         let rehearsal = Rehearsal::of(&expected(), &heard);
-        assert_eq!(rehearsal.answers, [Rehearsed { name: "zeta".into(), answered: 8, widening: None }]);
+        assert_eq!(rehearsal.answers, [Rehearsed { name: "zeta".into(), answered: 8, shown: None }]);
         assert_eq!(rehearsal.refusals, [(Refusal::Refused("no decay is seen".into()), 9)]);
     }
 }

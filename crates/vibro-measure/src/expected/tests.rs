@@ -147,6 +147,7 @@ fn all_blows(draws: u64) {
         before: 7.5,
         after: -1.5,
         scatter: 0.0,
+        after_scatter: 0.0,
         mass: Some(0.14),
         struck_mass: None,
         sensitivity: 2.0,
@@ -157,7 +158,11 @@ fn all_blows(draws: u64) {
     };
     let recorder = Recorder { rate: 40e3, duration: 1.0, noise: 0.1, ..Recorder::default() };
     blows("blows in white noise", &guess, &recorder, draws);
-    blows("blows that scatter", &GuessedBlows { scatter: 0.02, ..guess }, &recorder, draws);
+    blows("blows that scatter", &GuessedBlows { scatter: 0.02, ..guess.clone() }, &recorder, draws);
+    let strong = GuessedBlows { scatter: 0.15, after_scatter: 0.2, ..guess.clone() };
+    blows("blows that scatter much", &strong, &recorder, draws);
+    let aslant = GuessedBlows { beam_std: 1.0, ..guess };
+    blows("blows along an uncertain beam", &aslant, &recorder, draws);
 }
 
 #[test]

@@ -64,28 +64,35 @@ fn a_sealed_cushion_keeps_its_polytrope_and_gives_back_its_work() {
 #[test]
 fn energy_and_momentum_balance_on_every_rung() {
     let machine = Machine::example();
-    let weight = machine.gravity * (machine.striker.mass + machine.intermediate.mass + machine.bit.mass);
     for rung in &Rung::ALL[1..] {
         for speed in [7.0, 20.0, 45.0] {
-            let machine = machine.clone().at_speed(speed);
-            let run = run(&machine, *rung, &course(12, 1e-12)).unwrap();
-            let mut before = 0.0;
-            for turn in &run.turns {
-                // Energies of some joules: 1e-12 a step, magnified where a step ends within by an event.
-                assert!(turn.book.residual.abs() < 1e-9, "{rung:?} {speed} Hz: {:?}", turn.book);
-                for part in [turn.book.impacts, turn.book.contacts, turn.book.seal] {
-                    assert!(part >= -1e-12, "{:?}", turn.book);
-                }
-                let change = weight / speed - turn.handle - turn.damper;
-                let error = turn.momentum - before - change;
-                assert!(error.abs() < 1e-9, "{rung:?} {speed} Hz: {error:e}");
-                before = turn.momentum;
-                for impact in turn.impacts.iter().filter(|impact| impact.duration == 0.0) {
-                    let [a, b] = [impact.before, impact.after].map(|v| v[0] - v[1]);
-                    let contact = machine.contacts[impact.interface as usize];
-                    assert!((b + contact.restitution * a).abs() < 1e-14 * 10.0);
-                }
+            // Energies of some joules: an error of the tolerance in each of some hundred steps, magnified
+            // where a step ends within by an event.
+            for (tolerance, held) in [(1e-12, 1e-9), (1e-9, 1e-6)] {
+                let machine = machine.clone().at_speed(speed);
+                balances(&run(&machine, *rung, &course(12, tolerance)).unwrap(), &machine, held);
             }
+        }
+    }
+}
+
+/// Energies in J and momenta in N s of a run balance to `held`.
+fn balances(run: &Run, machine: &Machine, held: f64) {
+    let weight = machine.gravity * (machine.striker.mass + machine.intermediate.mass + machine.bit.mass);
+    let mut before = 0.0;
+    for turn in &run.turns {
+        let what = format!("{:?} {} Hz", run.rung, machine.crank.frequency);
+        assert!(turn.book.residual.abs() < held, "{what}: {:?}", turn.book);
+        for part in [turn.book.impacts, turn.book.contacts, turn.book.seal] {
+            assert!(part >= -1e-3 * held, "{what}: {:?}", turn.book);
+        }
+        let error = turn.momentum - before - (weight / machine.crank.frequency - turn.handle - turn.damper);
+        assert!(error.abs() < held, "{what}: {error:e}");
+        before = turn.momentum;
+        for impact in turn.impacts.iter().filter(|impact| impact.duration == 0.0) {
+            let [a, b] = [impact.before, impact.after].map(|v| v[0] - v[1]);
+            let contact = machine.contacts[impact.interface as usize];
+            assert!((b + contact.restitution * a).abs() < 1e-14 * 10.0);
         }
     }
 }
