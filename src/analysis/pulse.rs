@@ -157,7 +157,7 @@ fn contact(title: &str, result: &PulseResult) -> Table {
     )
 }
 
-/// Columns that tell how well a model fits: probability that noise alone leaves such a residual, among others.
+/// Columns that tell how well a model fits, such as the probability that its residual is noise.
 const QUALITY: [&str; 5] = ["model", "RMS residual", "AICc", "p of a white residual", "samples"];
 
 /// The models that were fitted to the pulse, with their parameters.

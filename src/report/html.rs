@@ -107,8 +107,8 @@ impl Page {
         self.element(&format!("<details><summary>{title}: {n} rows</summary>\n{html}</details>"))
     }
 
-    /// Adds tables: those of the kind of the first one are visible, the others collapsed, a long one by itself.
-    /// The title of a table is its kind, then the name of its record.
+    /// Adds tables: those of the kind of the first one are visible, the others collapsed, a long one by
+    /// itself. The title of a table is its kind, then the name of its record.
     pub fn tables<'a>(self, all: impl IntoIterator<Item = &'a Table>) -> Page {
         let kind = |table: &Table| table.title.split(", ").next().unwrap_or_default().to_owned();
         let all: Vec<&Table> = all.into_iter().collect();
