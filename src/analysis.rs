@@ -49,7 +49,7 @@ pub use kinds::{errors, files, open, open_in, parse, sections, title};
 pub(crate) use own_files::OWN;
 pub use own_files::{INPUTS, REPORT, RESULTS};
 pub use progress::Progress;
-pub use raw::raw_trace;
+pub use raw::{raw_sounds, raw_trace};
 pub use recordings::{Recordings, recordings};
 pub(crate) use recordings::{in_order, is_pattern, matching};
 pub use run::{CampaignOutcome, answers, run};

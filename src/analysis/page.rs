@@ -64,7 +64,7 @@ pub fn page(
             let files = [format!("{name}.svg"), format!("{name}.png")];
             page = page.figure(figure, picture, &files.each_ref().map(String::as_str));
         }
-        page = tables.iter().chain(details).fold(page, Page::table);
+        page = page.tables(tables.iter().chain(details));
     }
     let compared = all.compared.as_ref();
     if let Some(sliders) = compared.and_then(|compared| compared.sliders.as_ref()) {

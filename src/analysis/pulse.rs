@@ -123,7 +123,10 @@ fn shown(name: &str, found: &PulseResult) -> Result<Answer> {
     ));
     answer.table("pulse", contact(name, found));
     if !found.fits.is_empty() {
-        answer.table("pulse_fits", models(name, found));
+        let models = models(name, found);
+        answer.csv("pulse_fits", &models);
+        // Parameters stand in the file: most models have none of those of another.
+        answer.tables.push(models.leading(QUALITY.len()));
     }
     Ok(answer)
 }
@@ -154,13 +157,15 @@ fn contact(title: &str, result: &PulseResult) -> Table {
     )
 }
 
-/// The models that were fitted to the pulse.
+/// Columns that tell how well a model fits, such as the probability that its residual is noise.
+const QUALITY: [&str; 5] = ["model", "RMS residual", "AICc", "p of a white residual", "samples"];
+
+/// The models that were fitted to the pulse, with their parameters.
 fn models(title: &str, result: &PulseResult) -> Table {
     let all = result.fits.iter().flat_map(|f| &f.parameters);
     let parameters: BTreeMap<&str, &str> = all.map(|(name, e)| (*name, e.unit)).collect();
     let unit = parameters.get("baseline").copied().unwrap_or_default();
-    let columns =
-        [("model", ""), ("RMS residual", unit), ("AICc", ""), ("residual is noise (p)", ""), ("samples", "")];
+    let columns = QUALITY.map(|name| (name, if name == "RMS residual" { unit } else { "" }));
     let head = |name: &str| name.replace('_', " ").replace("xi", "damping ratio ξ");
     let own = |table: Table, (name, unit): (&&str, &&str)| table.column(head(name), *unit);
     let mut table = parameters.iter().fold(headed(titled("Models", title), &columns), own);

@@ -247,6 +247,16 @@ impl OfFile for Keys {
                 ("unit", "", &|tone| Cell::from(tone.amplitude.unit)),
             ],
         ));
+        let is_spectrum = matches!(found.found, Lines::Spectrum(_)) && found.tones.is_empty();
+        answer.headlines.push(headline(
+            "Largest spectral lines",
+            if is_spectrum { found.peaks(MAIN_PEAKS) } else { Vec::new() },
+            &[
+                ("frequency", "Hz", &|k| frequency_of(&found, *k)),
+                ("amplitude", "", &|k| value_of(&found, *k)),
+                ("unit", "", &|_| Cell::from(found.unit.as_str())),
+            ],
+        ));
         answer.tables = vec![peaks(source.name, &found), tones(source.name, &found)];
         answer.details.push(settings_table([(found.name.as_str(), &found)]));
         let name = if self.reference.is_some() { "frf" } else { "spectrum" };
@@ -345,22 +355,35 @@ fn common_peaks(found: &[(String, SpectralResult)]) -> Table {
 /// Number of largest peaks in the table of a record.
 const SHOWN_PEAKS: usize = 8;
 
+/// Number of peaks of a spectrum at the head of a report.
+const MAIN_PEAKS: usize = 3;
+
+/// Frequency of a peak: it lies anywhere within half a line spacing of its line, a rectangular distribution
+/// of the standard uncertainty spacing/√12.
+fn frequency_of(found: &SpectralResult, k: usize) -> Cell {
+    let std = found.frequency.windows(2).next().map_or(f64::NAN, |w| (w[1] - w[0]) / f64::sqrt(12.0));
+    Cell::Estimate { value: found.frequency[k], std: Some(std) }
+}
+
+/// Value of a line.
+fn value_of(found: &SpectralResult, k: usize) -> Cell {
+    Cell::Estimate {
+        value: found.value[k],
+        std: found.value_std.get(k).copied().filter(|std| std.is_finite()),
+    }
+}
+
 /// The largest peaks of a record, one row a peak.
 fn peaks(name: &str, found: &SpectralResult) -> Table {
     let finite_at = |values: &[f64], k: usize| values.get(k).copied().filter(|v| v.is_finite());
     let response = found.response.as_ref();
-    // A peak lies anywhere within half a line spacing of its line: rectangular distribution, spacing/√12.
-    let line_std = found.frequency.windows(2).next().map_or(f64::NAN, |w| (w[1] - w[0]) / f64::sqrt(12.0));
     let peaks = table(
         "Largest peaks of spectra",
         found.peaks(SHOWN_PEAKS),
         &[
             ("record", "", &|_| Cell::from(name)),
-            ("frequency", "Hz", &|k| Cell::Estimate { value: found.frequency[*k], std: Some(line_std) }),
-            ("value", "", &|k| Cell::Estimate {
-                value: found.value[*k],
-                std: finite_at(&found.value_std, *k),
-            }),
+            ("frequency", "Hz", &|k| frequency_of(found, *k)),
+            ("value", "", &|k| value_of(found, *k)),
             ("unit", "", &|_| Cell::from(found.unit.as_str())),
             ("scaling", "", &|_| Cell::from(found.scaling)),
             ("phase", "°", &|k| Cell::from(response.and_then(|r| finite_at(&r.phase, *k)))),

@@ -14,6 +14,8 @@ pub struct KeyMeaning {
     pub meaning: &'static str,
     /// Its name in plain words: the first clause of the meaning.
     pub label: &'static str,
+    /// The rest of the meaning; empty where the label says all.
+    pub rest: &'static str,
     /// What holds without it.
     pub left_out: &'static str,
     /// Whether tables of all kinds have it: it says how a file is read.
@@ -56,8 +58,26 @@ impl KeyMeaning {
             .strip_prefix("`true`")
             .map_or(meaning, |rest| rest.trim_start_matches(':').trim_start().trim_start_matches("for "));
         let label = clause.split([',', ';', ':', '(']).next()?.trim_end();
-        Some(KeyMeaning { key, unit, meaning, label, left_out, shared: false })
+        let rest = after_mark(&clause[label.len()..]);
+        Some(KeyMeaning { key, unit, meaning, label, rest, left_out, shared: false })
     }
+
+    /// A text about the key without the words of its label and its unit, for where they stand beside it: of
+    /// "height of the fall in m; by a rule" and "in m; by a rule" it is "by a rule".
+    pub fn beyond<'a>(&self, text: &'a str) -> &'a str {
+        let rest = text.strip_prefix(self.label).unwrap_or(text).trim_start();
+        let rest = rest.strip_prefix("in ").unwrap_or(rest);
+        match rest.strip_prefix(self.unit).filter(|_| !self.unit.is_empty()) {
+            Some(rest) if rest.is_empty() || rest.starts_with([',', ';']) => after_mark(rest),
+            _ if text.starts_with(self.label) => after_mark(&text[self.label.len()..]),
+            _ => text,
+        }
+    }
+}
+
+/// A text without the punctuation that it begins with.
+fn after_mark(text: &str) -> &str {
+    text.trim_start_matches([' ', ',', ';', ':'])
 }
 
 #[cfg(test)]
@@ -76,6 +96,19 @@ mod tests {
             }
         }
         let hum = KeyMeaning::of("drop").find(|one| one.key == "keep_hum").unwrap();
-        assert_eq!(hum.label, "mains hum stays in the trace");
+        assert_eq!((hum.label, hum.rest), ("mains hum stays in the trace", ""));
+        let height = KeyMeaning::of("drop").find(|one| one.key == "height").unwrap();
+        for (text, beyond) in [
+            ("height of the fall in m; by a rule", "by a rule"),
+            ("height of the fall in m", ""),
+            ("in m; by a rule", "by a rule"),
+            ("m; by a rule", "by a rule"),
+            ("many falls", "many falls"),
+            ("its height", "its height"),
+        ] {
+            assert_eq!(height.beyond(text), beyond);
+        }
+        let low_pass = KeyMeaning::of("pulse").find(|one| one.key == "low_pass").unwrap();
+        assert!(low_pass.rest.starts_with("corner of its Butterworth filter"), "{low_pass:?}");
     }
 }

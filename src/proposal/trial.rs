@@ -285,7 +285,7 @@ impl Trial<'_> {
     /// decide between them.
     fn undecided_drop(&self, series: &FileSeries, k: usize, name: &str) -> Option<Table> {
         let refusal = self.answers(&[series.bounces(k, name)]).err().filter(|r| r.code == Train::UNTOLD)?;
-        let what = "height of the fall in m, or take one of the proposed values instead";
+        let what = "height of the fall in m; it tells the bounces from the other sounds";
         let table = series.bounces(k, name).missing("height", "0.5", what);
         let rows = table.rows.into_iter().filter(|row| !matches!(row.known, KeyStatus::Open(_))).collect();
         Some(Table { rows, refused: Some(refusal), ..table })
@@ -360,14 +360,14 @@ impl FileSeries {
         self.channel_table(k, name, "drop", "impacts of a falling body")
             .surmised()
             .open("height", "", HEIGHT)
-            .open("height_std", "", "its standard uncertainty in m")
+            .open("height_std", "", "in m; without it R from the height has no uncertainty")
     }
 
     /// The table of a drop with one rebound.
     fn fall(&self, k: usize, name: &str) -> Table {
         let table = self.channel_table(k, name, "drop", "a fall and one rebound").surmised();
         let table = table.missing("height", "0.5", HEIGHT);
-        let table = table.missing("height_std", "0.001", "its standard uncertainty in m");
+        let table = table.missing("height_std", "0.001", "in m, as exactly as the height is known");
         table.open(
             "interval_std",
             "1e-5",

@@ -25,12 +25,16 @@ pub(super) struct Formatted {
 
 /// The power of ten that divides all numbers of a column, by the largest of `cells`.
 pub(super) fn power(column: &Column, cells: &[&Cell]) -> i32 {
-    let values = cells.iter().filter_map(|c| c.value()).filter(|v| v.is_finite());
-    let largest = values.map(f64::abs).fold(0.0, f64::max);
     // Angles and percentages are not scaled. Counts and other numbers without a unit are not either, since
     // the head has no unit to show the scale; such a number keeps its own power of ten.
     let unscaled = matches!(column.unit.as_str(), "°" | "rad" | "%" | "" | "1");
-    if unscaled { 0 } else { engineering(largest) }
+    if unscaled { 0 } else { engineering(largest(cells)) }
+}
+
+/// Largest magnitude of cells.
+pub(super) fn largest(cells: &[&Cell]) -> f64 {
+    let values = cells.iter().filter_map(|c| c.value()).filter(|v| v.is_finite());
+    values.map(f64::abs).fold(0.0, f64::max)
 }
 
 impl Formatted {

@@ -40,6 +40,9 @@ pub struct Page {
 /// Number of rows above which a table is collapsed.
 const MOST_SHOWN_ROWS: usize = 12;
 
+/// Number of cautions of one part above which they are collapsed.
+const MOST_CAUTIONS: usize = 3;
+
 impl Page {
     /// A page without content.
     pub fn new(title: impl Into<String>) -> Page {
@@ -64,7 +67,7 @@ impl Page {
         self.element(&format!("<p>{}</p>", escaped(text)))
     }
 
-    /// Adds findings: doubts are visible, others collapsed.
+    /// Adds findings: doubts and a few cautions are visible, others collapsed.
     pub fn findings(self, all: &[(Severity, String)]) -> Page {
         let list = |with: &dyn Fn(Severity) -> bool| {
             let listed = all.iter().filter(|(severity, _)| with(*severity));
@@ -74,14 +77,16 @@ impl Page {
                 out
             })
         };
-        let (doubts, others) = (list(&|s| s == Severity::Doubt), list(&|s| s != Severity::Doubt));
-        let count =
-            |grade: Severity| (all.iter().filter(|(severity, _)| *severity == grade).count(), grade.name());
-        let folded = [Severity::Caution, Severity::Note].map(count).into_iter().filter(|(n, _)| *n > 0);
+        let count = |grade: Severity| all.iter().filter(|(severity, _)| *severity == grade).count();
+        let cautions = count(Severity::Caution);
+        let least = if cautions > MOST_CAUTIONS { Severity::Doubt } else { Severity::Caution };
+        let (shown, others) = (list(&|s| s >= least), list(&|s| s < least));
+        let folded = [Severity::Caution, Severity::Note].into_iter().filter(|grade| *grade < least);
+        let folded = folded.map(|grade| (count(grade), grade.name())).filter(|(n, _)| *n > 0);
         let folded: Vec<String> = folded.map(|(n, name)| counted(n, name)).collect();
         let mut page = self;
-        if !doubts.is_empty() {
-            page = page.element(&format!("<ul class=\"findings\">\n{doubts}</ul>"));
+        if !shown.is_empty() {
+            page = page.element(&format!("<ul class=\"findings\">\n{shown}</ul>"));
         }
         if folded.is_empty() {
             return page;
@@ -100,6 +105,27 @@ impl Page {
         }
         let (title, n) = (escaped(&table.title), table.rows.len());
         self.element(&format!("<details><summary>{title}: {n} rows</summary>\n{html}</details>"))
+    }
+
+    /// Adds tables: those of the kind of the first one are visible, the others collapsed, a long one by
+    /// itself. The title of a table is its kind, then the name of its record.
+    pub fn tables<'a>(self, all: impl IntoIterator<Item = &'a Table>) -> Page {
+        let kind = |table: &Table| table.title.split(", ").next().unwrap_or_default().to_owned();
+        let all: Vec<&Table> = all.into_iter().collect();
+        let first = all.first().map(|table| kind(table));
+        let is_shown = |table: &&Table| table.rows.len() > MOST_SHOWN_ROWS || Some(kind(table)) == first;
+        let (shown, others): (Vec<&Table>, Vec<&Table>) = all.into_iter().partition(is_shown);
+        let page = shown.into_iter().fold(self, Page::table);
+        if others.is_empty() {
+            return page;
+        }
+        let mut kinds: Vec<String> = others.iter().map(|table| kind(table)).collect();
+        kinds.dedup();
+        let tables: String = others.into_iter().map(Table::html).collect();
+        page.element(&format!(
+            "<details><summary>{}</summary>\n{tables}</details>",
+            escaped(&kinds.join(", "))
+        ))
     }
 
     /// Adds a figure with its title and a caption below, as drawn for print and as data for the script;
@@ -286,6 +312,17 @@ mod tests {
             resvg::usvg::roxmltree::Document::parse(&body).is_ok(),
             "{:?}",
             resvg::usvg::roxmltree::Document::parse(&body)
+        );
+    }
+
+    #[test]
+    fn tables_of_another_kind_than_the_first_are_collapsed() {
+        let table = |title: &str| Table::new(title).column("a", "").row(["x".into()]);
+        let html = Page::new("").tables(&["Modes, a", "Levels, a", "Modes, b"].map(table)).html();
+        let (seen, folded) = html.split_once("<details><summary>Levels</summary>").unwrap();
+        assert!(
+            seen.contains("Modes, a") && seen.contains("Modes, b") && folded.contains("Levels, a"),
+            "{html}"
         );
     }
 

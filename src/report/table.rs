@@ -1,6 +1,6 @@
 //! Tables of results: the same content for the terminal, for CSV and for the page.
 
-use super::column::{Formatted, power};
+use super::column::{Formatted, largest, power};
 use super::{Cell, Column};
 use crate::units::notation::labelled;
 use crate::write::csv::begins_formula;
@@ -148,6 +148,21 @@ impl Table {
         out
     }
 
+    /// The same table with its first columns only.
+    pub fn leading(mut self, columns: usize) -> Table {
+        self.columns.truncate(columns);
+        self.rows.iter_mut().for_each(|row| row.truncate(columns));
+        self
+    }
+
+    /// Its heads, then its rows, as a page shows them: without columns that hold nothing.
+    pub fn in_words(&self) -> Vec<Vec<String>> {
+        let columns = self.formatted();
+        let heads = columns.iter().map(|column| column.head.clone()).collect();
+        let row = |line: usize| columns.iter().map(|column| column.cells[line].clone()).collect();
+        std::iter::once(heads).chain((0..self.rows.len()).map(row)).collect()
+    }
+
     /// Cells of a column, missing where a row is too short.
     fn cells(&self, column: usize) -> impl Iterator<Item = &Cell> {
         self.rows.iter().map(move |row| row.get(column).unwrap_or(&Cell::Missing))
@@ -169,7 +184,12 @@ impl Table {
                 |c: &&(&Column, Vec<&Cell>)| c.0.unit == column.unit && column.name == "upper limit";
             let (scale_of, values) =
                 columns.iter().find(limited_column).map_or((*column, cells), |(c, v)| (*c, v));
-            Formatted::new(column, cells, power(scale_of, values))
+            let own = power(scale_of, values);
+            // Beside intervals in ms a spread of 0.55 ms is compared more easily than one of 550 µs.
+            let beside = columns.iter().filter(|c| c.0.unit == column.unit).map(|(c, v)| power(c, v));
+            let larger =
+                beside.filter(|power| *power == own + 3 && largest(values) >= 0.1 * 10f64.powi(*power));
+            Formatted::new(column, cells, larger.max().unwrap_or(own))
         };
         columns.iter().map(shown).collect()
     }
@@ -250,6 +270,15 @@ none           7.49            0.35                 –
         let table = Table::new("").column("amplitude", "m").column("off", "Hz").column("upper limit", "m");
         let text = table.row([estimated(2e-3, 1e-5), Cell::Missing, 2e-5.into()]).text();
         assert!(text.starts_with("amplitude (mm)  upper limit (mm)\n"), "{text}");
+    }
+
+    #[test]
+    fn columns_of_one_unit_share_its_power_of_ten_where_that_costs_no_digit() {
+        let table = Table::new("").column("interval", "s").column("spread", "s").column("onset", "s");
+        let text = table.row([estimated(0.083_336, 3e-5), 550e-6.into(), estimated(3.1e-6, 1e-7)]).text();
+        let line = text.lines().nth(1).unwrap_or_default();
+        assert!(text.trim_start().starts_with("interval (ms)  spread (ms)   onset (µs)"), "{text}");
+        assert!(line.starts_with("83.336 ± 0.030         0.55  3.10 ± 0.10"), "{text}");
     }
 
     #[test]

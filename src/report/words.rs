@@ -15,6 +15,7 @@
 //! | `{n?is/are}` | the first word for one, the second for several |
 //! | `{subject}` | what the finding is about |
 //! | `[refractory]` | a setting: `--refractory` for the command, `refractory` for a campaign |
+//! | `[tones 2]` | a setting with its value: `--tones 2`, `tones = 2` |
 //! | `<, at {time s}>` | left out where the fact is missing |
 
 use crate::record::{Fact, Finding, Severity, sort_by_number};
@@ -241,7 +242,10 @@ fn filled(template: &str, finding: &Finding, voice: Voice) -> String {
         let mut facts = inside.split('{').skip(1).filter_map(|part| part.split('}').next());
         match close {
             '}' => out.push_str(&shown(inside, finding).unwrap_or_else(|| UNKNOWN.to_owned())),
-            ']' => out.push_str(&voice.setting(inside)),
+            ']' => {
+                let (key, value) = inside.split_once(' ').unwrap_or((inside, ""));
+                out.push_str(&voice.set(key, value));
+            }
             _ if facts.all(|fact| shown(fact, finding).is_some()) => {
                 out.push_str(&filled(inside, finding, voice));
             }
@@ -369,8 +373,7 @@ mod tests {
             Finding::caution("frf-one-blow"),
         ];
         let graded = graded(&found.map(|finding| (String::new(), finding)), Voice::Command);
-        let starts =
-            ["x-doubt", "unknown is not stated", "Contact time", "No sweep", "The function", "Against"];
+        let starts = ["x-doubt", "unknown is not stated", "R reads", "No sweep", "The function", "Against"];
         for ((_, sentence), start) in graded.iter().zip(starts) {
             assert!(sentence.starts_with(start), "{sentence}");
         }

@@ -188,7 +188,7 @@ test("a value is typed with its unit, its meaning is shown, and a record is meas
   const row = page.locator(".row:focus-within");
   assert.equal(await row.locator(".unit").innerText(), "m");
   assert.equal(await row.locator("label").innerText(), "height of the fall height");
-  assert.equal(await row.locator(".means").innerText(), "if empty: flight times alone");
+  assert.equal(await height.getAttribute("placeholder"), "flight times alone");
   await height.press("Enter");
   await ran(page, before + 1);
   assert.match(await page.locator("#text").inputValue(), /height = 0\.485\n/);
@@ -219,7 +219,7 @@ test("a value is typed with its unit, its meaning is shown, and a record is meas
   await page.waitForFunction(() => !app.running);
   // Keys of a few values offer them.
   assert.deepEqual(await card.locator("select[data-field$=' decimal'] option").evaluateAll((all) => all.map((one) => one.value)), ["", "comma", "point"]);
-  await card.locator("summary", { hasText: "more settings" }).click();
+  await card.locator("summary", { hasText: "all settings" }).click();
   await card.locator("input[data-field$=' threshold']").fill("0.4");
   await page.keyboard.press("Enter");
   await page.waitForFunction(() => document.getElementById("text").value.includes("threshold = 0.4"));
@@ -367,6 +367,60 @@ test("threshold and dead time are dragged in the trace, and the answer follows",
   await page.waitForFunction((wide) => app.trace.wide() < wide / 2, wide);
 }));
 
+test("the trace stands below its card, and says which sounds above the threshold are not taken, and when nothing changed", { skip }, () => open({}, async (page) => {
+  await drop(page, { "echo.csv": bounces({ echo: 0.3 }), "fall.csv": bounces() });
+  await ran(page);
+  // The obstacle stands at the head, not the height that would be one way around it.
+  assert.match(await page.locator("#tables .waits").innerText(), /^1 record gives no answer: echo\.csv: 6 sounds: two series of bounces/);
+  const card = page.locator(".card", { hasText: "echo.csv" }), state = (key, value) => page.evaluate(([key, value]) => app.trace.state(key, () => value), [key, value]);
+  await card.getByRole("button", { name: "see the record" }).click();
+  await page.locator("#trace canvas").first().waitFor();
+  assert.ok(await page.evaluate(() => document.getElementById("trace").previousElementSibling.innerText.includes("echo.csv")));
+  const level = () => page.evaluate(() => app.trace.handles.find(({ key }) => key === "threshold").level);
+  const before = await level();
+  await state("refractory", "0.1");
+  const said = page.locator("#trace p");
+  await page.locator("#trace p", { hasText: "3 impacts (filled marks). 3 louder than the threshold, not taken (hollow marks): 3 within the dead time." }).waitFor();
+  assert.match(await said.innerText(), /^refractory = 0\.1: no → 3 impacts\./);
+  assert.equal(await level(), before);
+  await state("refractory", "0.11");
+  await page.locator("#trace p", { hasText: "refractory = 0.11: nothing changed, the same 3 impacts." }).waitFor();
+}));
+
+test("a value that needs another one waits for it, and the record keeps its answer", { skip }, () => open({}, async (page) => {
+  await page.click("[data-example=bench]");
+  await ran(page);
+  const card = page.locator(".card", { hasText: "PULSE.CSV" }), field = (key) => card.locator(`input[data-field$=' ${key}']`), text = page.locator("#text");
+  await field("low_pass").fill("");
+  await field("low_pass").press("Enter");
+  await page.waitForFunction(() => !document.getElementById("text").value.includes('low_pass = "none"') && !app.running);
+  assert.match(await card.locator(".answer").innerText(), /^damping ratio ξ 0\.\d+/);
+  await field("low_pass").fill("20 kHz");
+  await field("low_pass").press("Enter");
+  await card.locator(".wrong", { hasText: "without its order" }).waitFor();
+  assert.doesNotMatch(await text.inputValue(), /low_pass = 20000/);
+  assert.match(await card.locator(".answer").innerText(), /^damping ratio ξ 0\.\d+/);
+  await field("order").fill("2");
+  await field("order").press("Enter");
+  await page.waitForFunction(() => /low_pass = 20000/.test(document.getElementById("text").value));
+  assert.equal((await text.inputValue()).match(/^order = 2$/gm).length, 2);
+  await page.waitForFunction(() => !app.running);
+  assert.equal(await card.locator(".wrong:not(:empty)").count(), 0);
+}));
+
+test("a caution stands below its answer, and a button sets what it proposes", { skip }, () => open({}, async (page) => {
+  // Two sines 0.2 Hz apart.
+  const rows = Array.from({ length: 40_000 }, (_, i) => `${(i / 2000).toFixed(4)},${(Math.sin(2 * Math.PI * 50 * i / 2000) + 0.8 * Math.sin(2 * Math.PI * 50.2 * i / 2000) + 0.01 * Math.sin(i * i)).toFixed(5)}`);
+  await drop(page, { "fans.csv": `time [s],acc [m/s^2]\n${rows.join("\n")}\n` });
+  await ran(page);
+  const before = await runs(page), card = page.locator(".card");
+  assert.match(await card.locator(".caution").innerText(), /^caution The power of the line at 50 Hz varies/);
+  await card.getByRole("button", { name: "set tones = 2" }).click();
+  await ran(page, before + 1);
+  await page.waitForFunction(() => /50\.000[\s\S]*50\.200/.test(document.querySelector(".card .answer").innerText));
+  assert.equal(await card.locator(".caution").count(), 0);
+}));
+
 test("the trace shows the impacts that a proposed value finds, and a button takes them", { skip }, () => open({}, async (page) => {
   await drop(page, { "echo.csv": bounces({ echo: 0.3 }) });
   await ran(page);
@@ -400,7 +454,8 @@ test("what is pressed while a value is taken is pressed, and the next field keep
   await page.waitForFunction((name) => document.getElementById("text").value.includes(name), name);
   await page.waitForFunction(() => !app.running);
   assert.match(await text(), /height = 0\.5\n/);
-  assert.deepEqual(await keys(), before);
+  // A key that the answer asks for comes behind them.
+  assert.deepEqual((await keys()).slice(0, before.length), before);
   // By the keyboard, too.
   await field("height").fill("0.51");
   await page.keyboard.press("Tab");

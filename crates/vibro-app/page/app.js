@@ -32,10 +32,11 @@ class App {
     [this.history, this.undone] = [[], []];
     const measure = (path, section) => this.editor.flush().then(() => this.edit((text) => `${text.trimEnd()}\n\n[[${section}]]\nfile = ${JSON.stringify(path)}\n`)).catch((error) => this.trouble(error.message));
     this.recordings = new Recordings(at("recordings"), { pictures: (path) => this.pictures(path), measure });
-    const set = (id, key, value) => this.change(id, "state", { key, value });
+    const set = (id, key, value, also = []) => this.change(id, "state", { key, value, also });
     const kind = (id, section) => this.change(id, "kind", { section }).catch((error) => this.trouble(error.message));
     const look = (id) => this.trace.open(this.tables, id).catch((error) => this.trouble(error.message));
-    this.cards = new Tables(at("tables"), { set, kind, look, find: (line) => this.editor.find(line), channels: (table) => this.recordings.channels(fromToml(valueOf(table, "file"))) });
+    const fileOf = (table) => fromToml(valueOf(table, "file")), below = { element: at("trace") };
+    this.cards = new Tables(at("tables"), { set, kind, look, below, find: (line) => this.editor.find(line), channels: (table) => this.recordings.channels(fileOf(table)), unitless: (table) => this.recordings.unitless(fileOf(table), fromToml(valueOf(table, "channel"))) });
     this.editor = new Editor(at("campaign"), (text) => this.edit(text));
     // Edited: not as it was proposed. Unsaved: the edits are nowhere else.
     [this.edited, this.unsaved, this.setting, this.looking] = [false, false, Promise.resolve(), Promise.resolve()];
@@ -45,7 +46,8 @@ class App {
       if (error instanceof Refused) return null;
       throw error;
     }));
-    this.trace = new TraceView(at("trace"), { ask, attempt, set, events: (...of) => this.events(...of), proposed: (table) => proposedIn(this.cards.said(table)) });
+    const stand = (id) => { below.id = id; this.cards.under(id); };
+    this.trace = new TraceView(at("trace"), { ask, attempt, set, stand, events: (...of) => this.events(...of), inBand: (...of) => this.inBand(...of), said: (table) => this.cards.said(table) });
     this.drawn = new Map();
     this.wire();
     this.program.ready.then(() => { document.body.dataset.ready = "yes"; }, (error) => this.trouble(`This browser cannot run the program: ${error.message}`));
@@ -288,7 +290,7 @@ class App {
         this.again = false;
         this.stale(true, "The answers to the last change are being computed: the report is still the one before.");
         done = await this.work("running", () => this.program.ask("run").then((found) => this.report().then(() => found)), true);
-        if (done) this.cards.refused = done.refused;
+        if (done) Object.assign(this.cards, { refused: done.refused, numbers: done.numbers, doubts: done.doubts });
         // Without an answer no mark stands for the campaign as it is.
         else this.results = null;
         this.cards.show(this.tables, this.problems);
@@ -312,6 +314,13 @@ class App {
     this.results = JSON.parse(await file("results.json"));
     const meta = document.querySelector("meta[http-equiv]").outerHTML;
     at("report").srcdoc = html.replace("<head>", () => `<head>${meta}`).replace("</body>", () => `${IN_REPORT.replace("SCROLL", String(this.scroll))}</body>`);
+  }
+
+  /** Whether impacts were found in a band, which the program chose. */
+  inBand({ section }, file) {
+    const list = { impacts: this.results?.impacts, drop: this.results?.drops }[section] ?? [];
+    const name = (path) => path.split("/").pop();
+    return list.some((one) => [one.file, ...one.files ?? []].some((path) => path && name(path) === name(file)) && one.findings?.some(({ code }) => code === "impacts-in-band"));
   }
 
   /** Times in s of what was detected in a file of a table. */

@@ -95,11 +95,17 @@ class Recordings {
     this.left = make("div");
     this.host.append(this.left);
     this.known = new Map(recordings.filter(({ problem }) => !problem).map(({ path, records }) => [path, records]));
-    this.fold(this.host, `${unread.length === 1 ? "1 file holds" : `${unread.length} files hold`} no record`, unread.map(({ path, problem }) => make("li", { textContent: `${path}: ${inShort(problem)}` })));
+    this.fold(this.host, `${unread.length === 1 ? "1 file holds" : `${unread.length} files hold`} no record`, unread.map(({ path, problem }) => make("li", {}, ...worded(`${path}: ${inShort(problem).split(`${path}, `).at(-1)}`))));
   }
 
   /** Names of the channels of a file. */
   channels(path) { return (this.known?.get(path) ?? []).map(({ name }) => name); }
+
+  /** Whether a channel of a file, or its only one, has no unit that the file states. */
+  unitless(path, channel) {
+    const records = (this.known?.get(path) ?? []).filter(({ name }, k) => !channel || name === channel || String(k + 1) === channel);
+    return records.length > 0 && records.every(({ unit, quantity, kind }) => kind === "trace" && !unit && quantity === "other");
+  }
 
   /** A folded list; nothing where it is empty. */
   fold(host, name, items, open = false) {

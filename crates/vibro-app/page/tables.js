@@ -1,8 +1,14 @@
 /** An error without the line of the text at which it stands: that is shown in the text. */
-const inShort = (message) => message.split("\n").filter((line) => !/^\s*(\d+\s*)?\|/.test(line)).join("\n").replaceAll(/\S*campaign\.toml, (line \d+), column \d+: /g, "$1: ");
+const inShort = (message) => message.split("\n").filter((line) => !/^\s*(\d+\s*)?\|/.test(line)).join("\n").replace(/[.:]?\n\s*try: /, ". Try: ").replaceAll(/\S*campaign\.toml, (line \d+), column \d+: /g, "$1: ");
 
 /** An error at its field. */
 const here = (message) => inShort(message).replaceAll(/\bline \d+: /g, "");
+
+/** Why a record gives no answer, without what to try. */
+const obstacle = (why) => here(why).split(/\.? Try: |; try: /)[0].replace(/^Left out: /, "");
+
+/** A sentence with what stands between backticks as code. */
+const worded = (text) => text.split("`").map((part, k) => (k % 2 ? make("code", { textContent: part }) : part));
 
 /** Parts and multiples of a unit. */
 const STEPS = { µ: 1e-6, u: 1e-6, m: 1e-3, c: 1e-2, "": 1, k: 1e3, M: 1e6 };
@@ -24,7 +30,7 @@ function inUnit(text, unit) {
 
 /** Two or more numbers that a person types without brackets, such as 0.5; 3 s, as a list in the unit of the key. The last unit holds for numbers without one. */
 function asList(text, unit) {
-  const parts = text.replace(/^\[|\]$/g, "").split(/;|,\s+|(?<=[\d.])\s+(?=[-+.\d])|(?<=[^\W\d_])\s+(?=[-+.\d])|(?<=\.\d+),(?=\d+\.)/).map((part) => part.trim()).filter(Boolean);
+  const parts = text.replace(/^\[|\]$/g, "").split(/;| to |,\s+|(?<=[\d.])\s+(?=[-+.\d])|(?<=[^\W\d_])\s+(?=[-+.\d])|(?<=\.\d+),(?=\d+\.)/).map((part) => part.trim()).filter(Boolean);
   const last = parts.at(-1)?.match(/[^-+\d\s.,eE].*$/)?.[0] ?? "";
   const values = parts.map((part) => inUnit(/[^-+\d\s.,eE]/.test(part) ? part : `${part}${last}`, unit).replace(/^(-?\d+),(\d+)$/, "$1.$2"));
   return parts.length > 1 && !THOUSAND.test(text) && values.every((value) => Number.isFinite(Number(value))) ? `[${values.join(", ")}]` : null;
@@ -69,11 +75,16 @@ function choices({ key, unit, meaning = "" }, table, channels) {
 /** Keys that an error names, such as `low_pass`. */
 const namedIn = (texts) => texts.flatMap((text) => Array.from(text.matchAll(/`([a-z_]+)(?: = [^`]*)?`/g), ([, key]) => key));
 
-/** Keys of the trace with the values that an error proposes, such as `threshold = 0.43`: these were tried. */
-const proposedIn = (texts) => texts.flatMap((text) => Array.from(text.matchAll(/`([a-z_]+) = ([^`]+)`/g), ([, key, value]) => ({ key, value }))).filter(({ key }) => key in PICKS);
+/** Keys with the values that an error or a caution proposes, such as `threshold = 0.43`: these were tried. */
+const proposedIn = (texts) => texts.flatMap((text) => Array.from(text.matchAll(/`([a-z0-9_]+) = ([^`]+)`/g), ([, key, value]) => ({ key, value })));
+
+/** Cautions of a record that are seen at once. */
+const MOST_CAUTIONS = 3;
 
 /** What is typed, by the unit of a key. */
 const SUCH_AS = { m: "57 cm", Hz: "20 kHz", s: "3 ms", kg: "250 g", "m/s": "1.5", "°": "30" };
+/** As above, of two values. */
+const PAIR_AS = { s: "0.5 to 3 s", Hz: "200 to 800 Hz", kg: "0.1; 0.2 kg", "m/s": "1.5; 0" };
 
 /** The name of a key in plain words. */
 const labelOf = ({ key, label }) => label?.replaceAll("`", "") ?? key.replaceAll("_", " ");
@@ -121,10 +132,13 @@ const pressed = new Pressed();
 class Tables {
   /**
    * `set(identity, key, value)` states a value; `kind(identity, section)` makes it another kind;
-   * `look(identity)` shows the trace; `find(line)` shows the text; `channels(table)` are those of its file.
+   * `look(identity)` shows the trace; `find(line)` shows the text; `channels(table)` are those of its file;
+   * `unitless(table)` tells whether its file states no unit; `below` stands below the card that it names.
    */
-  constructor(host, { set, kind, look, find, channels }) {
-    Object.assign(this, { host, set, kind, look, find, channels, kinds: [] });
+  constructor(host, { set, kind, look, find, channels, unitless, below }) {
+    Object.assign(this, { host, set, kind, look, find, channels, unitless, below, kinds: [] });
+    // What the last run found of each record: main numbers, and cautions and doubts with their severity.
+    [this.numbers, this.doubts] = [[], []];
     // Values that were refused stand, with the reason, until they are typed anew.
     [this.refused, this.redraws, this.wrong] = [[], false, new Map()];
     this.forget();
@@ -138,7 +152,10 @@ class Tables {
     this.places = new Map();
   }
 
-  show(tables, problems) { pressed.after("tables", () => this.redraw(tables, problems)); }
+  show(tables, problems) {
+    this.problems = problems;
+    pressed.after("tables", () => this.redraw(tables, problems));
+  }
 
   redraw(tables, problems) {
     // A browser may say that a field was left when it is only drawn anew: what is half typed in it is no value.
@@ -149,7 +166,7 @@ class Tables {
 
   draw(tables, problems) {
     // A field that is being typed in stays as it is, and a fold as it was opened.
-    const { dataset, value, selectionStart, selectionEnd } = document.activeElement ?? {}, field = dataset?.field;
+    const active = document.activeElement, { dataset, value, selectionStart, selectionEnd } = document.activeElement ?? {}, field = dataset?.field;
     const nameOf = (fold) => `${fold.parentElement.dataset.table}\n${fold.className}`;
     const open = new Set(Array.from(this.host.querySelectorAll("details[open]"), nameOf));
     const cards = tables.map((table, k) => this.card(table, identity(tables, k), tables[k + 1]?.line, problems));
@@ -158,8 +175,11 @@ class Tables {
     const order = tables.map((_, k) => k).sort((a, b) => waits(b) - waits(a));
     const ids = tables.map(({ files }, k) => `${files}\n${tables.slice(0, k).filter((other) => other.files === files).length}`);
     for (const k of order) if (!this.places.has(ids[k])) this.places.set(ids[k], this.places.size);
-    this.host.replaceChildren(...order.sort((a, b) => this.places.get(ids[a]) - this.places.get(ids[b])).map((k) => cards[k]));
+    const inOrder = order.sort((a, b) => this.places.get(ids[a]) - this.places.get(ids[b])).map((k) => cards[k]);
+    this.host.replaceChildren(...inOrder);
     this.tables = tables;
+    this.under(this.below.id);
+    if (this.below.element.contains(active)) active.focus({ preventScroll: true });
     this.head = make("div", { className: "head" });
     this.host.prepend(this.head);
     this.listed();
@@ -173,27 +193,33 @@ class Tables {
     input.setSelectionRange?.(selectionStart, selectionEnd);
   }
 
+  /** Puts what stands below a card there. */
+  under(id) {
+    this.host.querySelector(`[data-table="${CSS.escape(id ?? "")}"]`)?.after(this.below.element);
+  }
+
   /** Lists the values that are missing, and those that were typed and refused, as links. */
   listed() {
     const linked = (of, one, more) => {
       const links = this.tables.flatMap((table, k) => {
         const id = identity(this.tables, k);
-        return table.keys.filter((row) => of(row, id)).map((row) => this.toField(id, table, row));
+        return table.keys.filter((row) => of(row, id, table)).map((row) => this.toField(id, table, row));
       });
-      const words = links.length === 1 ? `One value ${one}: ` : `${links.length} values ${more}: `;
+      const words = `${links.length} ${links.length === 1 ? one : more}: `;
       return links.length ? [make("p", { className: "waits" }, words, ...links.flatMap((link, k) => (k ? [", ", link] : [link])))] : [];
     };
-    const missing = linked(({ known }) => known === "missing", "is missing", "are missing");
-    const refused = linked(({ key }, id) => this.wrong.has(`field-${id}-${key}`), "is not taken, the report has the one before", "are not taken, the report has those before");
+    // A record with an obstacle of its own is told below, with that.
+    const stuck = ({ refused, line }) => refused && !line;
+    const missing = linked(({ known }, _, table) => known === "missing" && !stuck(table), "value is missing", "values are missing");
+    const refused = linked(({ key }, id) => this.wrong.has(`field-${id}-${key}`), "typed value was refused, and the report keeps the one before", "typed values were refused, and the report keeps those before");
     // Records without an answer for another reason; a name that no card has stands with its reason.
-    const silent = this.refused.map(([record, why]) => {
+    const toCard = (k, textContent) => make("button", { className: "link", textContent, onclick: () => this.host.querySelector(`[data-table="${CSS.escape(identity(this.tables, k))}"]`).scrollIntoView({ block: "center" }) });
+    const silent = [...this.tables.flatMap((table, k) => (stuck(table) ? [[toCard(k, table.files), table.refused]] : [])), ...this.refused.map(([record, why]) => {
       const k = this.tables.findIndex((table) => table.line && this.isOf(table, record));
-      if (k < 0) return `${record}: ${here(why)}`;
-      const find = () => this.host.querySelector(`[data-table="${CSS.escape(identity(this.tables, k))}"]`).scrollIntoView({ block: "center" });
-      return make("button", { className: "link", textContent: record, onclick: find });
-    });
-    const without = silent.length ? [make("p", { className: "waits" }, silent.length === 1 ? "One record gives no answer: " : `${silent.length} records give no answer: `, ...silent.flatMap((one, k) => (k ? [", ", one] : [one])))] : [];
-    this.head.replaceChildren(...missing, ...refused, ...without);
+      return [k < 0 ? record : toCard(k, record), why];
+    })];
+    const without = silent.length ? [make("p", { className: "waits" }, `${silent.length} ${silent.length === 1 ? "record gives" : "records give"} no answer: `, ...silent.flatMap(([one, why], k) => [k ? "; " : "", one, `: ${obstacle(why)}`]))] : [];
+    this.head.replaceChildren(...without, ...missing, ...refused);
   }
 
   /** A link to a field. */
@@ -215,8 +241,20 @@ class Tables {
     // An error of a value stands below its field.
     const atKey = ({ line }) => table.keys.some((row) => row.line === line);
     const said = this.said(table, wrong.filter((one) => !atKey(one)).map(({ text }) => here(text)));
-    for (const text of said) card.append(make("p", { className: "refused", textContent: text }));
-    const proposed = proposedIn(said).filter(({ key }) => table.keys.some((row) => row.key === key));
+    for (const text of said) card.append(make("p", { className: "refused" }, ...worded(text)));
+    const of = ([record]) => table.line && (this.isOf(table, record) || this.covers(table, record));
+    for (const [, [heads, ...rows]] of this.numbers.filter(of)) card.append(this.answer(heads, rows));
+    // Doubts first, then cautions that propose a value; a few are seen.
+    const rank = ([, severity, text]) => (severity === "doubt" ? 2 : proposedIn([text]).length ? 1 : 0);
+    const own = said.length ? [] : this.doubts.filter(of).sort((a, b) => rank(b) - rank(a));
+    // The files of a pattern may have the same one.
+    const doubts = own.filter(([,, text], k) => own.findIndex((other) => other[2] === text) === k);
+    const lines = doubts.map(([, severity, text]) => make("p", { className: severity }, make("b", { textContent: severity }), " ", ...worded(text)));
+    const seen = Math.max(MOST_CAUTIONS, doubts.filter(([, severity]) => severity === "doubt").length), more = lines.splice(seen);
+    card.append(...lines);
+    if (more.length) card.append(make("details", { className: "cautions" }, make("summary", { textContent: more.length === 1 ? "1 more caution" : `${more.length} more cautions` }), ...more));
+    const told = [...said, ...doubts.map(([,, text]) => text)];
+    const proposed = proposedIn(told).filter(({ key, value }) => table.keys.some((row) => row.key === key && row.value !== value));
     // Found again when the card is drawn anew.
     const button = (textContent, onclick) => {
       const made = make("button", { textContent, onclick });
@@ -227,28 +265,32 @@ class Tables {
     const wrongs = make("span", { className: "wrong" });
     if (proposed.length) card.append(make("div", { className: "does" }, ...proposed.map(take), wrongs));
     // Keys that an error names stand with those that are in use; the title names the file.
-    const named = namedIn([...said, ...wrong.map(({ text }) => text)]), isTitle = (row) => row.key === "file" && fromToml(row.value) === table.files;
-    // A name that nobody asks for is one of the further settings.
-    const isName = (row) => row.key === "name" && row.known !== "missing" && !named.includes("name");
-    const stood = this.stood.get(id) ?? new Set(), isOpen = (row) => ["open", "possible"].includes(row.known);
-    const shown = (row) => (isTitle(row) ? "reading" : isName(row) ? "possible" : !isOpen(row) || named.includes(row.key) ? "used" : row.shared && row.known === "possible" ? "reading" : row.known);
-    const used = table.keys.filter((row) => shown(row) === "used");
+    const pending = Array.from(this.wrong).filter(([field]) => field.startsWith(`field-${id}-`)).map(([, { why }]) => why);
+    const named = namedIn([...told, ...pending, ...wrong.map(({ text }) => text)]), isTitle = (row) => row.key === "file" && fromToml(row.value) === table.files;
+    // The unit is asked for where the file states none.
+    const unitless = this.unitless(table), needed = namedIn(pending);
+    const asked = (row) => {
+      if (row.key === "unit" && unitless && row.known === "possible") return { ...row, known: "open", left_out: "such as m/s²", why: "the file states none: the values are used as they are" };
+      // A value that was refused needs this one.
+      return !row.value && needed.includes(row.key) && !this.wrong.has(`field-${id}-${row.key}`) ? { ...row, known: "missing" } : row;
+    };
+    // What is missing, proposed, guessed or changed stands first; what the files say is one of all settings.
+    const stood = this.stood.get(id) ?? new Set();
+    const matters = (row) => !isTitle(row) && (named.includes(row.key) || !["found", "possible"].includes(asked(row).known) && row.key !== "name");
+    const used = table.keys.filter(matters);
     for (const row of [...used.filter(({ known }) => known === "missing"), ...used]) stood.add(row.key);
     this.stood.set(id, stood);
-    const rows = (all) => all.map((row) => this.row(row, id, table));
-    card.append(...rows(Array.from(stood, (key) => table.keys.find((row) => row.key === key && !isTitle(row) && !isName(row))).filter(Boolean)));
+    const rows = (all) => all.map((row) => this.row(asked(row), id, table));
+    card.append(...rows(Array.from(stood, (key) => table.keys.find((row) => row.key === key)).filter(Boolean)));
     for (const { line, text } of wrong) {
       const input = card.querySelector(`[data-line="${line}"]`);
       input?.setAttribute("aria-invalid", "true");
       const below = input?.parentElement.querySelector(".wrong");
       if (below) below.textContent ||= here(text);
     }
-    const folds = { open: (n) => (n === 1 ? "1 value that would help" : `${n} values that would help`), possible: (n) => `more settings (${n})`, reading: (n) => `how the file is read (${n})` };
-    for (const [known, title] of Object.entries(folds)) {
-      const all = rows(table.keys.filter((row) => shown(row) === known && (!stood.has(row.key) || isTitle(row) || isName(row)))), summary = make("summary", { textContent: title(all.length) });
-      summary.dataset.field = `${id} ${known}`;
-      if (all.length) card.append(make("details", { className: known }, summary, ...all));
-    }
+    const rest = table.keys.filter(({ key }) => !stood.has(key)), summary = make("summary", { textContent: `all settings (${rest.length} more)` });
+    summary.dataset.field = `${id} settings`;
+    if (rest.length) card.append(make("details", { className: "settings" }, summary, ...rows(rest.filter(({ shared }) => !shared)), ...rows(rest.filter(({ shared }) => shared))));
     const does = make("div", { className: "does" });
     if (valueOf(table, "file")) {
       does.append(button("see the record", () => this.look(id)));
@@ -260,6 +302,24 @@ class Tables {
 
   /** Whether a record has the name of a table. */
   isOf(table, record) { return [fromToml(valueOf(table, "name")), table.files].includes(record); }
+
+  /** Whether a record is a file of a table, or one of its pattern. */
+  covers(table, record) {
+    const base = (path) => path.split("/").pop(), plain = (text) => text.replace(/[.+?^${}()|[\]\\]/g, "\\$&");
+    const names = [...table.files.split(", "), fromToml(valueOf(table, "file"))].filter(Boolean);
+    return names.some((name) => new RegExp(`^${plain(base(name)).replaceAll("*", ".*")}$`).test(base(record)));
+  }
+
+  /** The main numbers of a record: one row as a list, several as a table. */
+  answer(heads, rows) {
+    if (rows.length > 1) {
+      const line = (cells, tag) => make("tr", {}, ...cells.map((textContent) => make(tag, { textContent })));
+      return make("div", { className: "answer" }, make("table", {}, line(heads, "th"), ...rows.map((row) => line(row, "td"))));
+    }
+    // The unit stands behind the number.
+    const parts = heads.map((head, k) => [head.match(/^(.*?)(?: \((.*)\))?$/), rows[0][k], heads[k + 1] === "unit" ? rows[0][k + 1] : ""]).filter(([[, name]]) => name !== "unit");
+    return make("p", { className: "answer" }, ...parts.flatMap(([[, name, unit], value, own], k) => [k ? ", " : "", `${name} `, make("b", { textContent: [value, unit || own].filter(Boolean).join(" ") })]));
+  }
 
   /** Why a table gives no answer, and what else is said of it. */
   said(table, more = []) {
@@ -284,15 +344,18 @@ class Tables {
   }
 
   row(one, table, of) {
-    const { key, value, known, why, line, unit, meaning, left_out: without } = one;
+    const { key, value, known, why, line, unit, meaning, rest, left_out: without } = one, isList = /[[…]/.test(meaning ?? "");
     const id = `field-${table}-${key}`, { picks, all } = choices(one, of, this.channels), plain = fromToml(value);
-    const isChoice = all && ["", ...picks].includes(plain), empty = known === "missing" ? "choose" : `– ${without ?? ""}`.replaceAll("`", "");
+    const isChoice = all && ["", ...picks].includes(plain), empty = known === "missing" ? "choose" : `not set: ${without ?? ""}`.replaceAll("`", "");
     const option = (choice) => make("option", { value: choice, textContent: choice || empty, selected: choice === plain });
     const input = isChoice ? make("select", { id }, ...["", ...picks].map(option)) : make("input", { id, value: plain, autocomplete: "off", spellcheck: false });
-    if (!isChoice) input.placeholder = known === "missing" ? (SUCH_AS[unit] ? `such as ${SUCH_AS[unit]}` : "") : (without ?? "").replaceAll("`", "");
+    const example = (isList ? PAIR_AS : SUCH_AS)[unit], such = example && `such as ${example}`;
+    if (!isChoice) input.placeholder = known === "missing" ? such ?? "" : [without?.replaceAll("`", ""), isList && such].filter(Boolean).join(", or ");
     // A value of several lines is changed in the text.
     input.readOnly = value.includes("\n");
     [input.dataset.field, input.dataset.line] = [`${table} ${key}`, line ?? ""];
+    // A value that was refused without another one is taken with it.
+    if (value && this.wrong.get(id)?.toml === value) this.wrong.delete(id);
     const wrong = make("span", { className: "wrong" }), refused = this.wrong.get(id);
     let sent = input.value;
     if (refused) {
@@ -302,43 +365,36 @@ class Tables {
     }
     input.onchange = input.onblur = async () => {
       if (input.value === sent || input.readOnly || this.redraws) return;
+      let toml;
       [sent, wrong.textContent] = [input.value, ""];
       this.wrong.delete(id);
       input.removeAttribute("aria-invalid");
       try {
-        await this.set(table, key, toToml(input.value, unit, /[[…]/.test(meaning ?? "")));
+        toml = toToml(input.value, unit, isList);
+        // Values that were refused may go with this one.
+        const also = Array.from(this.wrong).filter(([field, { toml }]) => toml && field.startsWith(`field-${table}-`)).map(([field, { toml }]) => [field.slice(`field-${table}-`.length), toml]);
+        await this.set(table, key, toml, also);
       } catch (error) {
-        wrong.textContent = here(error.message);
-        this.wrong.set(id, { value: input.value, why: wrong.textContent });
-        input.setAttribute("aria-invalid", "true");
-        this.listed();
+        this.wrong.set(id, { value: input.value, toml, why: here(error.message) });
+        this.show(this.tables, this.problems);
       }
     };
     // A field that was drawn anew while it was typed in has not changed for the browser.
-    input.onkeydown = (event) => {
-      this.told = event.key === "Enter" ? id : null;
-      row.classList.toggle("told", this.told === id);
-      if (this.told) input.onchange();
-    };
-    // The label has the first words already.
-    const asked = why && why.startsWith(labelOf(one)) ? why.slice(labelOf(one).length).replace(/^ in [^ ,;]+[,;]?/, "").trim() : why;
-    const reason = known === "guessed" ? `guessed: ${why}` : known === "missing" ? `missing${asked ? `: ${asked}` : ""}` : why;
+    input.onkeydown = (event) => { if (event.key === "Enter") input.onchange(); };
+    // What it means, below it: over other fields it would hide them.
+    const state = ["guessed", "missing"].includes(known) ? known : "", more = (why || rest || "").replaceAll("`", "");
+    const reason = [state, more].filter(Boolean).join(": ");
     const label = make("label", { htmlFor: id }, labelOf(one), " ", make("code", { textContent: key }));
-    const row = make("div", { className: `row ${known}${this.told === id ? " told" : ""}` }, label, input, ...(unit ? [make("span", { className: "unit", textContent: unit })] : []));
+    const row = make("div", { className: `row ${known}` }, label, input, ...(unit ? [make("span", { className: "unit", textContent: unit })] : []));
     if (picks.length && !isChoice) {
       input.setAttribute("list", `${id}-picks`);
       row.append(make("datalist", { id: `${id}-picks` }, ...picks.map((value) => make("option", { value }))));
     }
-    // Shown while the field is used.
-    if (meaning) {
-      // The label has the first words.
-      const plain = meaning.replaceAll("`", ""), more = plain.includes(labelOf(one)) ? plain.slice(plain.indexOf(labelOf(one)) + labelOf(one).length).replace(/^[,;:]? */, "") : plain;
-      const means = [more, `if empty: ${without}`.replaceAll("`", "")].filter(Boolean).join("; ");
-      row.append(make("span", { className: "means", id: `${id}-means`, textContent: means }));
-      input.setAttribute("aria-describedby", `${id}-means`);
-    }
-    if (reason) row.append(make("span", { className: "why", textContent: reason }));
     row.append(wrong);
+    if (reason) {
+      row.append(make("span", { className: "why", id: `${id}-why`, textContent: reason }));
+      input.setAttribute("aria-describedby", `${id}-why`);
+    }
     return row;
   }
 }

@@ -1,6 +1,6 @@
 /** Keys that the mouse drags in the trace of a kind of record, with what each does. */
 const PICKS = {
-  threshold: { of: ["impacts", "drop"], about: "smallest impact counted, as a part of the median height of the impacts" },
+  threshold: { of: ["impacts", "drop"], about: "smallest impact counted, as a part of the median height of all sounds" },
   refractory: { of: ["impacts", "drop"], unit: "s", about: "dead time behind an impact, in s" },
   span: { of: ["impacts", "drop", "decay", "pulse", "spectrum"], unit: "s", about: "the part that is used, from and to in s" },
   band: { of: ["impacts", "decay"], unit: "Hz", about: "band in Hz, dragged in the spectrum" },
@@ -10,6 +10,10 @@ const PICKS = {
 const THRESHOLD = { impacts: 0.125, drop: 0.02 };
 /** Colours of what each proposed value would detect. */
 const TRIALS = ["--other", "--edge"];
+/** Time in s behind an impact within which quieter sounds count as its echoes. */
+const SHADOW = 0.06;
+/** Time in s by which the onset of a sound may be off from where it is heard. */
+const NEAR_TIME = 0.004;
 /** Distance in pixels within which the mouse takes a line. */
 const NEAR = 5;
 
@@ -35,16 +39,20 @@ function writeSteps(pen, { from, to }, across, unit, width, foot) {
 
 /** The raw trace of a table, with what was detected, and lines that the mouse drags. */
 class TraceView {
-  /** `events(table, file, results)` are the times of what was detected; `proposed(table)` the keys with values that its refusal names. */
-  constructor(host, { ask, attempt, set, events, proposed }) {
-    Object.assign(this, { host, ask, attempt, set, events, proposed });
+  /**
+   * `events(table, file, results)` are the times of what was detected, `inBand(table, file)` is whether in a band;
+   * `said(table)` is why there is no answer; `stand(identity)` puts the view below a card.
+   */
+  constructor(host, { ask, attempt, set, events, inBand, said, stand }) {
+    Object.assign(this, { host, ask, attempt, set, events, inBand, refusals: said, stand });
     [this.part, this.times, this.trials] = [[null, null], [], []];
   }
 
   async open(tables, id, file = 0) {
     const k = tables.findIndex((_, k) => identity(tables, k) === id);
-    if (this.id !== id || this.file !== file) [this.part, this.times, this.trials, this.tried] = [[null, null], [], [], undefined];
+    if (this.id !== id || this.file !== file) [this.part, this.times, this.trials, this.tried, this.before] = [[null, null], [], [], undefined, undefined];
     Object.assign(this, { tables, id, k, table: tables[k], file });
+    this.stand(id);
     this.host.hidden = false;
     await this.load();
     this.host.scrollIntoView({ block: "nearest" });
@@ -52,6 +60,7 @@ class TraceView {
 
   close() {
     this.host.hidden = true;
+    this.stand();
     this.id = this.tried = undefined;
   }
 
@@ -77,6 +86,13 @@ class TraceView {
   async load() {
     const [from, to] = this.part, columns = Math.max(200, Math.round(this.host.clientWidth) - 60);
     this.data = await this.ask("trace", { table: this.k, file: this.file, from, to, columns });
+    // The sounds are those of the part that is used; a threshold is a part of their median height.
+    const of = JSON.stringify([this.id, this.file, ...["span", "band", "envelope", "keep_hum"].map((key) => this.value(key))]);
+    if (of !== this.heardOf) {
+      this.heardOf = of;
+      const sounds = this.picks().includes("threshold") ? this.ask("sounds", { table: this.k, file: this.file }) : null;
+      this.heard = await Promise.resolve(sounds).catch(() => null);
+    }
     // Where nothing is detected any more, the marks stay as they were.
     const found = this.events(this.table, this.data.files[this.file]);
     this.lost = found.length === 0 && this.times?.length > 0;
@@ -88,7 +104,7 @@ class TraceView {
 
   /** Shows what would be detected with each value that the refusal of the record proposes. */
   async tryOut() {
-    const proposed = this.proposed(this.table).filter(({ key }) => this.picks().includes(key)).slice(0, TRIALS.length);
+    const proposed = proposedIn(this.refusals(this.table)).filter(({ key }) => this.picks().includes(key)).slice(0, TRIALS.length);
     const of = JSON.stringify([this.id, this.file, proposed, this.table.keys.map(({ key, value }) => [key, value])]);
     if (of === this.tried) return;
     [this.tried, this.trials] = [of, []];
@@ -114,9 +130,56 @@ class TraceView {
       return take;
     };
     this.offers.replaceChildren(...this.trials.map(button));
-    const help = this.trials.length ? "Lines in the colour of a button are the impacts that its value finds. Press it to take them. " : this.lost ? "Nothing is detected now: the marks are those of before. " : this.times.length ? `${this.times.length} detected: the marks below. ` : "";
-    this.said.textContent = `${help}${this.picks().length ? "Drag a line to move it; drag beside the lines to zoom" : "Drag to zoom"}, double-click for all.`;
+    const help = this.trials.length ? "Each button sets its value; lines in its colour are the impacts found with it. " : "";
+    this.said.replaceChildren(...this.changed(), `${this.picks().includes("threshold") ? `${this.counted()} ` : ""}${help}${this.picks().length ? "Drag a line to move it; drag beside the lines to zoom" : "Drag to zoom"}; double-click for all.`);
   }
+
+  /** How many impacts there are, and why other sounds above the threshold are none. */
+  counted() {
+    const ignored = this.ignored().filter(({ high }) => high), reasons = new Map();
+    for (const { why } of ignored) reasons.set(why, (reasons.get(why) ?? 0) + 1);
+    if (this.lost || !this.times.length) return `No answer: ${obstacle(this.refusals(this.table)[0] ?? "no impact is found")}. ${ignored.length} sounds are louder than the threshold (hollow marks).`;
+    const others = ignored.length ? ` ${ignored.length} louder than the threshold, not taken (hollow marks): ${Array.from(reasons, ([why, n]) => `${n} ${why}`).join(", ")}.` : "";
+    const elsewhere = this.heard && !this.isLevel() ? " They were found in a band of the trace, which has levels of its own." : "";
+    return `${this.times.length} impacts (filled marks).${others}${elsewhere}`;
+  }
+
+  /** What the last value that was set here has changed. */
+  changed() {
+    if (!this.before) return [];
+    const { key, value, times, why } = this.before, now = this.lost ? [] : this.times, reason = this.refusals(this.table)[0] ?? "";
+    const same = times.length === now.length && times.every((t, k) => t === now[k]) && why === reason;
+    const text = same ? `nothing changed${reason ? ", the record gives no answer for the same reason" : `, the same ${now.length} impacts`}.` : now.length ? `${times.length || "no"} → ${now.length} impacts.` : "no answer now.";
+    return [make("b", { textContent: `${key} = ${value}: ${text}` }), " "];
+  }
+
+  /** Whether a time is that of a sound. */
+  static isOf(t, { from, to }) { return t > from - NEAR_TIME && t < Math.max(to, from + NEAR_TIME); }
+
+  /** Whether the threshold is a level of this trace: impacts that were searched for in a band have others. */
+  isLevel() {
+    if (!this.heard?.sounds.length || this.inBand(this.table, this.data.files[this.file])) return false;
+    const high = this.heard.sounds.filter(({ height }) => height > this.least()), times = this.lost ? [] : this.times;
+    return times.filter((t) => high.some((sound) => TraceView.isOf(t, sound))).length >= 0.8 * times.length;
+  }
+
+  /** Sounds that are no impacts of the answer, whether each exceeds the threshold, and why it is not taken. */
+  ignored() {
+    if (!this.isLevel()) return [];
+    const times = this.lost ? [] : this.times, dead = Number(this.value("refractory")) || 0, least = this.least();
+    const isTaken = (sound) => times.some((t) => TraceView.isOf(t, sound));
+    const why = ({ from }) => {
+      const before = times.filter((t) => t < from).at(-1);
+      if (before === undefined) return "before the first impact";
+      if (from - before < dead) return "within the dead time";
+      if (from - before < SHADOW) return "echoes of an impact";
+      return this.table.section === "drop" ? "no bounce of this fall" : "echoes";
+    };
+    return this.heard.sounds.filter((sound) => !isTaken(sound)).map((sound) => ({ ...sound, high: sound.height > least, why: why(sound) }));
+  }
+
+  /** Height over the level at rest from which a sound counts. */
+  least() { return Math.max((Number(this.value("threshold")) || THRESHOLD[this.table.section]) * this.heard.median, this.heard.reach); }
 
   build() {
     const { data } = this, title = `${data.files[this.file]}, ${data.name || "channel 1"}: ${data.n} values`;
@@ -185,17 +248,6 @@ class TraceView {
     this.load().catch((error) => { this.said.textContent = inShort(error.message); });
   }
 
-  /** Median height of what was detected, by the picture. */
-  height() {
-    const { picture } = this.data, n = picture.low.length, wide = this.wide() || 1;
-    const heights = this.times.filter((t) => t >= picture.from && t <= picture.to).map((t) => {
-      const at = Math.floor((t - picture.from) / wide * n), around = [at - 1, at, at + 1, at + 2, at + 3];
-      return Math.max(0, ...around.map((k) => Math.max(Math.abs(picture.low[k] ?? 0), Math.abs(picture.high[k] ?? 0))));
-    });
-    heights.sort((a, b) => a - b);
-    return heights.length ? heights[Math.floor(heights.length / 2)] : Math.max(...range(picture).map(Math.abs));
-  }
-
   /** Time of the largest value that is shown. */
   largest() {
     const { picture } = this.data, size = (k) => Math.max(Math.abs(picture.low[k] ?? 0), Math.abs(picture.high[k] ?? 0));
@@ -214,19 +266,39 @@ class TraceView {
     this.level = (y) => low + (1 - y / (height - foot)) * (high - low);
     this.drawTrials(pen, height - foot);
     drawBand(pen, picture, this.across, this.up);
+    // What the analysis does not read lies in the shade.
+    const used = pairOf(this.value("span"));
+    if (used?.length === 2) {
+      pen.fillStyle = colour("--faint");
+      pen.globalAlpha = 0.6;
+      pen.fillRect(0, 0, this.across(used[0]), height - foot);
+      pen.fillRect(this.across(used[1]), 0, width, height - foot);
+      pen.globalAlpha = 1;
+    }
     pen.fillStyle = colour("--soft");
     pen.font = "11px sans-serif";
     writeSteps(pen, picture, this.across, "s", width, height - 4);
     pen.textAlign = "left";
     pen.fillText(quantity(high - room, unit), 4, 12);
     pen.fillText(quantity(low + room, unit), 4, height - foot - 4);
-    pen.strokeStyle = pen.fillStyle = colour("--edge");
-    for (const t of this.times) {
+    const mark = (t) => {
       const x = this.across(t);
       pen.beginPath();
       pen.moveTo(x, height - foot);
       pen.lineTo(x - 4, height - foot + 7);
       pen.lineTo(x + 4, height - foot + 7);
+      pen.closePath();
+    };
+    pen.lineWidth = 1;
+    pen.strokeStyle = colour("--soft");
+    for (const { from, high } of this.ignored()) {
+      if (!high) continue;
+      mark(from);
+      pen.stroke();
+    }
+    pen.strokeStyle = pen.fillStyle = colour("--edge");
+    for (const t of this.lost ? [] : this.times) {
+      mark(t);
       pen.fill();
     }
     this.handles = this.lines();
@@ -251,13 +323,25 @@ class TraceView {
     });
   }
 
-  drawHandle(pen, { place, level, name }, width, height) {
+  drawHandle(pen, { place, level, mirrored, name }, width, height) {
+    // A name is read also over the trace.
+    const write = (text, x, y) => {
+      pen.save();
+      [pen.strokeStyle, pen.lineWidth, pen.lineJoin] = [colour("--paper"), 4, "round"];
+      pen.strokeText(text, x, y);
+      pen.restore();
+      pen.fillText(text, x, y);
+    };
     pen.setLineDash([6, 4]);
     pen.lineWidth = 1.5;
     pen.beginPath();
     if (level !== undefined) {
       pen.moveTo(0, this.up(level));
       pen.lineTo(width, this.up(level));
+      if (mirrored !== undefined) {
+        pen.moveTo(0, this.up(mirrored));
+        pen.lineTo(width, this.up(mirrored));
+      }
     } else {
       pen.moveTo(this.across(place), 0);
       pen.lineTo(this.across(place), height);
@@ -265,12 +349,12 @@ class TraceView {
     pen.stroke();
     pen.setLineDash([]);
     pen.textAlign = "right";
-    if (level !== undefined) pen.fillText(name, width - 4, this.up(level) - 4);
+    if (level !== undefined) write(name, width - 4, Math.max(this.up(level) - 4, 12));
     // Names of lines that stand near each other have heights of their own.
     else {
       const x = this.across(place), left = x < width / 2;
       pen.textAlign = left ? "left" : "right";
-      pen.fillText(name, left ? x + 4 : x - 4, name === "from" || name === "to" ? 26 : 40);
+      write(name, left ? x + 4 : x - 4, name === "from" || name === "to" ? 26 : 40);
     }
     pen.textAlign = "left";
   }
@@ -278,14 +362,18 @@ class TraceView {
   /** The lines that are dragged, each with the value that it sets. */
   lines() {
     const all = [], { picture, first, last } = this.data, can = this.picks();
-    if (can.includes("threshold")) {
-      const height = this.height(), own = Number(this.value("threshold")), part = own || THRESHOLD[this.table.section];
-      all.push({ name: `${own ? "threshold" : "threshold (default)"} ${part}: ${quantity(part * height, this.data.unit)}`, level: part * height, key: "threshold", to: (x, y) => rounded(Math.max(Math.abs(this.level(y)) / height, 1e-3), 0.01) });
+    // Where a band is searched, a threshold is a level of that, and no level of this trace.
+    if (can.includes("threshold") && this.isLevel()) {
+      const { median, rest, sides: [up, down] } = this.heard, own = this.value("threshold"), part = own || THRESHOLD[this.table.section];
+      const level = (height) => rest + (up ? height : -height), least = this.least();
+      const noise = least > part * median, words = noise ? "noise limit, above the threshold" : `threshold ${part}${own ? "" : " (default)"} of the median height`;
+      const name = this.canvas.clientWidth < 500 ? (noise ? "noise limit" : `threshold ${part}`) : `${words}: ${quantity(least, this.data.unit)}`;
+      all.push({ name, level: level(least), mirrored: up && down ? rest - least : undefined, key: "threshold", to: (x, y) => rounded(Math.min(Math.max(Math.abs(this.level(y) - rest) / median, 1e-3), 0.99), 0.01) });
     }
     if (can.includes("refractory")) {
       const begins = this.times.find((t) => t >= picture.from) ?? this.times[0] ?? this.largest(), dead = Number(this.value("refractory")) || 0;
       // Where none is stated, the line waits at the impact.
-      all.push({ name: dead ? "refractory (dead time)" : "refractory: drag from here", place: begins + dead, key: "refractory", to: (x) => rounded(Math.max(this.at(x) - begins, 1e-6), this.pixel()) });
+      all.push({ name: dead ? `dead time ${quantity(dead, "s")}` : "dead time: drag to the right", place: begins + dead, key: "refractory", to: (x) => rounded(Math.max(this.at(x) - begins, 1e-6), this.pixel()) });
     }
     if (can.includes("span")) {
       const [from, to] = pairOf(this.value("span")) ?? [first, last], [low, high] = this.value("span").match(/[-+\d.eE]+/g) ?? [String(first), String(last)];
@@ -309,7 +397,7 @@ class TraceView {
       const { pen, height } = { pen: this.canvas.getContext("2d"), height: this.canvas.clientHeight };
       if (line) {
         value = line.to(moved, offsetY);
-        this.drawHandle(pen, line.level !== undefined ? { name: `${value} of the median height: ${quantity(Math.abs(this.level(offsetY)), this.data.unit)}`, level: this.level(offsetY) } : { name: value, place: this.at(moved) }, this.canvas.clientWidth, height - 20);
+        this.drawHandle(pen, line.level !== undefined ? { name: `${value} of the median height`, level: this.level(offsetY) } : { name: value, place: this.at(moved) }, this.canvas.clientWidth, height - 20);
         if (this.inputs[line.key]) this.inputs[line.key].value = value;
       } else {
         pen.globalAlpha = 0.2;
@@ -367,8 +455,11 @@ class TraceView {
 
   async state(key, value) {
     try {
-      await this.set(this.id, key, value());
+      const typed = value();
+      this.before = { key, value: typed, times: this.lost ? [] : this.times, why: this.refusals(this.table)[0] ?? "" };
+      await this.set(this.id, key, typed);
     } catch (error) {
+      this.before = undefined;
       this.said.replaceChildren(make("span", { className: "wrong", textContent: here(error.message) }));
       this.inputs[key]?.setAttribute("aria-invalid", "true");
     }

@@ -39,6 +39,9 @@ pub enum Request {
         key: String,
         /// The value.
         value: String,
+        /// Further keys of the table with values that were refused without this one.
+        #[serde(default)]
+        also: Vec<(String, String)>,
     },
     /// Another kind of record for a table.
     Kind {
@@ -76,6 +79,14 @@ pub enum Request {
         to: Option<f64>,
         /// Number of columns of the picture.
         columns: usize,
+    },
+    /// The sounds in the trace of a table, among which its impacts are chosen.
+    Sounds {
+        /// Number of the table, from 0.
+        table: usize,
+        /// Number of its file, from 0.
+        #[serde(default)]
+        file: usize,
     },
     /// A file of the results.
     File {

@@ -99,6 +99,7 @@ impl SeenTable {
         for meaning in KeyMeaning::of(&self.section) {
             let required = meaning.left_out == "required";
             if let Some(row) = self.keys.iter_mut().find(|row| row.key == meaning.key) {
+                row.why = meaning.beyond(&row.why).to_owned();
                 row.meaning = Some(meaning);
                 if runs && row.known == "missing" && !required {
                     (row.known, row.why) = ("open", String::new());

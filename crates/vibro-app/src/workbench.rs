@@ -9,8 +9,9 @@ use vibroimpact::campaign::{Campaign, Reading, WrittenTable};
 use vibroimpact::error::{Error, Result};
 use vibroimpact::proposal::Proposal;
 use vibroimpact::read::{Folder, Manifest, Owner, Reader};
-use vibroimpact::report::Output;
-use vibroimpact::report::words::{Voice, sentence};
+use vibroimpact::record::Severity;
+use vibroimpact::report::words::{About, Voice, sentence};
+use vibroimpact::report::{Cell, Output, Table};
 
 /// Files that a person gave, the campaign for them, and the results of its last run.
 #[derive(Debug)]
@@ -83,8 +84,8 @@ impl Workbench {
                 text.clone_into(&mut self.text);
                 self.state()
             }
-            Request::State { table, key, value } => {
-                self.set(*table, key, value)?;
+            Request::State { table, key, value, also } => {
+                self.set(*table, (key, value), also)?;
                 self.state()
             }
             Request::Kind { table, section } => {
@@ -97,6 +98,7 @@ impl Workbench {
             Request::Trace { table, file, from, to, columns } => {
                 self.trace(*table, *file, (*from, *to), *columns)?
             }
+            Request::Sounds { table, file } => self.sounds(*table, *file)?,
             Request::File { name } => return Ok(Reply::Bytes(self.file(name)?)),
             Request::Archive => return Ok(Reply::Bytes(self.archive()?)),
         }))
@@ -229,19 +231,40 @@ impl Workbench {
         Ok((text, seen.section, number.ok_or_else(no_table)?))
     }
 
-    /// Sets a key of a table, unless its value is none that the key takes, so that no table could be read.
-    fn set(&mut self, table: usize, key: &str, value: &str) -> Result<()> {
+    /// Sets a key of a table, together with values that were refused without it where they go with it. A
+    /// value is refused if the key does not take it, so that no table could be read, or if it needs another
+    /// key: the record keeps the answer that it has.
+    fn set(&mut self, table: usize, one: (&str, &str), also: &[(String, String)]) -> Result<()> {
         let (text, section, number) = self.with_table(table)?;
-        let text = Campaign::text_with(&text, (&section, number), key, value)?;
-        let before = std::mem::replace(&mut self.text, text);
-        if let Err(error) = self.campaign() {
-            let after = std::mem::replace(&mut self.text, before);
-            if self.campaign().is_ok() {
-                return Err(error);
-            }
-            self.text = after;
-        }
+        let state = |text: &str, (key, value): (&str, &str)| {
+            Campaign::text_with(text, (&section, number), key, value)
+        };
+        let alone = state(&text, one)?;
+        let mut others = also.iter().map(|(key, value)| (key.as_str(), value.as_str()));
+        let together = others.try_fold(alone.clone(), |text, other| state(&text, other));
+        let is_whole = |text: &str| matches!(self.lacks(text), Ok(None));
+        self.text = match (together, self.lacks(&alone)) {
+            (Ok(text), _) if !also.is_empty() && is_whole(&text) => text,
+            (_, Ok(Some(why))) if is_whole(&text) => return Err(Error::refused(why)),
+            // An error that was there before is no reason against this value.
+            (_, Err(error)) if self.campaign().is_ok() => return Err(error),
+            _ => alone,
+        };
         Ok(())
+    }
+
+    /// In words, the first fault of a text by which a table states a key without another one that goes with
+    /// it.
+    fn lacks(&self, text: &str) -> Result<Option<String>> {
+        let campaign = analysis::parse(&self.folder, &self.path(), text.to_owned())?;
+        let stated = WrittenTable::all(text)?;
+        let with_open = |error: &Error| {
+            let at = error.line().unwrap_or(0);
+            let table = stated.iter().rev().find(|table| table.line as u64 <= at)?;
+            let key = error.settings().find(|key| table.value(key).is_none())?;
+            Some(format!("{}; it needs `{key}`", words::error(error)))
+        };
+        Ok(campaign.faults().iter().find_map(|fault| with_open(&fault.error)))
     }
 
     /// Gives a table another kind.
@@ -263,7 +286,17 @@ impl Workbench {
         let of_all = outcome.answer.findings.iter().filter(|(_, finding)| finding.code == analysis::LEFT_OUT);
         let said = |finding| words::as_kinds(&sentence(finding, Voice::Campaign));
         let refused: Vec<_> = of_all.map(|(name, finding)| (name, said(finding))).collect();
-        Ok(json!({ "answered": outcome.answered, "files": outcome.files, "refused": refused }))
+        // What was found of each record, and what makes it less certain.
+        let numbers: Vec<_> = outcome.answer.headlines.iter().flat_map(by_record).collect();
+        let uncertain =
+            |(_, finding): &&About| finding.severity() > Severity::Note && finding.code != analysis::LEFT_OUT;
+        let doubts: Vec<_> = outcome.answer.findings.iter().filter(uncertain).collect();
+        let doubts: Vec<_> =
+            doubts.into_iter().map(|(name, one)| (name, one.severity().name(), said(one))).collect();
+        let (answered, files) = (outcome.answered, outcome.files);
+        Ok(json!({
+            "answered": answered, "files": files, "refused": refused, "numbers": numbers, "doubts": doubts
+        }))
     }
 
     /// The results as they would be with this key: nothing is changed.
@@ -308,6 +341,13 @@ impl Workbench {
         Ok(joined(about, json!({ "picture": picture, "spectrum": spectrum })))
     }
 
+    /// The sounds of the part of a trace that is used; null where the kind has none.
+    fn sounds(&self, table: usize, file: usize) -> Result<Value> {
+        let (text, section, number) = self.with_table(table)?;
+        let campaign = analysis::parse(&self.folder, &self.path(), text)?;
+        Ok(json!(analysis::raw_sounds(&campaign, (&section, number), file)?))
+    }
+
     /// A file of the results.
     fn file(&self, name: &str) -> Result<Vec<u8>> {
         if name == Proposal::FILE {
@@ -335,6 +375,24 @@ impl Workbench {
         };
         packed(std::iter::once(Ok(campaign)).chain(given.chain(results).map(file)))
     }
+}
+
+/// The rows of each record in a table of main numbers: its name, and heads and cells as text.
+fn by_record(table: &Table) -> Vec<(String, Vec<Vec<String>>)> {
+    let mut all: Vec<(String, Table)> = Vec::new();
+    for row in &table.rows {
+        let Some(Cell::Text(name)) = row.first() else { continue };
+        // The remark of a row points to the doubts, which stand below it.
+        let cells = row[1..row.len() - 1].to_vec();
+        match all.iter_mut().find(|(known, _)| known == name) {
+            Some((_, own)) => own.rows.push(cells),
+            None => {
+                let columns = table.columns[1..table.columns.len() - 1].to_vec();
+                all.push((name.clone(), Table { columns, rows: vec![cells], ..Table::default() }));
+            }
+        }
+    }
+    all.into_iter().map(|(name, table)| (name, table.in_words())).collect()
 }
 
 /// Section and title of each kind of record. A sweep has several files, so no record becomes one.

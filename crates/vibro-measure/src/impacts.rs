@@ -10,6 +10,7 @@ mod bands;
 mod detect;
 mod echoes;
 mod excitation;
+mod heard;
 mod hum;
 mod interval;
 mod onset;
@@ -21,6 +22,7 @@ pub(crate) use detect::{Choose, Sound, detect_among};
 pub use detect::{Detected, ImpactsOptions, detect};
 pub(crate) use echoes::QUIETER;
 pub use excitation::{PerCycle, Phase};
+pub use heard::{Heard, HeardSound, heard};
 pub use interval::{Interval, interval};
 
 use super::Estimate;

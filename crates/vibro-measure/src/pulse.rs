@@ -123,7 +123,7 @@ pub fn pulse(trace: &Trace, options: &PulseOptions) -> Result<PulseResult> {
     let rate = trace.sampling_rate()?;
     check(trace, options)?;
     let located = locate(&trace.values)?;
-    let seen = samples_of(&located)?;
+    let seen = samples_of(&located, located.another(&trace.values).is_some())?;
     let filter = options.instrument.low_pass();
     let (mut doubts, mut found) = (options.instrument.doubts(rate), Vec::new());
     let unlike = |error: Error| {
@@ -196,12 +196,18 @@ pub fn pulse(trace: &Trace, options: &PulseOptions) -> Result<PulseResult> {
     let whiteness = if led.is_some() { of_best } else { whiteness };
     let answered = !result.restitution.value.is_nan();
     let coloured = answered && whiteness.rejected();
-    found.extend(coloured.then(|| whiteness.coloured("pulse-residuals-coloured")));
     found.extend(led.filter(|_| answered && !unexplained));
     let restitution = &result.restitution;
     let more = restitution.std.is_some_and(|std| restitution.value - 2.0 * std > 1.0);
     found.extend(more.then(|| gained(&result).of(&mut result)));
     found.extend(unexplained.then(|| Finding::doubt("pulse-unexplained").of(&mut result)));
+    // Where a doubt has taken the uncertainties, none is enlarged.
+    let code = "pulse-residuals-coloured";
+    let pattern = match result.restitution.std {
+        Some(_) => whiteness.coloured(code),
+        None => Finding::caution(code),
+    };
+    found.extend(coloured.then_some(pattern));
     found.extend(undamped(&result.xi));
     // It rests on no model of contact or instrument, but on the level around the pulse.
     let force = scale.force_of_unit(options.mass).filter(|_| has_level);
@@ -218,17 +224,22 @@ fn leader(fits: &[FittedPulse]) -> &FittedPulse {
     fits.iter().fold(&fits[0], |best, fit| if fit.aicc() < best.aicc() { fit } else { best })
 }
 
-/// Number of samples of a pulse above half its height.
+/// Number of samples of a pulse above half its height; with `several`, the record has more like it.
 ///
 /// # Errors
 /// If there are too few for a fit.
-fn samples_of(located: &Located) -> Result<f64> {
+fn samples_of(located: &Located, several: bool) -> Result<f64> {
     let seen = located.flanks.1 - located.flanks.0;
     if seen < FEWEST {
         let why = format!(
             "the pulse has {seen:.1} samples above half its height, and at least {FEWEST:.1} are needed"
         );
-        return Err(Error::refused(why).hint("sample faster"));
+        // A spike among others is an impact of a machine: a faster record would show several pulses.
+        return Err(Error::refused(why).hint(if several {
+            "`vibro impacts` times several impacts in a row; for the shape of one of them sample faster"
+        } else {
+            "sample faster"
+        }));
     }
     Ok(seen)
 }

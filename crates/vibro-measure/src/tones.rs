@@ -393,8 +393,11 @@ impl SineFit {
             };
             if let Some(lines) = &lines {
                 let coloured = Finding::caution("sine-noise-coloured").number("frequency", frequency);
-                findings.extend((widening > COLOURED).then(|| coloured.number("factor", widening)));
-                findings.extend(tone.widened(lines, other));
+                let beside = tone.widened(lines, other);
+                // Where a doubt has taken the uncertainty, none is enlarged.
+                let enlarged = widening > COLOURED && tone.frequency.std.is_some();
+                findings.extend(enlarged.then(|| coloured.number("factor", widening)));
+                findings.extend(beside);
             }
             tone.frequency = tone.frequency.with_relative(trace.meta.clock);
             tone.amplitude = tone.amplitude.with_relative(trace.meta.lost(frequency));

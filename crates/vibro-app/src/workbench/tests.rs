@@ -8,6 +8,11 @@ fn json(bench: &mut Workbench, request: &Request) -> Value {
     }
 }
 
+fn set(table: usize, key: &str, value: &str, also: &[(&str, &str)]) -> Request {
+    let also = also.iter().map(|(key, value)| ((*key).to_owned(), (*value).to_owned())).collect();
+    Request::State { table, key: key.to_owned(), value: value.to_owned(), also }
+}
+
 /// An example gives what its run on a disk gives, but for the path of the campaign.
 #[test]
 fn an_example_runs_in_memory() {
@@ -46,8 +51,7 @@ fn a_missing_value_is_filled_in_and_the_record_answers() {
     let seen = json(&mut bench, &Request::Propose { known: None });
     let tables = seen["tables"].as_array().unwrap();
     assert!(!tables.is_empty(), "{seen}");
-    let set = Request::State { table: 0, key: "threshold".to_owned(), value: "0.2".to_owned() };
-    let after = json(&mut bench, &set);
+    let after = json(&mut bench, &set(0, "threshold", "0.2", &[]));
     assert!(after["text"].as_str().unwrap().contains("threshold = 0.2"), "{after}");
     let trace =
         json(&mut bench, &Request::Trace { table: 0, file: 0, from: Some(0.2), to: Some(0.4), columns: 50 });
@@ -147,4 +151,29 @@ fn what_waits_for_a_value_outlives_further_files() {
     bench.add("let_go.csv", b"t [s],x [mm]\n0,1\n0.001,0.9\n0.002,0.7\n".to_vec()).unwrap();
     let second = json(&mut bench, &Request::Propose { known: Some(text) });
     assert_eq!(waits(&second), [json!("fall.csv")], "{second}");
+}
+
+/// A value that needs another one is refused with its name, and taken together with it, in either order.
+#[test]
+fn a_value_that_needs_another_one_waits_for_it() {
+    let mut bench = Workbench::default();
+    json(
+        &mut bench,
+        &Request::Edit { text: "[[pulse]]\ntime_to_peak = 6.64e-6\nduration = 18e-6\n".to_owned() },
+    );
+    let (order, low_pass) = (("order", "2"), ("low_pass", "2e5"));
+    for (one, other) in [(order, low_pass), (low_pass, order)] {
+        let alone = bench.answer(&set(0, one.0, one.1, &[]), &()).unwrap_err();
+        assert!(alone.to_string().contains(other.0), "{alone}");
+        assert!(!bench.text.contains(one.0), "{}", bench.text);
+        let both = json(&mut bench, &set(0, other.0, other.1, &[one]));
+        assert!(both["problems"].as_array().unwrap().is_empty(), "{both}");
+        for key in ["order", "low_pass"] {
+            assert!(bench.text.contains(key), "{}", bench.text);
+        }
+        bench.text = bench.text.lines().take(3).map(|line| format!("{line}\n")).collect();
+    }
+    // A fault of another kind is not held back.
+    json(&mut bench, &set(0, "duration", "-1", &[]));
+    assert!(bench.text.contains("duration = -1"), "{}", bench.text);
 }

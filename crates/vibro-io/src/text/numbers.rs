@@ -155,7 +155,7 @@ fn stray(lines: &[Line]) -> Option<Error> {
     let (byte, cell) = &row[at];
     let place = in_line(lines[first].number).column(lines[first].column(*byte));
     let error = |cell: &str| {
-        Error::input(place, format!("{cell:?}, and no row of numbers"), "numbers in all cells of a row")
+        Error::input(place, format!("{cell:?}, and no row of numbers"), "a number in every cell of a row")
     };
     let turned = at == 0 && row.len() > lines.len() - first && !begins(cell);
     if turned {

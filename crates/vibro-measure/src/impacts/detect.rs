@@ -157,7 +157,7 @@ pub(crate) fn detect_among(
 }
 
 /// Turns values upright whose pulses point down.
-fn turned_upright(values: &mut [f64], bursts: &[Range<usize>]) -> Option<Finding> {
+pub(super) fn turned_upright(values: &mut [f64], bursts: &[Range<usize>]) -> Option<Finding> {
     if median(heights(values, bursts, -1.0)) <= INVERTED * median(heights(values, bursts, 1.0)) {
         return None;
     }
@@ -182,7 +182,7 @@ fn lost(values: &[f64], bursts: &[Range<usize>], quiet: &Background) -> Option<D
 
 /// The values, filtered to their band and without mains hum and background level, or the envelope of these;
 /// the background of the noise; the removed hum.
-fn cleared(
+pub(super) fn cleared(
     trace: &Trace,
     options: &ImpactsOptions,
     rate: f64,
@@ -324,7 +324,7 @@ fn recorded(pulse: &Trace, rate: f64) -> Result<PulseShape> {
 }
 
 /// Largest value of each burst, or of its negative with a `sign` of −1; at least 0.
-fn heights(values: &[f64], bursts: &[Range<usize>], sign: f64) -> Vec<f64> {
+pub(super) fn heights(values: &[f64], bursts: &[Range<usize>], sign: f64) -> Vec<f64> {
     bursts.iter().map(|b| values[b.clone()].iter().map(|v| sign * v).fold(0.0, f64::max)).collect()
 }
 

@@ -74,6 +74,31 @@ fn pulses_that_point_downwards_are_turned() {
     assert!(has(&found, "pulses-inverted"), "{:?}", found.findings);
 }
 
+/// The sounds among which a threshold chooses are those of the trace, whatever the options choose.
+#[test]
+fn what_is_heard_is_what_a_threshold_is_set_by() {
+    let times: Vec<f64> = (0..10).map(|k| 0.05 + 0.1 * f64::from(k)).collect();
+    let mut trace = pulses(&times, 1100, 1000.0, 0.005);
+    let upright = heard(&trace, &ImpactsOptions::default(), false).unwrap();
+    let strict = ImpactsOptions { threshold: Some(0.9), refractory: Some(0.15), ..ImpactsOptions::default() };
+    assert_eq!(heard(&trace, &strict, false).unwrap(), upright);
+    assert_eq!((upright.sounds.len(), upright.sides), (10, [true, false]));
+    for (sound, time) in upright.sounds.iter().zip(&times) {
+        // A sound begins where it leaves the noise: within two samples of its onset.
+        assert!((sound.from - time).abs() < 2e-3 && sound.to > sound.from, "{sound:?} {time}");
+        assert!(
+            sound.height > upright.reach && (sound.height / upright.median - 1.0).abs() < 0.2,
+            "{sound:?}"
+        );
+    }
+    trace.values.iter_mut().for_each(|v| *v = 2.0 - *v);
+    let turned = heard(&trace, &ImpactsOptions::default(), false).unwrap();
+    assert_eq!((turned.sounds.len(), turned.sides), (10, [false, true]));
+    assert!((turned.rest - 2.0).abs() < 0.01, "{turned:?}");
+    let falls = heard(&trace, &ImpactsOptions::default(), true).unwrap();
+    assert_eq!((falls.sounds.len(), falls.sides), (10, [true, true]));
+}
+
 #[test]
 fn what_holds_no_impacts_is_refused() {
     let refused = |trace: &Trace| impacts(trace, &ImpactsOptions::default()).unwrap_err();

@@ -108,7 +108,7 @@ fn at(guess: &GuessedPulse, recorder: &Recorder, phase: f64, drawn: Option<Noise
     recorder.holds(trace.values.iter().fold(0.0, |most: f64, v| most.max(v.abs())))?;
     // The record has no step of a converter; its rounding is in the covariance.
     let located = Located { quantum: 0.0, clipped: Vec::new(), ..locate(&trace.values)? };
-    samples_of(&located)?;
+    samples_of(&located, false)?;
     let instrument = recorder.low_pass.clone().map_or(Instrument::Flat, Instrument::LowPass);
     let options = PulseOptions { instrument, mass: guess.mass };
     let scale = Normalised::new(&trace, recorder.rate, &located, options.instrument.low_pass())?;

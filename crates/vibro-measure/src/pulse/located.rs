@@ -31,6 +31,17 @@ const BAND: f64 = 8.0;
 /// samples reaches 5.
 const LEAST: f64 = 6.0;
 
+impl Located {
+    /// Index of the first sample above half the height beyond the pulse: the record has another one.
+    pub fn another(&self, values: &[f64]) -> Option<usize> {
+        let (begin, end) = self.flanks;
+        // A half sine is above half its height for two thirds of its length.
+        let place = |i: usize| (i as f64 - begin) / (1.5 * (end - begin));
+        let mut beyond = (0..values.len()).filter(|i| !(-0.5..=2.0).contains(&place(*i)));
+        beyond.find(|i| (values[*i] - self.baseline) / self.height > 0.5)
+    }
+}
+
 /// Finds the largest pulse.
 ///
 /// # Errors

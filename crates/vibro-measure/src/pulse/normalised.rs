@@ -151,9 +151,7 @@ impl<'a> Normalised<'a> {
         }
         let missing = range.filter(|i| trace.values[*i].is_nan()).count();
         findings.extend((missing > 0).then(|| Finding::caution("pulse-samples-missing").count("n", missing)));
-        let other = (0..trace.values.len())
-            .filter(|i| !(-0.5..=2.0).contains(&self.time(*i)))
-            .find(|i| (trace.values[*i] - found.baseline) / found.height > 0.5);
+        let other = found.another(&trace.values);
         findings
             .extend(other.map(|i| Finding::caution(code::PULSE_NOT_ALONE).number("time", trace.axis.at(i))));
     }

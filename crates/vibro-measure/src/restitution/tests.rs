@@ -535,6 +535,24 @@ fn train_in(trace: &Trace) -> Train {
     Train::of(trace, &how, None).unwrap().0
 }
 
+/// A height in mm, or a thousand times too large: it is named, with the one that the flights fit.
+#[test]
+fn a_height_that_the_flights_contradict_is_named_first() {
+    let how = ImpactsOptions { threshold: Some(Train::THRESHOLD), ..Default::default() };
+    let full = |height| Drop { height, ..Drop::default() }.full_flight();
+    let trace = force(0.6, 1e-3, 0.0, 4);
+    assert!(Train::of(&trace, &how, full(0.3)).is_ok());
+    let refused = Train::of(&trace, &how, full(300.0)).unwrap_err();
+    assert_eq!(refused.settings().collect::<Vec<_>>(), ["height"], "{refused}");
+    let text = refused.to_string();
+    let fit = text.split("fit a fall of ").nth(1).and_then(|rest| rest.split(' ').next()).unwrap();
+    // The contact of 1 ms makes the first flight of 0.3 s longer by 0.4 % and the second by 0.7 %: R is off by
+    // 0.3 % and the height by 2·(0.4 + 0.3) %. Three digits are shown.
+    let height: f64 = fit.parse().unwrap();
+    let height = if text.contains(&format!("{fit} mm")) { 1e-3 * height } else { height };
+    assert!((height / 0.3 - 1.0).abs() < 0.02, "{text}");
+}
+
 #[test]
 fn a_contact_that_the_force_shows_is_taken_off() {
     for (seed, contact) in [(1, 0.5e-3), (2, 2e-3), (3, 5e-3)] {

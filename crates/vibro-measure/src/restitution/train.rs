@@ -1,12 +1,13 @@
 //! Trains of bounces in a record: which of its sounds are the impacts of one falling body.
 
+use super::GRAVITY;
 use super::pairs::{FallRecord, LEAST, Rival, SHADOW};
 use super::plausible::{Plausible, plausible};
 use super::untold::Untold;
 use crate::Estimate;
 use crate::impacts::{Choose, Detected, ImpactsOptions, Sound, chosen, detect_among, octaves};
 use std::cell::{Cell, RefCell};
-use vibro_record::units::notation::{counted, quantity};
+use vibro_record::units::notation::{counted, quantity, significant};
 use vibro_record::{Error, Finding, Result, Trace};
 
 /// Flight times of one train of bounces.
@@ -147,13 +148,25 @@ fn choose(
     if let Some(full) = heard.full
         && flight < LEAST * full
     {
-        let (r, flight) = (flight / full, quantity(flight, "s", 3));
-        let why =
-            format!("the first flight of {flight} is R = {r:.4} by the height: it may be that of an echo");
-        return refused(why, &train);
+        let (r, shown) = (flight / full, quantity(flight, "s", 3));
+        let by_height = format!("the stated height makes the first flight, {shown}, R = {r:.4}");
+        // Two flights have an R of their own, and with it a height: a fall of h precedes one of 2√(2h/g) with
+        // R = 1.
+        if let Some(second) = second_flight(&train, sounds).filter(|second| *second < flight) {
+            let fall = quantity(GRAVITY * (flight.powi(2) / second).powi(2) / 8.0, "m", 3);
+            let why = format!("{by_height}; the flights themselves fit a fall of {fall} on Earth");
+            return Err(Error::refused(why).hint("check the height and its unit").setting("height"));
+        }
+        return refused(format!("{by_height}: the height may be wrong, or the second sound an echo"), &train);
     }
     let findings = on_others(&train, other, sounds);
     Ok((train.impacts, findings))
+}
+
+/// The second flight of a train in s; `None` for one flight.
+fn second_flight(train: &Plausible, sounds: &[Sound]) -> Option<f64> {
+    let [_, second, third, ..] = train.impacts[..] else { return None };
+    Some(sounds[third].time - sounds[second].time)
 }
 
 /// Another explanation of the sounds that is as likely as the train.
@@ -222,8 +235,14 @@ fn unconfirmed(train: &Plausible, foreign: usize, sounds: &[Sound], height: bool
     Some(format!("two impacts, and the third, expected at {expected}, is not heard"))
 }
 
-/// Two times in s with as many digits as show that they differ, three at least.
+/// Time in s from which on two times are compared in seconds.
+const LONG: f64 = 0.1;
+
+/// Two times in one unit, with as many digits as show that they differ, three at least.
 pub(super) fn apart(times: [f64; 2]) -> [String; 2] {
-    let shown = |digits| times.map(|time| quantity(time, "s", digits));
+    let long = times[0].max(times[1]) >= LONG;
+    let one =
+        |time, digits| if long { significant(time, digits) + " s" } else { quantity(time, "s", digits) };
+    let shown = |digits| times.map(|time| one(time, digits));
     (3..9).map(shown).find(|[a, b]| a != b).unwrap_or_else(|| shown(3))
 }

@@ -63,7 +63,10 @@ impl Untold {
                 .hint("state the height of the fall, which tells them apart; or ".to_owned() + cut)
                 .setting("height")
                 .setting("span"),
-            Some(_) => refused.hint(cut).setting("span"),
+            Some(_) => refused
+                .hint(format!("check the height of the fall and its unit; or {cut}"))
+                .setting("height")
+                .setting("span"),
         }
     }
 

@@ -39,8 +39,9 @@ function tableTools(table) {
 /** Columns and rows of a figure's panels where it stands, and their height in pixels. */
 function extent(host, figure) {
   const columns = host.clientWidth < 560 ? 1 : figure.columns, rows = Math.ceil(figure.panels.length / columns);
-  const most = rows > 1 ? 320 : 460;
-  return { columns, rows, height: Math.round(Math.min(Math.max(host.clientWidth * figure.aspect / rows, 220), most)) };
+  // Ten records are looked through at once; a waterfall needs its depth.
+  const deep = figure.panels.some((panel) => panel?.kind === "waterfall"), most = deep ? [460, 320] : [320, 240];
+  return { columns, rows, height: Math.round(Math.min(Math.max(host.clientWidth * figure.aspect / rows, 220), most[rows > 1 ? 1 : 0])) };
 }
 
 /** Draws a figure into its place. */
