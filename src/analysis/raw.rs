@@ -4,7 +4,7 @@ use super::recordings::matching;
 use super::{drop, impacts};
 use crate::campaign::{Campaign, Entry};
 use crate::error::{Error, Result};
-use crate::measure::impacts::{Heard, ImpactsOptions, heard};
+use crate::measure::impacts::{HeardSounds, ImpactsOptions, heard};
 use crate::read::Recording;
 use crate::record::Trace;
 use std::path::PathBuf;
@@ -32,7 +32,7 @@ pub fn raw_trace(campaign: &Campaign, table: (&str, usize), file: usize) -> Resu
 ///
 /// # Errors
 /// As [`raw_trace`] and [`heard`].
-pub fn raw_sounds(campaign: &Campaign, table: (&str, usize), file: usize) -> Result<Option<Heard>> {
+pub fn raw_sounds(campaign: &Campaign, table: (&str, usize), file: usize) -> Result<Option<HeardSounds>> {
     let keys = entry(campaign, table)?.keys;
     let options = match table.0 {
         "impacts" => keys.try_into().ok().map(|keys: impacts::Keys| ImpactsOptions {

@@ -262,7 +262,7 @@ impl Workbench {
             let at = error.line().unwrap_or(0);
             let table = stated.iter().rev().find(|table| table.line as u64 <= at)?;
             let key = error.settings().find(|key| table.value(key).is_none())?;
-            Some(format!("{}; it needs `{key}`", words::error(error)))
+            Some(format!("{}\n  try: set `{key}`, too", words::error(error)))
         };
         Ok(campaign.faults().iter().find_map(|fault| with_open(&fault.error)))
     }
@@ -384,12 +384,11 @@ fn by_record(table: &Table) -> Vec<(String, Vec<Vec<String>>)> {
         let Some(Cell::Text(name)) = row.first() else { continue };
         // The remark of a row points to the doubts, which stand below it.
         let cells = row[1..row.len() - 1].to_vec();
-        match all.iter_mut().find(|(known, _)| known == name) {
-            Some((_, own)) => own.rows.push(cells),
-            None => {
-                let columns = table.columns[1..table.columns.len() - 1].to_vec();
-                all.push((name.clone(), Table { columns, rows: vec![cells], ..Table::default() }));
-            }
+        if let Some((_, own)) = all.iter_mut().find(|(known, _)| known == name) {
+            own.rows.push(cells);
+        } else {
+            let columns = table.columns[1..table.columns.len() - 1].to_vec();
+            all.push((name.clone(), Table { columns, rows: vec![cells], ..Table::default() }));
         }
     }
     all.into_iter().map(|(name, table)| (name, table.in_words())).collect()

@@ -22,7 +22,7 @@ pub(crate) use detect::{Choose, Sound, detect_among};
 pub use detect::{Detected, ImpactsOptions, detect};
 pub(crate) use echoes::QUIETER;
 pub use excitation::{PerCycle, Phase};
-pub use heard::{Heard, HeardSound, heard};
+pub use heard::{HeardSound, HeardSounds, heard};
 pub use interval::{Interval, interval};
 
 use super::Estimate;

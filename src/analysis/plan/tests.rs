@@ -95,7 +95,7 @@ fn mistakes_point_at_their_line() {
     }
     let error = planned(&format!("[instrument]\nrate = 2000\n{DECAY}")).unwrap_err().to_string();
     assert!(error.contains("noise"), "{error}");
-    let long = INSTRUMENT.replace("4", "1e6");
+    let long = INSTRUMENT.replace('4', "1e6");
     let error = planned(&format!("{long}{DECAY}")).unwrap_err().to_string();
     assert!(error.contains("2.000e9 samples") && error.contains("averages"), "{error}");
 }

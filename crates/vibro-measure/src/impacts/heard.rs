@@ -10,7 +10,7 @@ use vibro_record::{Result, Trace, median};
 /// The sounds of a trace, and the level that they are compared with.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[non_exhaustive]
-pub struct Heard {
+pub struct HeardSounds {
     /// Level of the trace at rest, in its unit.
     pub rest: f64,
     /// Noise limit over that level: a quieter sound never counts.
@@ -40,14 +40,15 @@ pub struct HeardSound {
 ///
 /// # Errors
 /// Where the trace has no sampling rate, missing or equal values; on impossible options.
-pub fn heard(trace: &Trace, options: &ImpactsOptions, falls: bool) -> Result<Heard> {
+pub fn heard(trace: &Trace, options: &ImpactsOptions, falls: bool) -> Result<HeardSounds> {
     let rate = check(trace, options)?;
     let (mut values, quiet, _) = cleared(trace, options, rate, &mut Vec::new())?;
     let all = if falls { rises(&values, quiet.reach, rate) } else { bursts(&values, quiet.reach, None).0 };
     let inverted = turned_upright(&mut values, &all).is_some();
-    let heights: Vec<f64> = match falls {
-        true => all.iter().map(|b| largest(&values[b.clone()])).collect(),
-        false => heights(&values, &all, 1.0),
+    let heights: Vec<f64> = if falls {
+        all.iter().map(|b| largest(&values[b.clone()])).collect()
+    } else {
+        heights(&values, &all, 1.0)
     };
     let time = |i: usize| trace.axis.start() + i as f64 / rate;
     let sound = |(b, height): (&Range<usize>, &f64)| HeardSound {
@@ -56,7 +57,7 @@ pub fn heard(trace: &Trace, options: &ImpactsOptions, falls: bool) -> Result<Hea
         height: *height,
     };
     let sounds = all.iter().zip(&heights).map(sound).collect();
-    Ok(Heard {
+    Ok(HeardSounds {
         rest: quiet.level,
         reach: quiet.reach,
         median: median(&heights),
