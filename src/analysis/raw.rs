@@ -23,7 +23,9 @@ pub fn raw_trace(campaign: &Campaign, table: (&str, usize), file: usize) -> Resu
     let path = campaign.file(&entry, "file", chosen)?;
     let reader = entry.reading.reader()?.within(campaign.within()).rate_of_base_band();
     let recording: Recording = reader.from_path(path)?;
-    let trace = recording.trace(entry.channel.channel.as_deref(), entry.channel.calibration)?;
+    // The record of a drill is its velocity.
+    let velocity = entry.keys.get("velocity").and_then(toml::Value::as_str);
+    let trace = recording.trace(entry.channel.channel.as_deref().or(velocity), entry.channel.calibration)?;
     Ok((trace, files))
 }
 

@@ -248,12 +248,16 @@ impl OfFile for Keys {
             ],
         ));
         let is_spectrum = matches!(found.found, Lines::Spectrum(_)) && found.tones.is_empty();
+        let amplitude = match reads_low(&found) {
+            Some(low) => format!("amplitude (of a sine up to {low} low)"),
+            None => "amplitude".to_owned(),
+        };
         answer.headlines.push(headline(
             "Largest spectral lines",
             if is_spectrum { found.peaks(MAIN_PEAKS) } else { Vec::new() },
             &[
                 ("frequency", "Hz", &|k| frequency_of(&found, *k)),
-                ("amplitude", "", &|k| value_of(&found, *k)),
+                (amplitude.as_str(), "", &|k| value_of(&found, *k)),
                 ("unit", "", &|_| Cell::from(found.unit.as_str())),
             ],
         ));
@@ -390,13 +394,19 @@ fn peaks(name: &str, found: &SpectralResult) -> Table {
             ("coherence", "", &|k| Cell::from(response.and_then(|r| finite_at(r.coherence.as_ref()?, *k)))),
         ],
     );
-    let low = READS_LOW.iter().find(|(window, _)| *window == found.window).map_or("", |(_, low)| low);
-    match &found.found {
-        Lines::Spectrum(_) if !low.is_empty() && found.tones.is_empty() => peaks.note(format!(
+    match reads_low(found) {
+        Some(low) if found.tones.is_empty() => peaks.note(format!(
             "A sine between two lines reads low, by up to {low}; tones = 1 gives its true amplitude."
         )),
         _ => peaks,
     }
+}
+
+/// How much of its amplitude a sine between two lines of a spectrum lacks; `None` for a window that loses
+/// little, and for functions.
+fn reads_low(found: &SpectralResult) -> Option<&'static str> {
+    let (_, low) = READS_LOW.iter().find(|(window, _)| *window == found.window)?;
+    matches!(found.found, Lines::Spectrum(_)).then_some(*low)
 }
 
 /// Amplitude lost by a sine half-way between two lines (scalloping loss), by window.

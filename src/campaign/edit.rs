@@ -241,6 +241,11 @@ mod tests {
             moved,
             "[[pulse]]\n# height = 1  # of [[drop]]\nfile = \"a\"\n# intervals = [\n#   1,\n#   2,\n# ]\n# masses = [1, 2]  # of [[drop]]\n"
         );
+        // A drill has a key of its own for its channel.
+        let heard = "[[impacts]]\nfile = \"a\"\nchannel = \"b\"\n";
+        let moved = Campaign::text_of_kind(heard, ("impacts", 1), "drill").unwrap();
+        assert_eq!(moved, "[[drill]]\nfile = \"a\"\n# channel = \"b\"  # of [[impacts]]\n");
+        assert_eq!(Campaign::text_of_kind(&moved, ("drill", 1), "impacts").unwrap(), heard);
         // A key that was set meanwhile stays, and so does what another table has as a comment.
         let twice = "[[impacts]]\nfile = \"a\"\nthreshold = 0.2\n# threshold = 0.1  # of [[drop]]\n  [[decay]]\n# band = 1  # of [[drop]]\n";
         let moved = Campaign::text_of_kind(twice, ("impacts", 1), "drop").unwrap();

@@ -23,6 +23,10 @@ pub struct KeyMeaning {
 }
 
 impl KeyMeaning {
+    /// Keys of all kinds of records that a kind refuses, since it has keys of its own for them.
+    pub(crate) const REFUSED: [(&'static str, &'static str); 2] =
+        [("drill", "channel"), ("drill", "calibration")];
+
     /// The keys of the tables of a section. In `docs/campaign.md` they stand below headings that name their
     /// sections. Those of one section come first, those of all kinds of records last.
     ///
@@ -45,7 +49,8 @@ impl KeyMeaning {
             key.shared = *sections > 2 && Some(*sections) == most;
         }
         all.sort_by_key(|(sections, _)| *sections);
-        all.into_iter().map(|(_, key)| key)
+        let refused = KeyMeaning::REFUSED.map(|(kind, key)| (kind == section).then_some(key));
+        all.into_iter().map(|(_, key)| key).filter(move |one| !refused.contains(&Some(one.key)))
     }
 
     /// The key of a row `` | `key` | unit | meaning | left out | ``.

@@ -387,6 +387,28 @@ test("the trace stands below its card, and says which sounds above the threshold
   await page.locator("#trace p", { hasText: "refractory = 0.11: nothing changed, the same 3 impacts." }).waitFor();
 }));
 
+test("a drill shows its velocity, and a record that cannot be shown says why", { skip }, () => open({}, async (page) => {
+  await page.click("[data-example=hammer_drill]");
+  await ran(page);
+  const see = page.getByRole("button", { name: "see the record" });
+  await see.first().click();
+  await page.locator("#trace canvas").first().waitFor();
+  await drop(page, { "campaign.toml": '[[impacts]]\nfile = "two.csv"\n', "two.csv": "time [s],left [Pa],right [Pa]\n0,1,2\n0.1,2,1\n0.2,1,3\n0.3,2,1\n" });
+  await ran(page, 2);
+  await see.click();
+  await page.locator("#trace .refused", { hasText: "2 channels, and none was chosen" }).waitFor();
+  assert.equal(await page.locator("#trace canvas").count(), 0);
+}));
+
+test("files that are added to a campaign that came with the files get tables below it", { skip }, () => open({}, async (page) => {
+  await drop(page, { "campaign.toml": '# mine\n[[drop]]\nfile = "fall.csv"\nheight = 0.5\n', "fall.csv": bounces() });
+  await ran(page);
+  await drop(page, { "other.csv": bounces({ first: 0.25 }) });
+  await ran(page, 2);
+  const text = await page.evaluate(() => app.text);
+  assert.match(text, /^# mine\n[\s\S]*other\.csv/);
+}));
+
 test("a value that needs another one waits for it, and the record keeps its answer", { skip }, () => open({}, async (page) => {
   await page.click("[data-example=bench]");
   await ran(page);

@@ -36,7 +36,7 @@ class App {
     const kind = (id, section) => this.change(id, "kind", { section }).catch((error) => this.trouble(error.message));
     const look = (id) => this.trace.open(this.tables, id).catch((error) => this.trouble(error.message));
     const fileOf = (table) => fromToml(valueOf(table, "file")), below = { element: at("trace") };
-    this.cards = new Tables(at("tables"), { set, kind, look, below, find: (line) => this.editor.find(line), channels: (table) => this.recordings.channels(fileOf(table)), unitless: (table) => this.recordings.unitless(fileOf(table), fromToml(valueOf(table, "channel"))) });
+    this.cards = new Tables(at("tables"), { set, kind, look, below, find: (line) => this.editor.find(line), channels: (table) => this.recordings.channels(fileOf(table)), unitless: (table) => this.recordings.unitless(fileOf(table), fromToml(valueOf(table, "channel"))), isTrace: (table) => this.recordings.isTrace(fileOf(table)) });
     this.editor = new Editor(at("campaign"), (text) => this.edit(text));
     // Edited: not as it was proposed. Unsaved: the edits are nowhere else.
     [this.edited, this.unsaved, this.setting, this.looking] = [false, false, Promise.resolve(), Promise.resolve()];
@@ -190,6 +190,8 @@ class App {
     const found = await this.work("looking at files", () => this.program.ask("propose", { known }));
     this.recordings.showLeft(found?.left ?? [], found?.kinds ?? []);
     if (found?.none && !found.tables.length) this.trouble(found.none);
+    // A campaign among the files is a person's: further files are added to it.
+    if (found?.own) this.edited = true;
     at("unseen").hidden = found !== null;
     if (text !== null) return this.changed(() => this.program.ask("edit", { text }), false);
     if (known !== null && found) this.history.push(known);

@@ -101,6 +101,9 @@ class Recordings {
   /** Names of the channels of a file. */
   channels(path) { return (this.known?.get(path) ?? []).map(({ name }) => name); }
 
+  /** Whether a file has a time trace; those of a pattern are not looked at. */
+  isTrace(path) { return this.known?.get(path)?.some(({ kind }) => kind === "trace") ?? true; }
+
   /** Whether a channel of a file, or its only one, has no unit that the file states. */
   unitless(path, channel) {
     const records = (this.known?.get(path) ?? []).filter(({ name }, k) => !channel || name === channel || String(k + 1) === channel);

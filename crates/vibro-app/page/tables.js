@@ -135,8 +135,8 @@ class Tables {
    * `look(identity)` shows the trace; `find(line)` shows the text; `channels(table)` are those of its file;
    * `unitless(table)` tells whether its file states no unit; `below` stands below the card that it names.
    */
-  constructor(host, { set, kind, look, find, channels, unitless, below }) {
-    Object.assign(this, { host, set, kind, look, find, channels, unitless, below, kinds: [] });
+  constructor(host, { set, kind, look, find, channels, unitless, isTrace, below }) {
+    Object.assign(this, { host, set, kind, look, find, channels, unitless, isTrace, below, kinds: [] });
     // What the last run found of each record: main numbers, and cautions and doubts with their severity.
     [this.numbers, this.doubts] = [[], []];
     // Values that were refused stand, with the reason, until they are typed anew.
@@ -292,7 +292,7 @@ class Tables {
     summary.dataset.field = `${id} settings`;
     if (rest.length) card.append(make("details", { className: "settings" }, summary, ...rows(rest.filter(({ shared }) => !shared)), ...rows(rest.filter(({ shared }) => shared))));
     const does = make("div", { className: "does" });
-    if (valueOf(table, "file")) {
+    if (valueOf(table, "file") && this.isTrace(table)) {
       does.append(button("see the record", () => this.look(id)));
     }
     if (table.line) does.append(button("in the text", () => this.find(table.line)));

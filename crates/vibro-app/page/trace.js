@@ -51,11 +51,20 @@ class TraceView {
   async open(tables, id, file = 0) {
     const k = tables.findIndex((_, k) => identity(tables, k) === id);
     if (this.id !== id || this.file !== file) [this.part, this.times, this.trials, this.tried, this.before] = [[null, null], [], [], undefined, undefined];
+    // What another record shows does not stand below this card.
+    if (this.id !== id) this.host.replaceChildren();
     Object.assign(this, { tables, id, k, table: tables[k], file });
     this.stand(id);
     this.host.hidden = false;
-    await this.load();
+    await this.load().catch((error) => this.failed(error));
     this.host.scrollIntoView({ block: "nearest" });
+  }
+
+  /** Says why a record cannot be shown. */
+  failed(error) {
+    this.data = this.canvas = this.band = this.tried = undefined;
+    const close = make("button", { textContent: "close", title: "Close the record", onclick: () => this.close() });
+    this.host.replaceChildren(make("p", { className: "refused" }, ...worded(here(error.message))), close);
   }
 
   close() {
@@ -72,7 +81,7 @@ class TraceView {
     if (k < 0) return this.close();
     Object.assign(this, { tables, k, table: tables[k] });
     await new Promise((resolve) => { pressed.after(Symbol("trace"), resolve); });
-    await this.load().catch((error) => { this.said.textContent = inShort(error.message); });
+    await this.load().catch((error) => this.failed(error));
   }
 
   value(key) {
@@ -117,6 +126,7 @@ class TraceView {
       if (times.length && !known) this.trials.push({ ...one, times });
     }
     pressed.after("offer", () => {
+      if (!this.data) return;
       this.offer();
       this.draw();
     });

@@ -154,11 +154,12 @@ impl Workbench {
     fn propose(&mut self, known: Option<&str>, progress: &dyn Progress) -> Result<Value> {
         let own = || self.folder.own_file(Proposal::FILE);
         let empty = analysis::recordings(&self.folder)?.files.is_empty();
-        let mut none = None;
+        let (mut none, mut is_own) = (None, false);
         if known.is_none() {
             self.proposals.clear();
         }
         if let (None, Some(bytes)) = (known, own()) {
+            is_own = true;
             self.text = String::from_utf8(bytes).map_err(|_| {
                 Error::usage("campaign.toml is not UTF-8", "text in UTF-8")
                     .hint("save the file as UTF-8 in your editor")
@@ -180,7 +181,7 @@ impl Workbench {
         let of_proposal = self.proposals.last().into_iter().flat_map(|one| &one.left);
         let said = |(file, why): &(String, String)| (file.clone(), words::as_kinds(why));
         let left: Vec<_> = self.left.iter().chain(of_proposal).map(said).collect();
-        Ok(joined(json!({ "left": left, "none": none }), self.state()))
+        Ok(joined(json!({ "left": left, "none": none, "own": is_own }), self.state()))
     }
 
     /// The text of a proposed campaign: the known one with tables for further files, else a new one.

@@ -27,9 +27,9 @@ impl Body {
     /// even instants from the beginning of a turn, `ahead` turns before the pulse of the crank, to its end.
     /// The end need not be where the turn began: a mean over turns may drift.
     ///
-    /// The velocity is sampled, smoothed and averaged like the record. A low-pass without delay stands for the
-    /// band of the instrument, where it is known and below half the sampling rate. Impacts whose phase scatters from turn
-    /// to turn blur the average; as many turns as were measured show all of that scatter.
+    /// The velocity is sampled, smoothed and averaged like the record. A low-pass without delay stands for
+    /// the band of the instrument, where it is known and below half the sampling rate. Impacts whose phase
+    /// scatters from turn to turn blur the average; as many turns as were measured show all of that scatter.
     ///
     /// # Errors
     /// If the turn is too short for the smoothing.

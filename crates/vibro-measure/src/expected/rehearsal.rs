@@ -115,8 +115,8 @@ fn missing(expected: &Expected, heard: &Result<Heard>) -> Vec<Refusal> {
 }
 
 impl Shown {
-    /// By errors and stated uncertainties of records of which `std` is expected. The mean error is a bias, and
-    /// the median statement or the scatter of the errors counts, where chance does not explain it.
+    /// By errors and stated uncertainties of records of which `std` is expected. The mean error is a bias,
+    /// and the median statement or the scatter of the errors counts, where chance does not explain it.
     fn by(std: f64, own: &[(f64, f64)]) -> Shown {
         let n = own.len() as f64;
         let errors: Vec<f64> = own.iter().map(|(error, _)| error / std).collect();

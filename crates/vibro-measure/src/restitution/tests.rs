@@ -546,8 +546,8 @@ fn a_height_that_the_flights_contradict_is_named_first() {
     assert_eq!(refused.settings().collect::<Vec<_>>(), ["height"], "{refused}");
     let text = refused.to_string();
     let fit = text.split("fit a fall of ").nth(1).and_then(|rest| rest.split(' ').next()).unwrap();
-    // The contact of 1 ms makes the first flight of 0.3 s longer by 0.4 % and the second by 0.7 %: R is off by
-    // 0.3 % and the height by 2·(0.4 + 0.3) %. Three digits are shown.
+    // The contact of 1 ms makes the first flight of 0.3 s longer by 0.4 % and the second by 0.7 %: R is off
+    // by 0.3 % and the height by 2·(0.4 + 0.3) %. Three digits are shown.
     let height: f64 = fit.parse().unwrap();
     let height = if text.contains(&format!("{fit} mm")) { 1e-3 * height } else { height };
     assert!((height / 0.3 - 1.0).abs() < 0.02, "{text}");
