@@ -152,9 +152,9 @@ pub fn aicc(sum_of_squares: f64, n: usize, parameters: f64) -> f64 {
 }
 
 /// Difference of two `AICc` of fits to the same `n` values, where the variance of the residuals of the first
-/// is `ratio` times that of the second and noise has `dispersion` times the density of white noise of the same
-/// variance: the dispersion divides the likelihood and leaves the price of parameters (`QAICc`, Burnham &
-/// Anderson 2002, 2.5).
+/// is `ratio` times that of the second and noise has `dispersion` times the density of white noise of the
+/// same variance: the dispersion divides the likelihood and leaves the price of parameters (`QAICc`, Burnham
+/// & Anderson 2002, 2.5).
 pub fn quasi(difference: f64, n: usize, ratio: f64, dispersion: f64) -> f64 {
     difference - n as f64 * ratio.ln() * (1.0 - 1.0 / dispersion)
 }
