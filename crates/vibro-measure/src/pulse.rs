@@ -171,7 +171,7 @@ pub fn pulse(trace: &Trace, options: &PulseOptions) -> Result<PulseResult> {
     let best = leader(&fits);
     let unexplained = samples.unexplained(best);
     let of_best = best.whiteness;
-    let dispersion = best.dispersion();
+    let dispersion = samples.dispersion(&best.fit);
     found.extend(samples.mode.map(|_| scale.rings(best)));
     result.fits = fits.iter().map(|f| scale.report(f, options.mass, known && !unexplained)).collect();
     let also = fits.iter().flat_map(|f| &f.also);
@@ -214,7 +214,7 @@ pub fn pulse(trace: &Trace, options: &PulseOptions) -> Result<PulseResult> {
 /// lead. A law that is only likely with a loss below 0 is no contact.
 fn over_losses(samples: &Samples<'_>, fits: &mut Vec<FittedPulse>, unfitted: &mut Vec<Unfitted>) {
     let best = leader(fits);
-    let behind = fits[0].behind(best, best.dispersion()) > NO_SUPPORT;
+    let behind = fits[0].behind(best, samples.dispersion(&best.fit)) > NO_SUPPORT;
     let law = fits.iter().position(|fit| behind && fit.model == ContactModel::PowerLaw);
     let Some(law) = law else { return };
     match samples.over_losses(&fits[law]) {

@@ -14,11 +14,6 @@ impl FittedPulse {
         aicc(self.fit.sum_of_squares(), self.fit.residuals.len(), self.determined())
     }
 
-    /// Density of the residuals at low frequency over that of white noise of the same variance, at least 1.
-    pub fn dispersion(&self) -> f64 {
-        self.whiteness.inflation.max(1.0).powi(2)
-    }
-
     /// Akaike's criterion over that of `other`, for noise of this `dispersion`.
     pub fn behind(&self, other: &FittedPulse, dispersion: f64) -> f64 {
         let ratio = self.fit.sum_of_squares() / other.fit.sum_of_squares();
