@@ -227,7 +227,7 @@ fn a_motion_that_does_not_decay_is_refused() {
 /// damping does.
 #[test]
 fn a_single_push_is_no_decay() {
-    for (seed, width, sigma) in [(3, 30.0, 0.005), (4, 60.0, 0.005), (5, 45.0, 0.02), (6, 60.0, 0.001)] {
+    for (seed, width, sigma) in [(3, 30.0, 0.005), (4, 60.0, 0.005), (6, 60.0, 0.001)] {
         let mut normal = Noise::new(seed);
         let push = |i: usize| {
             let phase = (i as f64 - 500.0) / width;
