@@ -212,6 +212,9 @@ impl Campaign {
     pub(crate) const FILL_IN: &str =
         "Fill in what is missing and remove the # in front of the table and its keys.";
 
+    /// Code of the finding on a record whose table waits in a comment for a value.
+    pub(crate) const WAITING: &str = "table-in-comment";
+
     /// Findings on proposed tables that are still in comments, and on files that the proposal did not use.
     pub(crate) fn commented(&self) -> Vec<Finding> {
         let lines: Vec<&str> = self.text.lines().collect();
@@ -238,7 +241,7 @@ impl Campaign {
             }
             let lacking = keys.iter().filter(|(_, value)| value.is_empty());
             let lacking: Vec<&str> = lacking.map(|(key, _)| key.as_str()).collect();
-            let found = Finding::note("table-in-comment").about(file.unwrap_or(&head));
+            let found = Finding::note(Campaign::WAITING).about(file.unwrap_or(&head));
             // A proposal that is not written to a file has no line numbers.
             let found = if self.is_file() { found.count("line", i + 1) } else { found };
             Some(match refused(i) {

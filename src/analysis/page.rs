@@ -4,6 +4,7 @@ use super::answer::{Answer, LEFT_OUT};
 use super::compared_rig::ComparedRig;
 use super::headline::shortened;
 use super::job::Job;
+use crate::campaign::Campaign;
 use crate::model::Parameter;
 use crate::record::{Severity, Step};
 use crate::report::Page;
@@ -36,21 +37,26 @@ pub fn page(
     }
     // Each finding is listed once: records without an answer and doubts beside the answers, all others at the
     // records.
-    let without: Vec<About> = all.findings.iter().filter(|(_, one)| one.code == LEFT_OUT).cloned().collect();
+    let is_without = |(_, one): &&About| [LEFT_OUT, Campaign::WAITING].contains(&&*one.code);
+    let without: Vec<About> = all.findings.iter().filter(is_without).cloned().collect();
+    // A record that waits for a value is a note of its campaign; the report lacks its answer.
     let mut doubts = graded(&without, Voice::Campaign);
+    for found in &mut doubts {
+        found.0 = found.0.max(Severity::Caution);
+    }
     let mut rest = graded(&all.findings, Voice::Campaign);
-    rest.retain(|found| found.0 > Severity::Note && !doubts.contains(found));
+    rest.retain(|found| found.0 > Severity::Note && !lists(&doubts, &found.1));
     let first = rest.iter().take_while(|found| found.0 == Severity::Doubt).count().min(MOST_DOUBTS);
     let others = rest.split_off(first);
     doubts.extend(rest);
-    page = page.findings(&doubts);
+    page = page.foremost(&doubts);
     if !others.is_empty() {
         let name = if doubts.is_empty() { "caution" } else { "more caution" };
         page = page.paragraph(&format!("{} below, at the records.", counted(others.len(), name)));
     }
     let at_records = |findings: &[About]| {
         let mut found = graded(findings, Voice::Campaign);
-        found.retain(|found| !doubts.contains(found));
+        found.retain(|found| !lists(&doubts, &found.1));
         found
     };
     for (title, [tables, figures, details, findings]) in parts.iter().cloned() {
@@ -77,6 +83,11 @@ pub fn page(
     page.paragraph(&format!(
         "Made by vibroimpact {version}. All numbers are in results.json beside this page."
     ))
+}
+
+/// Whether a sentence is among these.
+fn lists(findings: &[(Severity, String)], sentence: &str) -> bool {
+    findings.iter().any(|found| found.1 == sentence)
 }
 
 /// Adds the origin of the numbers: the rig, the files, the campaign, and the steps from file to result.

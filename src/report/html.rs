@@ -43,6 +43,9 @@ const MOST_SHOWN_ROWS: usize = 12;
 /// Number of cautions of one part above which they are collapsed.
 const MOST_CAUTIONS: usize = 3;
 
+/// Number of cautions at the head of the page above which they are collapsed.
+const MOST_AT_HEAD: usize = 12;
+
 impl Page {
     /// A page without content.
     pub fn new(title: impl Into<String>) -> Page {
@@ -69,6 +72,16 @@ impl Page {
 
     /// Adds findings: doubts and a few cautions are visible, others collapsed.
     pub fn findings(self, all: &[(Severity, String)]) -> Page {
+        self.listed(all, MOST_CAUTIONS)
+    }
+
+    /// As [`Page::findings`] at the head of the page: more cautions are visible.
+    pub fn foremost(self, all: &[(Severity, String)]) -> Page {
+        self.listed(all, MOST_AT_HEAD)
+    }
+
+    /// Adds a list of findings, in which cautions are collapsed if there are more than `most` of them.
+    fn listed(self, all: &[(Severity, String)], most: usize) -> Page {
         let list = |with: &dyn Fn(Severity) -> bool| {
             let listed = all.iter().filter(|(severity, _)| with(*severity));
             listed.fold(String::new(), |mut out, (severity, sentence)| {
@@ -79,7 +92,7 @@ impl Page {
         };
         let count = |grade: Severity| all.iter().filter(|(severity, _)| *severity == grade).count();
         let cautions = count(Severity::Caution);
-        let least = if cautions > MOST_CAUTIONS { Severity::Doubt } else { Severity::Caution };
+        let least = if cautions > most { Severity::Doubt } else { Severity::Caution };
         let (shown, others) = (list(&|s| s >= least), list(&|s| s < least));
         let folded = [Severity::Caution, Severity::Note].into_iter().filter(|grade| *grade < least);
         let folded = folded.map(|grade| (count(grade), grade.name())).filter(|(n, _)| *n > 0);

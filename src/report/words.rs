@@ -373,7 +373,8 @@ mod tests {
             Finding::caution("frf-one-blow"),
         ];
         let graded = graded(&found.map(|finding| (String::new(), finding)), Voice::Command);
-        let starts = ["x-doubt", "unknown is not stated", "R reads", "No sweep", "The function", "Against"];
+        let starts =
+            ["x-doubt", "unknown is not stated", "No contact time", "No sweep", "The function", "Against"];
         for ((_, sentence), start) in graded.iter().zip(starts) {
             assert!(sentence.starts_with(start), "{sentence}");
         }

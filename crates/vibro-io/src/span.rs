@@ -3,7 +3,7 @@
 use crate::assemble::{drift, epoch, from_values, short};
 use crate::held::Contents;
 use std::ops::Range;
-use vibro_record::{Axis, AxisKind, Error, Grid, Meta, Record, Result};
+use vibro_record::{Axis, AxisKind, Error, Finding, Grid, Meta, Record, Result};
 
 /// Indices of the samples of `axis` in `span`, in s: from the first time (included) to the second
 /// (excluded).
@@ -16,8 +16,20 @@ pub fn within(axis: &Axis, span: (f64, f64)) -> Result<Range<usize>> {
         return Ok(part);
     }
     let found = format!("no sample from {} to {} s", short(span.0), short(span.1));
-    let end = axis.at(axis.len().max(1) - 1) + axis.step().unwrap_or(0.0);
-    Err(Error::usage(found, format!("a part of {} to {} s", short(axis.start()), short(end))).setting("span"))
+    let (start, end) = (short(axis.start()), short(end(axis)));
+    Err(Error::usage(found, format!("a part of {start} to {end} s")).setting("span"))
+}
+
+/// End of a record in s: one step behind its last sample.
+fn end(axis: &Axis) -> f64 {
+    axis.at(axis.len().max(1) - 1) + axis.step().unwrap_or(0.0)
+}
+
+/// A finding where a part ends later than the record, by more than a step.
+pub fn beyond(axis: &Axis, to: f64) -> Option<Finding> {
+    let end = end(axis);
+    let is_beyond = to.is_finite() && to > end + axis.step().unwrap_or(0.0);
+    is_beyond.then(|| Finding::caution("span-beyond-record").number("to", to).number("end", end))
 }
 
 /// Adds the span to a channel's history. Keeps the declared number of values only if the whole channel was
@@ -51,7 +63,9 @@ pub fn cut(mut contents: Contents, span: Option<(f64, f64)>) -> Result<Contents>
         // trace's axis.
         let counted = [span.0, span.1].into_iter().find_map(|t| if t.is_finite() { epoch(t) } else { None });
         let (from, factor) = counted.map_or((0.0, 1.0), |(_, factor)| (trace.meta.origin, factor));
-        let part = within(&trace.axis, (span.0 * factor - from, span.1 * factor - from))?;
+        let to = span.1 * factor - from;
+        let part = within(&trace.axis, (span.0 * factor - from, to))?;
+        trace.meta.findings.extend(beyond(&trace.axis, to));
         if part.len() < trace.values.len() {
             let mut axis = trace.axis.part(part.clone());
             if let Grid::Uneven(instants) = axis.grid {

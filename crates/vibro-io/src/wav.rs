@@ -108,6 +108,7 @@ impl Wave {
         let whole = Axis::time(start, 1.0 / options.rate.unwrap_or(layout.rate), layout.frames as usize);
         let part = options.span.map_or(Ok(0..whole.len()), |span| span::within(&whole, span));
         let part = part.map_err(|e| e.in_file(source.path()))?;
+        let beyond = options.span.and_then(|(_, to)| span::beyond(&whole, to));
         let at = layout.data_at + (part.start * n) as u64 * layout.sample.size();
         reader.seek(SeekFrom::Start(at)).map_err(|e| Error::io("read", source.path(), e))?;
         let mut wave = Wave {
@@ -126,8 +127,9 @@ impl Wave {
             layout,
         };
         for channel in 0..n {
-            let (trace, factor) =
+            let (mut trace, factor) =
                 wave.describe(source, options, channel).map_err(|e| e.in_file(source.path()))?;
+            trace.meta.findings.extend(beyond.clone());
             wave.channels.push(trace);
             wave.factors.push(factor);
         }

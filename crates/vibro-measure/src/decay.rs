@@ -15,6 +15,7 @@ mod usable;
 use super::Estimate;
 use super::chance::chi_squared_above;
 use super::mains::Hum;
+use super::mean::{average, scatter};
 use damped::{Damped, LINES, OWN, SineGroup, lines};
 pub use expected::{GuessedMode, expected, rehearse};
 pub use result::{DecayMode, DecayOptions, DecayResult, Level};
@@ -33,6 +34,13 @@ const CHANGED: f64 = 1e-3;
 /// Largest relative standard uncertainty of ζ with which a stretch counts: ζ is then more than three
 /// standard uncertainties above 0.
 const KNOWN: f64 = 0.3;
+
+/// Least part of the model's swing back that the record of a mode has. Dry friction takes a part of it.
+const SWUNG: f64 = 0.3;
+/// Least energy behind the swing back, over all, with which a mode has further swings: ζ is below about 0.25.
+const FURTHER: f64 = 0.05;
+/// Fewest samples behind the swing back whose scatter is its noise.
+const ENOUGH_NOISE: usize = 16;
 
 /// Modes of the free decay that a record holds.
 ///
@@ -86,6 +94,7 @@ impl Sines {
         options: &DecayOptions,
         mut findings: Vec<Finding>,
     ) -> Result<DecayResult> {
+        self.swings_back(&trace.values[part.clone()])?;
         let unit = trace.meta.unit.quantity().symbol();
         let (mut modes, largest) = self.modes(trace, unit, &mut findings)?;
         if let Some(count) = options.modes.filter(|count| *count > modes.len()) {
@@ -181,6 +190,42 @@ impl Sines {
             .setting("band")
     }
 
+    /// Refuses a record whose strongest mode does not swing back. A push and its end, such as the force of a
+    /// contact, fit the first half swing of a strongly damped sine; the half swing of the other sign that
+    /// follows tells the two apart. Its amplitude in the record is that of the model within its noise for a
+    /// mode, and 0 for a push.
+    fn swings_back(&self, part: &[f64]) -> Result<()> {
+        let Some((group, m)) = self.strongest().filter(|(group, m)| decays(group, *m)) else { return Ok(()) };
+        let sine = group.sines[m];
+        let (n, left) = (part.len(), self.left(part));
+        let model: Vec<f64> = (0..n).map(|i| sine.sample(i, n)).collect();
+        let Some(swing) = swing_back(&model) else { return Ok(()) };
+        let energy = |samples: &[f64]| samples.iter().map(|v| v * v).sum::<f64>();
+        // A mode of more swings is told by all of them.
+        if energy(&model[swing.end..]) > FURTHER * energy(&model) {
+            return Ok(());
+        }
+        // What follows shows the noise, and the level about which the motion swings.
+        let behind = &left[swing.end..];
+        if behind.len() < swing.len().max(ENOUGH_NOISE) {
+            return Ok(());
+        }
+        let (level, noise) = (average(behind), scatter(behind));
+        let power = energy(&model[swing.clone()]);
+        let product: f64 = swing.map(|i| model[i] * (model[i] + left[i] - level)).sum();
+        let (part, std) = (product / power, noise / power.sqrt());
+        if part - SURE * std > 0.0 && part > SWUNG {
+            return Ok(());
+        }
+        let zeta = sine.decay / sine.decay.hypot(TAU * sine.periods);
+        let why = format!(
+            "the motion does not swing back: the record has {part:.2} ± {std:.2} of the half swing that ζ = {zeta:.2} predicts"
+        );
+        Err(Error::refused(why)
+            .hint("`vibro pulse` measures the force of one contact; for a decay choose the band of the mode")
+            .setting("band"))
+    }
+
     /// The strongest mode in stretches of equal length, and its damping ratio from the decrement of their
     /// amplitudes.
     fn levels(&self, part: &[f64], start: f64, unit: &'static str) -> (Vec<Level>, Option<Estimate>) {
@@ -220,6 +265,14 @@ impl Sines {
             });
         (levels, decrement)
     }
+}
+
+/// Samples of the half swing that follows the largest one; `None` where the part holds no such swing.
+fn swing_back(model: &[f64]) -> Option<Range<usize>> {
+    let largest = (0..model.len()).max_by(|a, b| model[*a].abs().total_cmp(&model[*b].abs()))?;
+    let crossing = |from: usize| (from + 1..model.len()).find(|i| model[*i] * model[i - 1] <= 0.0);
+    let start = crossing(largest)?;
+    Some(start..crossing(start)?)
 }
 
 /// The mode of sine `m` in a part of `n` samples.

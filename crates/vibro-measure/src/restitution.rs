@@ -23,6 +23,7 @@ use crate::mean::{average, scatter, together};
 use crate::residuals::widened;
 use pairs::SCATTER;
 use serde::Serialize;
+use vibro_record::units::notation::quantity;
 use vibro_record::{Doubt, Error, Finding, Result, Uncertain, uncertain};
 
 /// One method's answer.
@@ -99,6 +100,14 @@ pub fn restitution(measured: &Measured) -> Result<Restitution> {
     let (mut by, mut findings) = (Vec::new(), Vec::new());
     let mut intervals: Vec<Vec<f64>> = measured.trains.iter().map(|t| t.intervals.clone()).collect();
     let (contact, contact_std) = contact(measured);
+    let dropped = measured.drop.iter().flat_map(|drop| &drop.intervals);
+    let shortest = intervals.iter().flatten().chain(dropped).copied().filter(|t| *t > 0.0);
+    let shortest = shortest.fold(f64::INFINITY, f64::min);
+    if measured.contact_time.is_some() && contact >= shortest {
+        let [contact, flight] = [contact, shortest].map(|time| quantity(time, "s", 3));
+        let why = format!("a contact time of {contact} is no shorter than the flight of {flight}");
+        return Err(Error::refused(why).hint("check the contact time: it is in s").setting("contact_time"));
+    }
     let flights =
         |intervals: &[f64]| intervals.iter().map(|interval| interval - contact).collect::<Vec<f64>>();
     let mut bootstrap_std = measured.drop.as_ref().and_then(Drop::bootstrap);

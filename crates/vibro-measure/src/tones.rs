@@ -49,6 +49,9 @@ const COLOURED: f64 = 1.5;
 /// Distance in spectral lines from which the uncertainty for coloured noise covers the effect of another
 /// sine.
 const FAR: f64 = 3.5;
+/// Distance in spectral lines below which a residual line is the sine itself: two sines so near each other
+/// are one whose amplitude changes, as far as the record tells.
+const SAME: f64 = 0.1;
 /// Largest neighbouring line, doubled and over the sine's amplitude, whose effect on the sine is known.
 const SMALL: f64 = 0.02;
 
@@ -419,7 +422,8 @@ impl Tone {
     /// A neighbouring sine of r times the amplitude shifts the frequency of a least-squares fit over T by up
     /// to 12r/T³ ∫t sin Δt dt/2π = 0.42 r/T. It shifts the relative amplitude and the phase in the middle by
     /// up to r, so the phase at the first sample by 2.3 r. The fit may have absorbed half of the neighbour:
-    /// r is taken as twice the residual line.
+    /// r is taken as twice the residual line. A line nearer than [`SAME`] is the sine itself, which is not
+    /// steady.
     fn widened(&mut self, left: &HannLines, strongest: Option<f64>) -> Option<Finding> {
         let at = self.frequency.value;
         let other = left.strongest(Some(at)).ok()?;
@@ -439,7 +443,11 @@ impl Tone {
         }
         let apart = (other - at).abs() / left.spacing;
         let beside = || Finding::caution("sine-line-beside");
-        let found = if small { beside() } else { Finding::doubt("sine-not-alone").of(self) };
+        let found = match () {
+            () if small => beside(),
+            () if apart < SAME => Finding::doubt("sine-unsteady").of(self),
+            () => Finding::doubt("sine-not-alone").of(self),
+        };
         let found = found.number("frequency", at).number("line", other);
         Some(found.number("apart", apart).number("part", 0.5 * part))
     }

@@ -123,6 +123,20 @@ fn a_file_in_two_tables_is_a_caution() {
     assert!(twice(&json(&["check", text(root.path())])).is_empty());
 }
 
+/// A record that waits for a value is named at the head of the report, in view, and only there.
+#[test]
+fn a_record_that_waits_for_a_value_stands_at_the_head_of_the_report() {
+    let root = tempfile::tempdir().unwrap();
+    let waits = "#[[drop]]\n#file = \"ball.csv\"\n#height =\n";
+    campaign(root.path(), &format!("[[decay]]\nfile = \"ok.csv\"\n\n{waits}"));
+    json(&["run", text(root.path())]);
+    let report = fs::read_to_string(root.path().join("results/report.html")).unwrap();
+    let said = "ball.csv is not measured yet: state height.";
+    let (head, _) = report.split_once("Free decays</h2>").unwrap();
+    assert_eq!(report.matches(said).count(), 1, "{report}");
+    assert!(head.contains(said) && !head.split(said).next().unwrap().contains("<details"), "{head}");
+}
+
 /// A single step of a sweep has power in one line only.
 #[test]
 fn a_function_of_a_lone_sine_is_refused() {

@@ -151,6 +151,7 @@ pub const CONCERNS: [(&str, Concern); 81] = [
     ("methods-disagree", Whole),
     ("first-impact-unheard", Whole),
     ("spectrum-clipped", Whole),
+    ("sine-unsteady", Item("tones", "frequency/value", &[""])),
     ("sine-not-alone", Item("tones", "frequency/value", &[""])),
     // Phase and receptance are ratios of two lines of one window; a jump lies between two steps.
     (

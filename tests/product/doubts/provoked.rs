@@ -301,11 +301,18 @@ fn spectra(folder: &Path) -> Vec<Case> {
         (50.0 * turn).cos() + 0.5 * (50.8 * turn + 1.0).cos() + 1e-3 * noise.normal()
     };
     let two: Vec<f64> = (0..2000).map(two).collect();
+    // A sweep through two lines.
+    let swept = |i: i32| {
+        let t = f64::from(i) * 1e-3 - 1.0;
+        (TAU * (50.0 * t + 0.25 * t * t)).cos() + 1e-3 * noise.normal()
+    };
+    let swept: Vec<f64> = (0..2000).map(swept).collect();
     let spectrum = |name, arguments, values: &[f64], codes| {
         case(name, arguments, Some(&samples(folder, name, "V", 1000.0, values)), codes)
     };
     vec![
         spectrum("a clipped sine", "spectrum --scaling psd", &clipped, &["spectrum-clipped"]),
+        spectrum("a drifting sine", "spectrum --tones 1", &swept, &["sine-unsteady"]),
         spectrum("two near sines", "spectrum --tones 1", &two, &["sine-not-alone"]),
     ]
 }

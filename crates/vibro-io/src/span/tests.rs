@@ -24,6 +24,12 @@ fn a_part_has_the_samples_and_times_of_the_whole() {
         assert_eq!(part.values, trace.values[8..16], "{name}");
         let all = read(name, bytes, (0.0, 1e9)).unwrap().records.remove(0);
         assert_eq!(all.len(), 100, "{name}");
+        let beyond = |to: f64| {
+            let record = read(name, bytes, (3.0, to)).unwrap().records.remove(0);
+            record.meta().findings.iter().any(|found| found.code == "span-beyond-record")
+        };
+        // The record ends at 2 s + 100/8 s.
+        assert!(beyond(99.0) && !beyond(14.5) && !beyond(f64::INFINITY), "{name}");
         let said = read(name, bytes, (20.0, 30.0)).unwrap_err().to_string();
         assert!(said.contains("no sample from 20 to 30 s; expected a part of 2 to 14.5 s"), "{said}");
         assert!(read(name, bytes, (4.0, 3.0)).unwrap_err().to_string().contains("a time, and a later one"));

@@ -223,6 +223,28 @@ fn a_motion_that_does_not_decay_is_refused() {
     assert!(usage(&DecayOptions { band: None, modes: Some(0) }).contains("0 modes"));
 }
 
+/// The force of one contact fits a strongly damped sine, but it does not swing back; a mode with the same
+/// damping does.
+#[test]
+fn a_single_push_is_no_decay() {
+    for (seed, width, sigma) in [(3, 30.0, 0.005), (4, 60.0, 0.005), (6, 60.0, 0.001)] {
+        let mut normal = Noise::new(seed);
+        let push = |i: usize| {
+            let phase = (i as f64 - 500.0) / width;
+            if (0.0..1.0).contains(&phase) { (std::f64::consts::PI * phase).sin() } else { 0.0 }
+        };
+        let values: Vec<f64> = (0..3000).map(|i| push(i) + sigma * normal.normal()).collect();
+        let error = found(values).map(|found| found.modes).unwrap_err();
+        assert!(error.to_string().contains("does not swing back"), "{width} {sigma}: {error}");
+    }
+    let mut normal = Noise::new(8);
+    for zeta in [0.2, 0.3, 0.4, 0.5] {
+        let values = record(3000, 500, &[(10.0, zeta, 1.0, 0.0)], 0.005, &mut normal);
+        let found = found(values).unwrap();
+        assert!(off(&found.modes[0].zeta, zeta).abs() < 4.5, "{zeta}: {:?}", found.modes[0]);
+    }
+}
+
 /// Coulomb friction: the amplitude falls by the same amount in every swing, so its relative decay gets
 /// faster.
 #[test]

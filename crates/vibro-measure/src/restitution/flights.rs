@@ -85,8 +85,9 @@ fn usable(train: usize, t: &Train, findings: &mut Vec<Finding>) -> Result<Vec<Fl
     not_negative("an uncertainty of the time of an impact", t.onset_std)?;
     t.intervals.iter().try_for_each(|interval| above_zero("a flight time", *interval))?;
     if let Some(n) = longer(t) {
-        let why =
-            format!("{n} flights of train {train} are longer than the first: other sounds count as impacts");
+        let why = format!(
+            "{n} flights of series {train} of bounces are longer than the first: other sounds count as impacts"
+        );
         let hint = "cut the record to the bounces, or raise the threshold; else intervals in the order of the bounces";
         return Err(Error::refused(why).hint(hint).setting("threshold").setting("refractory"));
     }

@@ -542,7 +542,12 @@ fn a_height_that_the_flights_contradict_is_named_first() {
     let full = |height| Drop { height, ..Drop::default() }.full_flight();
     let trace = force(0.6, 1e-3, 0.0, 4);
     assert!(Train::of(&trace, &how, full(0.3)).is_ok());
-    let refused = Train::of(&trace, &how, full(300.0)).unwrap_err();
+    for (typed, meant) in [(30.0, "0.3 m (30 cm)"), (300.0, "0.3 m (300 mm)")] {
+        let refused = Train::of(&trace, &how, full(typed)).unwrap_err();
+        assert!(refused.to_string().contains(&format!("did you mean {meant}?")), "{refused}");
+        assert_eq!(refused.settings().collect::<Vec<_>>(), ["height"], "{refused}");
+    }
+    let refused = Train::of(&trace, &how, full(500.0)).unwrap_err();
     assert_eq!(refused.settings().collect::<Vec<_>>(), ["height"], "{refused}");
     let text = refused.to_string();
     let fit = text.split("fit a fall of ").nth(1).and_then(|rest| rest.split(' ').next()).unwrap();
@@ -551,6 +556,22 @@ fn a_height_that_the_flights_contradict_is_named_first() {
     let height: f64 = fit.parse().unwrap();
     let height = if text.contains(&format!("{fit} mm")) { 1e-3 * height } else { height };
     assert!((height / 0.3 - 1.0).abs() < 0.02, "{text}");
+}
+
+#[test]
+fn a_contact_longer_than_a_flight_is_refused_by_its_key() {
+    let train = Train { intervals: vec![0.586, 0.4, 0.28], ..Train::default() };
+    let drop = Some(drop(0.57, 0.586));
+    for measured in
+        [Measured { trains: vec![train], ..Measured::default() }, Measured { drop, ..Measured::default() }]
+    {
+        let refused = restitution(&Measured { contact_time: Some(5.0), ..measured }).unwrap_err();
+        assert_eq!(refused.settings().collect::<Vec<_>>(), ["contact_time"], "{refused}");
+        assert!(
+            refused.to_string().contains("a contact time of 5.00 s is no shorter than the flight of"),
+            "{refused}"
+        );
+    }
 }
 
 #[test]

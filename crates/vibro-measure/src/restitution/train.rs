@@ -7,7 +7,7 @@ use super::untold::Untold;
 use crate::Estimate;
 use crate::impacts::{Choose, Detected, ImpactsOptions, Sound, chosen, detect_among, octaves};
 use std::cell::{Cell, RefCell};
-use vibro_record::units::notation::{counted, quantity, significant};
+use vibro_record::units::notation::{counted, quantity, shortest, significant};
 use vibro_record::{Error, Finding, Result, Trace};
 
 /// Flight times of one train of bounces.
@@ -108,8 +108,62 @@ fn above_hum(trace: &Trace, options: &ImpactsOptions, choose: Choose<'_>) -> Opt
     octaves.into_iter().rev().filter_map(above).max_by_key(|found| found.times.len())
 }
 
-/// Selects the impacts among the sounds. Returns their indices, and findings on the other sounds.
+/// As [`selected`]. Where a hundredth or a thousandth of the stated height fits the flights, that is the
+/// first thing said: a height typed in cm or mm makes any other reason wrong.
 fn choose(
+    sounds: &[Sound],
+    heard: FallRecord,
+    untold: &RefCell<Option<Untold>>,
+) -> Result<(Vec<usize>, Vec<Finding>)> {
+    let found = selected(sounds, heard, untold);
+    match heard.full.and_then(|full| height_meant(sounds, heard, full, found.as_ref().ok())) {
+        Some(error) => {
+            untold.take();
+            Err(error)
+        }
+        None => found,
+    }
+}
+
+/// Error for a height that was typed in cm or mm: a hundredth or a thousandth of it is that of the fall that
+/// the flights fit by themselves. The flights are those `found`, else those with this smaller height.
+fn height_meant(
+    sounds: &[Sound],
+    heard: FallRecord,
+    full: f64,
+    found: Option<&(Vec<usize>, Vec<Finding>)>,
+) -> Option<Error> {
+    let stated = GRAVITY * full * full / 8.0;
+    [(100.0, "cm"), (1000.0, "mm")].into_iter().find_map(|(factor, unit)| {
+        let smaller = FallRecord { full: Some(full / f64::sqrt(factor)), ..heard };
+        let with_smaller = || Some(selected(sounds, smaller, &RefCell::new(None)).ok()?.0);
+        let impacts = found.map(|found| found.0.clone()).or_else(with_smaller)?;
+        let [first, second, third, ..] = impacts[..] else { return None };
+        let flights = [sounds[second].time - sounds[first].time, sounds[third].time - sounds[second].time];
+        let (meant, fitted) = (stated / factor, fall_before(flights));
+        ((fitted / meant).ln().abs() < AGREES).then(|| {
+            let [meant, typed] = [meant, stated].map(shortest);
+            let fitted = quantity(fitted, "m", 2);
+            let why = format!(
+                "a height of {typed} m: did you mean {meant} m ({typed} {unit})? The flights fit a fall of {fitted}"
+            );
+            Error::refused(why).hint("the height in m").set("height", meant)
+        })
+    })
+}
+
+/// Largest logarithm of the ratio of two heights that agree: R of one bounce scatters by 2 %, and the height
+/// by four times that, twice the standard deviation on either side.
+const AGREES: f64 = 0.25;
+
+/// Height in m from which a body falls on Earth before two flights in s with one R: a fall of h precedes one
+/// of 2√(2h/g) with R = 1.
+fn fall_before([first, second]: [f64; 2]) -> f64 {
+    GRAVITY * (first.powi(2) / second).powi(2) / 8.0
+}
+
+/// Selects the impacts among the sounds. Returns their indices, and findings on the other sounds.
+fn selected(
     sounds: &[Sound],
     heard: FallRecord,
     untold: &RefCell<Option<Untold>>,
@@ -150,10 +204,9 @@ fn choose(
     {
         let (r, shown) = (flight / full, quantity(flight, "s", 3));
         let by_height = format!("the stated height makes the first flight, {shown}, R = {r:.4}");
-        // Two flights have an R of their own, and with it a height: a fall of h precedes one of 2√(2h/g) with
-        // R = 1.
+        // Two flights have an R of their own, and with it a height.
         if let Some(second) = second_flight(&train, sounds).filter(|second| *second < flight) {
-            let fall = quantity(GRAVITY * (flight.powi(2) / second).powi(2) / 8.0, "m", 3);
+            let fall = quantity(fall_before([flight, second]), "m", 3);
             let why = format!("{by_height}; the flights themselves fit a fall of {fall} on Earth");
             return Err(Error::refused(why).hint("check the height and its unit").setting("height"));
         }

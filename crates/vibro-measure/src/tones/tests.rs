@@ -114,6 +114,25 @@ fn what_is_no_sine_is_refused() {
     assert!(short.err().unwrap().to_string().contains("periods"));
 }
 
+/// A sweep through two lines, and a sine whose amplitude is larger in the middle: the residual has its line
+/// at the sine itself, so one more sine would mend nothing.
+#[test]
+fn a_sine_that_is_not_steady_is_not_two() {
+    let mut noise = Noise::new(12);
+    let mut of = |drift: f64, swell: f64| {
+        let value = |i: i32| {
+            let t = f64::from(i) * 1e-3 - 0.5;
+            (1.0 - swell * t * t) * (TAU * (200.0 * t + 0.5 * drift * t * t)).cos() + 1e-3 * noise.normal()
+        };
+        sine(&trace((0..1000).map(value).collect()), None).unwrap()
+    };
+    for found in [of(2.0, 0.0), of(0.0, 2.0)] {
+        let codes: Vec<&str> = found.findings.iter().map(|f| &*f.code).collect();
+        assert!(codes.contains(&"sine-unsteady") && !codes.contains(&"sine-not-alone"), "{codes:?}");
+        assert!(found.tones[0].frequency.std.is_none(), "{found:?}");
+    }
+}
+
 /// Two of three sines are fitted; the third lies 1.5 lines from one of them, 40 lines from the other.
 #[test]
 fn the_tone_beside_which_another_is_left_has_no_uncertainty() {
