@@ -66,7 +66,7 @@ const SCALED: Concern = At(&[
 ]);
 
 /// Every code of a doubt.
-pub const CONCERNS: [(&str, Concern); 81] = [
+pub const CONCERNS: [(&str, Concern); 82] = [
     ("rig-left-out", Nothing(MODEL)),
     // What most drawn records lack.
     ("plan-unanswered", At(&["decays/*/answers", "drops/*/answers"])),

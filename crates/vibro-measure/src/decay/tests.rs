@@ -224,7 +224,7 @@ fn a_motion_that_does_not_decay_is_refused() {
 }
 
 /// The force of one contact fits a strongly damped sine, but it does not swing back; a mode with the same
-/// damping does.
+/// damping does. Where the noise is so low that several sines follow the push, all are in doubt.
 #[test]
 fn a_single_push_is_no_decay() {
     for (seed, width, sigma) in [(3, 30.0, 0.005), (4, 60.0, 0.005), (6, 60.0, 0.001)] {
@@ -234,8 +234,12 @@ fn a_single_push_is_no_decay() {
             if (0.0..1.0).contains(&phase) { (std::f64::consts::PI * phase).sin() } else { 0.0 }
         };
         let values: Vec<f64> = (0..3000).map(|i| push(i) + sigma * normal.normal()).collect();
-        let error = found(values).map(|found| found.modes).unwrap_err();
-        assert!(error.to_string().contains("does not swing back"), "{width} {sigma}: {error}");
+        match found(values) {
+            Ok(found) => assert!(found.modes.iter().all(|mode| mode.zeta.std.is_none()), "{:?}", found.modes),
+            Err(error) => {
+                assert!(error.to_string().contains("does not swing back"), "{width} {sigma}: {error}");
+            }
+        }
     }
     let mut normal = Noise::new(8);
     for zeta in [0.2, 0.3, 0.4, 0.5] {
