@@ -192,6 +192,8 @@ test("a value is typed with its unit, its meaning is shown, and a record is meas
   await height.press("Enter");
   await ran(page, before + 1);
   assert.match(await page.locator("#text").inputValue(), /height = 0\.485\n/);
+  const typed = await page.evaluate(() => [["1476 rpm", "Hz"], ["20k", "Hz"], ["30 deg", "°"]].map(([text, unit]) => toToml(text, unit, false)));
+  assert.deepEqual(typed, ["24.6", "20000", "30"]);
   // What is no height is refused at its field, and changes nothing.
   await height.fill("57 kg");
   await height.press("Enter");

@@ -13,6 +13,9 @@ const worded = (text) => text.split("`").map((part, k) => (k % 2 ? make("code", 
 /** Parts and multiples of a unit. */
 const STEPS = { µ: 1e-6, u: 1e-6, m: 1e-3, c: 1e-2, "": 1, k: 1e3, M: 1e6 };
 
+/** What people type in place of a unit, in that unit. */
+const OTHERS = { Hz: { rpm: 1 / 60, "1/min": 1 / 60, k: 1e3 }, "°": { deg: 1, degrees: 1 }, m: { in: 0.0254 }, s: { min: 60 } };
+
 /** May be a thousand, or one with decimals. Nothing that begins with 0 is a thousand. */
 const THOUSAND = /[1-9]\d*,\d{3}(?!\d)/;
 
@@ -23,7 +26,7 @@ function inUnit(text, unit) {
   const [, number, behind] = found, value = Number(number.replace(",", "."));
   if (!Number.isFinite(value) || THOUSAND.test(number)) return text;
   const typed = behind.replaceAll("^2", "²").replaceAll(/[\s·*]/g, ""), base = unit === "kg" ? "g" : unit;
-  const step = typed.endsWith(base) ? STEPS[typed.slice(0, -base.length)] : undefined;
+  const step = typed.endsWith(base) ? STEPS[typed.slice(0, -base.length)] : OTHERS[unit]?.[typed];
   if (step === undefined) throw new Error(`${text}: this is in ${unit}. Type the number alone, or with ${unit}`);
   return String(Number((value * step / (unit === "kg" ? 1e3 : 1)).toPrecision(12)));
 }

@@ -31,7 +31,7 @@ pub struct Guess {
     contact_time_std: Option<f64>,
 }
 
-/// Highest fall in m: a larger number is a height in mm.
+/// Highest fall in m: a larger number is likely a height in mm.
 const HIGHEST: f64 = 30.0;
 /// Relative scatter of R from bounce to bounce where none is stated.
 const SCATTER: f64 = 0.02;
