@@ -147,7 +147,7 @@ fn coloured_noise_is_counted_where_the_sine_is(draws: Draws) {
     let records = draws.of(600) as usize;
     let seed = 0xc0_104e;
     let mut random = Noise::new(seed);
-    let (mut inside, mut stated, mut said) = ([[0usize; 2]; 2], [0usize; 2], 0);
+    let (mut inside, mut stated, mut silent) = ([[0usize; 2]; 2], [0usize; 2], 0);
     for _ in 0..records {
         let n = random.between(2000.0, 4000.0) as usize;
         let (f, amplitude, phase) = (random.between(3.0, 8.0), 1.0, random.between(0.0, TAU));
@@ -164,9 +164,10 @@ fn coloured_noise_is_counted_where_the_sine_is(draws: Draws) {
         let trace = Trace { meta, axis: Axis::time(0.0, 1.0 / RATE, n), values };
         let one = sine(&trace, None).unwrap();
         let several = tones(&trace, 1).unwrap();
-        said += usize::from(
-            one.findings.iter().chain(&several.findings).any(|f| f.code == "sine-noise-coloured"),
-        );
+        // A doubt takes the uncertainty, and nothing is said of one that is larger for the noise.
+        let has_std = [&one, &several].iter().any(|found| found.tones[0].frequency.std.is_some());
+        let mut findings = one.findings.iter().chain(&several.findings);
+        silent += usize::from(has_std && !findings.any(|f| f.code == "sine-noise-coloured"));
         let of_tones = (&several.tones[0].frequency, &several.tones[0].amplitude);
         for (k, (frequency, size)) in
             [(&one.tones[0].frequency, &one.tones[0].amplitude), of_tones].into_iter().enumerate()
@@ -179,7 +180,7 @@ fn coloured_noise_is_counted_where_the_sine_is(draws: Draws) {
     }
     let covered = [0, 1].map(|k| inside[k].map(|n| n as f64 / stated[k] as f64));
     println!(
-        "seed {seed:#x}: sine in noise of 0.95: coverage {covered:?}, {stated:?} stated, {said} of {records} say so"
+        "seed {seed:#x}: sine in noise of 0.95: coverage {covered:?}, {stated:?} stated, {silent} of {records} do not say so"
     );
     // One of 10⁴ noise lines looks like a second sine, some more where the density is steep: then no
     // uncertainty is stated, in at most 2 % of the records.
@@ -187,7 +188,7 @@ fn coloured_noise_is_counted_where_the_sine_is(draws: Draws) {
     // The coverage of 600 cases scatters by 0.009. The density is that of a process whose coefficient is
     // known to a tenth of 1 − 0.95.
     assert!(covered.iter().flatten().all(|c| draws.part(0.92..=0.98).contains(c)), "{covered:?}");
-    assert!(said == records, "{said}");
+    assert!(silent == 0, "{silent}");
 }
 
 /// 4 cases of each kind, run with every test.
