@@ -22,6 +22,9 @@ function withoutFiles(bytes) {
   return new TextEncoder().encode(html.replace("</head>", () => "<style>a[href^='./'] { display: none; }</style></head>"));
 }
 
+/** Whether two paths end in one name. */
+const isSameFile = (path, file) => path?.split("/").pop() === file.split("/").pop();
+
 /** The page: files, campaign, report. */
 class App {
   constructor() {
@@ -321,13 +324,12 @@ class App {
   /** Whether impacts were found in a band, which the program chose. */
   inBand({ section }, file) {
     const list = { impacts: this.results?.impacts, drop: this.results?.drops }[section] ?? [];
-    const name = (path) => path.split("/").pop();
-    return list.some((one) => [one.file, ...one.files ?? []].some((path) => path && name(path) === name(file)) && one.findings?.some(({ code }) => code === "impacts-in-band"));
+    return list.some((one) => [one.file, ...one.files ?? []].some((path) => isSameFile(path, file)) && one.findings?.some(({ code }) => code === "impacts-in-band"));
   }
 
   /** Times in s of what was detected in a file of a table. */
   events({ section }, file, results = this.results ?? {}) {
-    const own = (path) => path?.split("/").pop() === file.split("/").pop();
+    const own = (path) => isSameFile(path, file);
     if (section === "impacts") return results.impacts?.find((one) => own(one.file))?.times ?? [];
     if (section === "drop") {
       for (const { files = [], times = [] } of results.drops ?? []) {

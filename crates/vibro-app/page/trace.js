@@ -45,7 +45,7 @@ class TraceView {
    */
   constructor(host, { ask, attempt, set, events, inBand, said, stand }) {
     Object.assign(this, { host, ask, attempt, set, events, inBand, refusals: said, stand });
-    [this.part, this.times, this.trials] = [[null, null], [], []];
+    [this.part, this.times, this.trials, this.isLevel, this.ignored] = [[null, null], [], [], false, []];
   }
 
   async open(tables, id, file = 0) {
@@ -106,6 +106,9 @@ class TraceView {
     const found = this.events(this.table, this.data.files[this.file]);
     this.lost = found.length === 0 && this.times?.length > 0;
     if (!this.lost) this.times = found;
+    // Once for each answer: lines are drawn with every move of the mouse.
+    this.isLevel = this.hasLevel();
+    this.ignored = this.unused();
     this.build();
     this.draw();
     this.tryOut();
@@ -146,11 +149,11 @@ class TraceView {
 
   /** How many impacts there are, and why other sounds above the threshold are none. */
   counted() {
-    const ignored = this.ignored().filter(({ high }) => high), reasons = new Map();
+    const ignored = this.ignored.filter(({ high }) => high), reasons = new Map();
     for (const { why } of ignored) reasons.set(why, (reasons.get(why) ?? 0) + 1);
     if (this.lost || !this.times.length) return `No answer: ${obstacle(this.refusals(this.table)[0] ?? "no impact is found")}. ${ignored.length} sounds are louder than the threshold (hollow marks).`;
     const others = ignored.length ? ` ${ignored.length} louder than the threshold, not taken (hollow marks): ${Array.from(reasons, ([why, n]) => `${n} ${why}`).join(", ")}.` : "";
-    const elsewhere = this.heard && !this.isLevel() ? " They were found in a band of the trace, which has levels of its own." : "";
+    const elsewhere = this.heard && !this.isLevel ? " They were found in a band of the trace, which has levels of its own." : "";
     return `${this.times.length} impacts (filled marks).${others}${elsewhere}`;
   }
 
@@ -167,15 +170,15 @@ class TraceView {
   static isOf(t, { from, to }) { return t > from - NEAR_TIME && t < Math.max(to, from + NEAR_TIME); }
 
   /** Whether the threshold is a level of this trace: impacts that were searched for in a band have others. */
-  isLevel() {
+  hasLevel() {
     if (!this.heard?.sounds.length || this.inBand(this.table, this.data.files[this.file])) return false;
     const high = this.heard.sounds.filter(({ height }) => height > this.least()), times = this.lost ? [] : this.times;
     return times.filter((t) => high.some((sound) => TraceView.isOf(t, sound))).length >= 0.8 * times.length;
   }
 
   /** Sounds that are no impacts of the answer, whether each exceeds the threshold, and why it is not taken. */
-  ignored() {
-    if (!this.isLevel()) return [];
+  unused() {
+    if (!this.isLevel) return [];
     const times = this.lost ? [] : this.times, dead = Number(this.value("refractory")) || 0, least = this.least();
     const isTaken = (sound) => times.some((t) => TraceView.isOf(t, sound));
     const why = ({ from }) => {
@@ -301,7 +304,7 @@ class TraceView {
     };
     pen.lineWidth = 1;
     pen.strokeStyle = colour("--soft");
-    for (const { from, high } of this.ignored()) {
+    for (const { from, high } of this.ignored) {
       if (!high) continue;
       mark(from);
       pen.stroke();
@@ -373,7 +376,7 @@ class TraceView {
   lines() {
     const all = [], { picture, first, last } = this.data, can = this.picks();
     // Where a band is searched, a threshold is a level of that, and no level of this trace.
-    if (can.includes("threshold") && this.isLevel()) {
+    if (can.includes("threshold") && this.isLevel) {
       const { median, rest, sides: [up, down] } = this.heard, own = this.value("threshold"), part = own || THRESHOLD[this.table.section];
       const level = (height) => rest + (up ? height : -height), least = this.least();
       const noise = least > part * median, words = noise ? "noise limit, above the threshold" : `threshold ${part}${own ? "" : " (default)"} of the median height`;
