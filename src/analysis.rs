@@ -55,7 +55,7 @@ pub(crate) use recordings::{in_order, is_pattern, matching};
 pub use run::{CampaignOutcome, answers, run};
 pub use sweep::modelled::fit;
 pub use sweep::{named, responses};
-pub(crate) use unnamed::unnamed;
+pub use unnamed::unnamed;
 
 #[cfg(feature = "cli")]
 pub(crate) use kind::FileCommand;

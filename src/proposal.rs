@@ -90,6 +90,9 @@ pub struct TableKey {
 /// longer one follows it directly.
 const WIDEST: usize = 60;
 
+/// Keys that say which part of a file is read.
+const OF_PART: [&str; 3] = ["allow_missing", "span", "stretch"];
+
 /// How the value of a key is known.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
@@ -177,13 +180,18 @@ impl Table {
         self
     }
 
-    /// Adds the settings for reading that `reading` states, if the table has a key for them.
-    fn stated(&self, reading: &Reading) -> Table {
+    /// Adds the settings for reading that `reading` states, if the table has a key for them. Those of a
+    /// `part` are a guess, with this reason.
+    fn stated(&self, reading: &Reading, part: Option<&'static str>) -> Table {
         let has = |key| self.rows.iter().any(|row| row.key == key);
         let of_traces = |key: &str, value: &Value| key == "rate" || key == "unit" && value.is_string();
         let takes = |key: &str, value: &Value| has("file") || has("traces") && of_traces(key, value);
         let stated = reading.stated().into_iter().filter(|(key, value)| takes(key, value));
-        stated.fold(self.clone(), |table, (key, value)| table.found(key, value))
+        let known = |key| match part.filter(|_| OF_PART.contains(&key)) {
+            Some(why) => KeyStatus::Guessed(why),
+            None => KeyStatus::Found,
+        };
+        stated.fold(self.clone(), |table, (key, value)| table.with(key, value, known(key)))
     }
 
     /// Whether a required key is missing: the table cannot run before it is filled in.
@@ -427,12 +435,12 @@ pub fn of_steps(within: &Folder, files: &[PathBuf], reading: &Reading) -> Result
     let channels: Vec<String> = headers.iter().map(|h| format!("{} [{}]", h.name, h.unit)).collect();
     let names: Vec<String> = files.iter().map(|file| file.display().to_string()).collect();
     let (name, reading) = (folder::name(&names), reading.clone());
-    let series = FileSeries { name, files: names, headers, pattern: None, alike: false, reading };
+    let series = FileSeries { name, files: names, headers, pattern: None, alike: false, reading, part: None };
     let table = series.sweep().ok_or_else(|| {
         let found = format!("the channels {}", channels.join(", "));
         Error::input(Place::file(first), found, "a force in N and a displacement, velocity or acceleration")
             .hint("name them in a campaign: [[sweep]] with traces, force and response; docs/campaign.md shows one")
     })?;
-    let tables = vec![table.stated(&series.reading)];
+    let tables = vec![table.stated(&series.reading, None)];
     Ok(Proposal { folder: within.at("."), tables, left: Vec::new(), notes: Vec::new() })
 }

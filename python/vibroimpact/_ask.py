@@ -20,7 +20,7 @@ from ._words import words
 Source: TypeAlias = "str | PathLike[str] | Record | Recording | npt.ArrayLike"
 """A file, a record, records of one file, or an array with its ``rate`` and ``unit``."""
 
-OF_FILES = ("format", "base_band", "decimal", "complex", "wrapped", "columns")
+OF_FILES = ("format", "base_band", "axis_unit", "decimal", "complex", "wrapped", "columns")
 """Options that say how a file is read."""
 
 Made: TypeAlias = "list[tuple[str, list[tuple[Head, Array]]]]"

@@ -40,6 +40,7 @@ def spectrum(
     rate: float | None = None,
     base_band: float | None = None,
     unit: str | Sequence[str] | None = None,
+    axis_unit: str | None = None,
     decimal: str | None = None,
     complex: bool = False,
     wrapped: bool = False,
@@ -96,6 +97,7 @@ def spectrum(
         base_band: Base band in Hz: the values are a spectrum from 0 to it, or a trace sampled at 2.56
             times it.
         unit: Unit of the values, such as mm/s; of one channel NAME=UNIT.
+        axis_unit: Unit of times or frequencies whose column names none, such as ms.
         decimal: Decimal mark, where the file leaves it open: comma or point.
         complex: Two columns of values are real and imaginary part.
         wrapped: Rows of several columns continue each other as one series.
@@ -104,7 +106,7 @@ def spectrum(
         stretch: Stretch between lost samples that is used, by its number from 1.
         resample: Rate in Hz at which samples of uneven times are interpolated.
     """
-    return ask(["spectrum"], list(record), {"method": method, "tones": tones, "segment": segment, "overlap": overlap, "detrend": detrend, "window": window, "scaling": scaling, "integrate": integrate, "fmin": fmin, "reference": reference, "estimator": estimator, "hammer": hammer, "force_window": force_window, "left_at_end": left_at_end, "delay": delay, "decibel": decibel, "channel": channel, "calibration": calibration, "format": format, "allow_missing": allow_missing, "rate": rate, "base_band": base_band, "unit": unit, "decimal": decimal, "complex": complex, "wrapped": wrapped, "columns": columns, "span": Joined(":", span), "stretch": stretch, "resample": resample})
+    return ask(["spectrum"], list(record), {"method": method, "tones": tones, "segment": segment, "overlap": overlap, "detrend": detrend, "window": window, "scaling": scaling, "integrate": integrate, "fmin": fmin, "reference": reference, "estimator": estimator, "hammer": hammer, "force_window": force_window, "left_at_end": left_at_end, "delay": delay, "decibel": decibel, "channel": channel, "calibration": calibration, "format": format, "allow_missing": allow_missing, "rate": rate, "base_band": base_band, "unit": unit, "axis_unit": axis_unit, "decimal": decimal, "complex": complex, "wrapped": wrapped, "columns": columns, "span": Joined(":", span), "stretch": stretch, "resample": resample})
 
 
 def impacts(
@@ -128,6 +130,7 @@ def impacts(
     rate: float | None = None,
     base_band: float | None = None,
     unit: str | Sequence[str] | None = None,
+    axis_unit: str | None = None,
     decimal: str | None = None,
     complex: bool = False,
     wrapped: bool = False,
@@ -175,6 +178,7 @@ def impacts(
         base_band: Base band in Hz: the values are a spectrum from 0 to it, or a trace sampled at 2.56
             times it.
         unit: Unit of the values, such as mm/s; of one channel NAME=UNIT.
+        axis_unit: Unit of times or frequencies whose column names none, such as ms.
         decimal: Decimal mark, where the file leaves it open: comma or point.
         complex: Two columns of values are real and imaginary part.
         wrapped: Rows of several columns continue each other as one series.
@@ -183,7 +187,7 @@ def impacts(
         stretch: Stretch between lost samples that is used, by its number from 1.
         resample: Rate in Hz at which samples of uneven times are interpolated.
     """
-    return ask(["impacts"], [record], {"legacy": legacy, "excitation": excitation, "reference": reference, "threshold": threshold, "refractory": refractory, "band": Joined(":", band), "envelope": envelope, "keep_hum": keep_hum, "shape": shape, "shape_rate": shape_rate, "none_missed": none_missed, "channel": channel, "calibration": calibration, "format": format, "allow_missing": allow_missing, "rate": rate, "base_band": base_band, "unit": unit, "decimal": decimal, "complex": complex, "wrapped": wrapped, "columns": columns, "span": Joined(":", span), "stretch": stretch, "resample": resample})
+    return ask(["impacts"], [record], {"legacy": legacy, "excitation": excitation, "reference": reference, "threshold": threshold, "refractory": refractory, "band": Joined(":", band), "envelope": envelope, "keep_hum": keep_hum, "shape": shape, "shape_rate": shape_rate, "none_missed": none_missed, "channel": channel, "calibration": calibration, "format": format, "allow_missing": allow_missing, "rate": rate, "base_band": base_band, "unit": unit, "axis_unit": axis_unit, "decimal": decimal, "complex": complex, "wrapped": wrapped, "columns": columns, "span": Joined(":", span), "stretch": stretch, "resample": resample})
 
 
 def restitution(
@@ -212,6 +216,7 @@ def restitution(
     rate: float | None = None,
     base_band: float | None = None,
     unit: str | Sequence[str] | None = None,
+    axis_unit: str | None = None,
     decimal: str | None = None,
     complex: bool = False,
     wrapped: bool = False,
@@ -266,6 +271,7 @@ def restitution(
         base_band: Base band in Hz: the values are a spectrum from 0 to it, or a trace sampled at 2.56
             times it.
         unit: Unit of the values, such as mm/s; of one channel NAME=UNIT.
+        axis_unit: Unit of times or frequencies whose column names none, such as ms.
         decimal: Decimal mark, where the file leaves it open: comma or point.
         complex: Two columns of values are real and imaginary part.
         wrapped: Rows of several columns continue each other as one series.
@@ -274,7 +280,7 @@ def restitution(
         stretch: Stretch between lost samples that is used, by its number from 1.
         resample: Rate in Hz at which samples of uneven times are interpolated.
     """
-    return ask(["restitution"], list(record), {"height": height, "height_std": height_std, "interval": interval, "interval_std": interval_std, "intervals": Joined(",", intervals), "contact_time": contact_time, "contact_time_std": contact_time_std, "gravity": gravity, "gravity_std": gravity_std, "threshold": threshold, "refractory": refractory, "keep_hum": keep_hum, "masses": masses, "before": before, "after": Joined(",", after), "after2": after2, "velocity_std": velocity_std, "channel": channel, "calibration": calibration, "format": format, "allow_missing": allow_missing, "rate": rate, "base_band": base_band, "unit": unit, "decimal": decimal, "complex": complex, "wrapped": wrapped, "columns": columns, "span": Joined(":", span), "stretch": stretch, "resample": resample})
+    return ask(["restitution"], list(record), {"height": height, "height_std": height_std, "interval": interval, "interval_std": interval_std, "intervals": Joined(",", intervals), "contact_time": contact_time, "contact_time_std": contact_time_std, "gravity": gravity, "gravity_std": gravity_std, "threshold": threshold, "refractory": refractory, "keep_hum": keep_hum, "masses": masses, "before": before, "after": Joined(",", after), "after2": after2, "velocity_std": velocity_std, "channel": channel, "calibration": calibration, "format": format, "allow_missing": allow_missing, "rate": rate, "base_band": base_band, "unit": unit, "axis_unit": axis_unit, "decimal": decimal, "complex": complex, "wrapped": wrapped, "columns": columns, "span": Joined(":", span), "stretch": stretch, "resample": resample})
 
 
 def pulse(
@@ -293,6 +299,7 @@ def pulse(
     rate: float | None = None,
     base_band: float | None = None,
     unit: str | Sequence[str] | None = None,
+    axis_unit: str | None = None,
     decimal: str | None = None,
     complex: bool = False,
     wrapped: bool = False,
@@ -335,6 +342,7 @@ def pulse(
         base_band: Base band in Hz: the values are a spectrum from 0 to it, or a trace sampled at 2.56
             times it.
         unit: Unit of the values, such as mm/s; of one channel NAME=UNIT.
+        axis_unit: Unit of times or frequencies whose column names none, such as ms.
         decimal: Decimal mark, where the file leaves it open: comma or point.
         complex: Two columns of values are real and imaginary part.
         wrapped: Rows of several columns continue each other as one series.
@@ -343,7 +351,7 @@ def pulse(
         stretch: Stretch between lost samples that is used, by its number from 1.
         resample: Rate in Hz at which samples of uneven times are interpolated.
     """
-    return ask(["pulse"], [] if record is None else [record], {"time_to_peak": time_to_peak, "duration": duration, "std": std, "mass": mass, "low_pass": low_pass, "order": order, "channel": channel, "calibration": calibration, "format": format, "allow_missing": allow_missing, "rate": rate, "base_band": base_band, "unit": unit, "decimal": decimal, "complex": complex, "wrapped": wrapped, "columns": columns, "span": Joined(":", span), "stretch": stretch, "resample": resample})
+    return ask(["pulse"], [] if record is None else [record], {"time_to_peak": time_to_peak, "duration": duration, "std": std, "mass": mass, "low_pass": low_pass, "order": order, "channel": channel, "calibration": calibration, "format": format, "allow_missing": allow_missing, "rate": rate, "base_band": base_band, "unit": unit, "axis_unit": axis_unit, "decimal": decimal, "complex": complex, "wrapped": wrapped, "columns": columns, "span": Joined(":", span), "stretch": stretch, "resample": resample})
 
 
 def decay(
@@ -358,6 +366,7 @@ def decay(
     rate: float | None = None,
     base_band: float | None = None,
     unit: str | Sequence[str] | None = None,
+    axis_unit: str | None = None,
     decimal: str | None = None,
     complex: bool = False,
     wrapped: bool = False,
@@ -394,6 +403,7 @@ def decay(
         base_band: Base band in Hz: the values are a spectrum from 0 to it, or a trace sampled at 2.56
             times it.
         unit: Unit of the values, such as mm/s; of one channel NAME=UNIT.
+        axis_unit: Unit of times or frequencies whose column names none, such as ms.
         decimal: Decimal mark, where the file leaves it open: comma or point.
         complex: Two columns of values are real and imaginary part.
         wrapped: Rows of several columns continue each other as one series.
@@ -402,7 +412,7 @@ def decay(
         stretch: Stretch between lost samples that is used, by its number from 1.
         resample: Rate in Hz at which samples of uneven times are interpolated.
     """
-    return ask(["decay"], [record], {"band": Joined(":", band), "modes": modes, "channel": channel, "calibration": calibration, "format": format, "allow_missing": allow_missing, "rate": rate, "base_band": base_band, "unit": unit, "decimal": decimal, "complex": complex, "wrapped": wrapped, "columns": columns, "span": Joined(":", span), "stretch": stretch, "resample": resample})
+    return ask(["decay"], [record], {"band": Joined(":", band), "modes": modes, "channel": channel, "calibration": calibration, "format": format, "allow_missing": allow_missing, "rate": rate, "base_band": base_band, "unit": unit, "axis_unit": axis_unit, "decimal": decimal, "complex": complex, "wrapped": wrapped, "columns": columns, "span": Joined(":", span), "stretch": stretch, "resample": resample})
 
 
 def modal(
@@ -431,6 +441,7 @@ def modal(
     rate: float | None = None,
     base_band: float | None = None,
     unit: str | Sequence[str] | None = None,
+    axis_unit: str | None = None,
     decimal: str | None = None,
     complex: bool = False,
     wrapped: bool = False,
@@ -484,6 +495,7 @@ def modal(
         base_band: Base band in Hz: the values are a spectrum from 0 to it, or a trace sampled at 2.56
             times it.
         unit: Unit of the values, such as mm/s; of one channel NAME=UNIT.
+        axis_unit: Unit of times or frequencies whose column names none, such as ms.
         decimal: Decimal mark, where the file leaves it open: comma or point.
         complex: Two columns of values are real and imaginary part.
         wrapped: Rows of several columns continue each other as one series.
@@ -492,7 +504,7 @@ def modal(
         stretch: Stretch between lost samples that is used, by its number from 1.
         resample: Rate in Hz at which samples of uneven times are interpolated.
     """
-    return ask(["modal"], [record], {"band": Joined(":", band), "mass": mass, "coherence": coherence, "least_coherence": least_coherence, "reference": reference, "estimator": estimator, "segment": segment, "overlap": overlap, "detrend": detrend, "window": window, "integrate": integrate, "fmin": fmin, "hammer": hammer, "force_window": force_window, "left_at_end": left_at_end, "delay": delay, "channel": channel, "calibration": calibration, "format": format, "allow_missing": allow_missing, "rate": rate, "base_band": base_band, "unit": unit, "decimal": decimal, "complex": complex, "wrapped": wrapped, "columns": columns, "span": Joined(":", span), "stretch": stretch, "resample": resample})
+    return ask(["modal"], [record], {"band": Joined(":", band), "mass": mass, "coherence": coherence, "least_coherence": least_coherence, "reference": reference, "estimator": estimator, "segment": segment, "overlap": overlap, "detrend": detrend, "window": window, "integrate": integrate, "fmin": fmin, "hammer": hammer, "force_window": force_window, "left_at_end": left_at_end, "delay": delay, "channel": channel, "calibration": calibration, "format": format, "allow_missing": allow_missing, "rate": rate, "base_band": base_band, "unit": unit, "axis_unit": axis_unit, "decimal": decimal, "complex": complex, "wrapped": wrapped, "columns": columns, "span": Joined(":", span), "stretch": stretch, "resample": resample})
 
 
 def drill(
@@ -528,6 +540,7 @@ def drill(
     rate: float | None = None,
     base_band: float | None = None,
     unit: str | Sequence[str] | None = None,
+    axis_unit: str | None = None,
     decimal: str | None = None,
     complex: bool = False,
     wrapped: bool = False,
@@ -588,6 +601,7 @@ def drill(
         base_band: Base band in Hz: the values are a spectrum from 0 to it, or a trace sampled at 2.56
             times it.
         unit: Unit of the values, such as mm/s; of one channel NAME=UNIT.
+        axis_unit: Unit of times or frequencies whose column names none, such as ms.
         decimal: Decimal mark, where the file leaves it open: comma or point.
         complex: Two columns of values are real and imaginary part.
         wrapped: Rows of several columns continue each other as one series.
@@ -596,7 +610,7 @@ def drill(
         stretch: Stretch between lost samples that is used, by its number from 1.
         resample: Rate in Hz at which samples of uneven times are interpolated.
     """
-    return ask(["drill"], [record], {"velocity": velocity, "reference": reference, "sensitivity": sensitivity, "beam_angle": beam_angle, "beam_from": beam_from, "pulses_per_turn": pulses_per_turn, "edge": edge, "level": level, "mass": mass, "struck_mass": struck_mass, "contact": contact, "fit_duration": fit_duration, "longest_dropout": longest_dropout, "delay": delay, "points": points, "low_pass": low_pass, "smoothing": smoothing, "instrument": instrument, "noise_record": noise_record, "margin": margin, "handle": handle, "handle_sensitivity": handle_sensitivity, "exposure": exposure, "channel": channel, "calibration": calibration, "format": format, "allow_missing": allow_missing, "rate": rate, "base_band": base_band, "unit": unit, "decimal": decimal, "complex": complex, "wrapped": wrapped, "columns": columns, "span": Joined(":", span), "stretch": stretch, "resample": resample})
+    return ask(["drill"], [record], {"velocity": velocity, "reference": reference, "sensitivity": sensitivity, "beam_angle": beam_angle, "beam_from": beam_from, "pulses_per_turn": pulses_per_turn, "edge": edge, "level": level, "mass": mass, "struck_mass": struck_mass, "contact": contact, "fit_duration": fit_duration, "longest_dropout": longest_dropout, "delay": delay, "points": points, "low_pass": low_pass, "smoothing": smoothing, "instrument": instrument, "noise_record": noise_record, "margin": margin, "handle": handle, "handle_sensitivity": handle_sensitivity, "exposure": exposure, "channel": channel, "calibration": calibration, "format": format, "allow_missing": allow_missing, "rate": rate, "base_band": base_band, "unit": unit, "axis_unit": axis_unit, "decimal": decimal, "complex": complex, "wrapped": wrapped, "columns": columns, "span": Joined(":", span), "stretch": stretch, "resample": resample})
 
 
 def response(

@@ -18,6 +18,7 @@ def read(
     rate: float | None = None,
     base_band: float | None = None,
     unit: str | Sequence[str] | None = None,
+    axis_unit: str | None = None,
     decimal: Literal["comma", "point"] | None = None,
     complex: bool = False,
     wrapped: bool = False,
@@ -38,6 +39,7 @@ def read(
         rate: Sampling rate in Hz: the values are a time trace.
         base_band: Base band in Hz: the values are the lines of a spectrum from 0 to it.
         unit: Unit of the values, such as ``"mm/s"``; of one channel ``"NAME=UNIT"``.
+        axis_unit: Unit of the times or frequencies whose column in a text names none, such as ``"ms"``.
         decimal: Decimal mark, where the file leaves it open.
         complex: Two columns of values are real and imaginary part.
         wrapped: Rows of several columns continue each other as one series.
@@ -52,6 +54,7 @@ def read(
         "rate": rate,
         "base_band": base_band,
         "unit": unit,
+        "axis_unit": axis_unit,
         "decimal": decimal,
         "complex": complex,
         "wrapped": wrapped,

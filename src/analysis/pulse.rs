@@ -119,6 +119,7 @@ fn shown(name: &str, found: &PulseResult) -> Result<Answer> {
             ("duration", "s", &|f| Cell::from(&f.duration)),
             ("peak force", "N", &|f| f.peak.as_ref().into()),
             ("impulse", "N s", &|f| known_impulse(f).into()),
+            ("stiffness", "N/m", &|f| f.stiffness.as_ref().into()),
         ],
     ));
     answer.table("pulse", contact(name, found));

@@ -12,7 +12,9 @@ use crate::campaign::{Campaign, Entry, KeyRange, channel};
 use crate::error::{Error, Result};
 use crate::measure::spectral::{Lines, Method, SpectralOptions, SpectralResult, spectral, stored};
 use crate::read::Header;
-use crate::record::{Scaling, Traces, Window, doubt_with_record, find_channel, shown, sort_by_number};
+use crate::record::{
+    Finding, Scaling, Traces, Window, doubt_with_record, find_channel, shown, sort_by_number,
+};
 use crate::report::files::Names;
 use crate::report::layout::{degrees, headed, table};
 use crate::report::{Cell, Table, files};
@@ -234,7 +236,12 @@ pub(super) fn own_reference(reference: Option<&String>) -> Vec<(&'static str, &S
 impl OfFile for Keys {
     /// The lines of a record, with their figure, tables and files.
     fn measure(&self, source: &Source<'_>) -> Result<Answer> {
-        let found = self.lines(source)?;
+        let mut found = self.lines(source)?;
+        let is_spectrum = matches!(found.found, Lines::Spectrum(_)) && found.tones.is_empty();
+        let main_peaks = if is_spectrum { found.peaks(MAIN_PEAKS) } else { Vec::new() };
+        if is_spectrum && main_peaks.is_empty() {
+            found.findings.push(Finding::caution("spectrum-without-lines"));
+        }
         let mut answer = Answer::of(&found)?;
         answer.result.insert("channel".to_owned(), found.name.clone().into());
         answer.add("", &found.findings);
@@ -247,14 +254,13 @@ impl OfFile for Keys {
                 ("unit", "", &|tone| Cell::from(tone.amplitude.unit)),
             ],
         ));
-        let is_spectrum = matches!(found.found, Lines::Spectrum(_)) && found.tones.is_empty();
         let amplitude = match reads_low(&found) {
             Some(low) => format!("amplitude (of a sine up to {low} low)"),
             None => "amplitude".to_owned(),
         };
         answer.headlines.push(headline(
             "Largest spectral lines",
-            if is_spectrum { found.peaks(MAIN_PEAKS) } else { Vec::new() },
+            main_peaks,
             &[
                 ("frequency", "Hz", &|k| frequency_of(&found, *k)),
                 (amplitude.as_str(), "", &|k| value_of(&found, *k)),

@@ -26,6 +26,8 @@ pub struct Reading {
     /// Unit of the values, such as mm/s; of one channel NAME=UNIT
     #[serde(deserialize_with = "one_or_more", serialize_with = "one_or_list")]
     pub unit: Vec<String>,
+    /// Unit of times or frequencies whose column names none, such as ms
+    pub axis_unit: Option<String>,
     /// Decimal mark, where the file leaves it open: comma or point
     #[cfg_attr(feature = "cli", arg(value_name = "MARK", value_parser = crate::campaign::word::<Decimal>))]
     pub decimal: Option<Decimal>,
@@ -86,12 +88,13 @@ pub fn above_zero(key: &'static str, value: Option<f64>) -> Result<()> {
 
 impl Reading {
     /// Names of its keys.
-    pub const KEYS: [&str; 12] = [
+    pub const KEYS: [&str; 13] = [
         "format",
         "allow_missing",
         "rate",
         "base_band",
         "unit",
+        "axis_unit",
         "decimal",
         "complex",
         "wrapped",
@@ -168,6 +171,7 @@ impl Reading {
             .base_band(self.base_band)
             .unit(of_all)
             .channel_units(of_channels)
+            .axis_unit(self.axis_unit.as_deref())?
             .decimal_comma(self.decimal.map(|d| d == Decimal::Comma))
             .complex(self.complex)
             .span(self.span)

@@ -70,7 +70,7 @@ pub(super) fn tables_of_each<'a>(
         found[i] = Some(tables);
     }
     let stated = |(mut found, one): (FoundTables, &FileSeries)| {
-        found.tables.iter_mut().for_each(|table| *table = table.stated(&one.reading));
+        found.tables.iter_mut().for_each(|table| *table = table.stated(&one.reading, one.part));
         found
     };
     found.into_iter().flatten().zip(series).map(stated).collect()

@@ -5,7 +5,7 @@ use crate::analysis::{self, Progress, Recordings};
 use crate::campaign::{Campaign, Reading};
 use crate::error::{Error, Result};
 use crate::read::{Folder, Header, MAGNITUDE, SweepList, longest_stretch};
-use crate::record::{Fact, shown};
+use crate::record::{Fact, Record, Trace, shown};
 use crate::report::words::Voice;
 use rayon::prelude::*;
 use std::collections::HashMap;
@@ -38,21 +38,63 @@ pub struct FileSeries {
     pub alike: bool,
     /// Reading options stated for the files.
     pub reading: Reading,
+    /// Why only a part of the file is read, if the reading options were chosen so.
+    pub part: Option<&'static str>,
 }
 
 /// A file, how it is read, and its channels.
-type Member = (PathBuf, Reading, Vec<Header>);
+struct Member {
+    path: PathBuf,
+    reading: Reading,
+    part: Option<&'static str>,
+    headers: Vec<Header>,
+}
 
 /// The channels of a file, as far as its head shows them.
 struct Surveyed {
     /// How they were read: the stated options, as far as this file needs them.
     reading: Reading,
+    /// Why they say that only a part is read.
+    part: Option<&'static str>,
     headers: Result<Vec<Header>>,
+}
+
+/// Key that keeps missing values as such.
+const MISSING_KEPT: &str = "allow_missing";
+
+/// Most digits of a time in s that a table proposes.
+const MOST_DIGITS: usize = 12;
+
+/// The options by which the longest part without a missing value of a file's time traces is read.
+///
+/// # Errors
+/// If the file cannot be read with its missing values either.
+fn longest_present(path: &Path, reading: &Reading, folder: &Folder) -> Result<Reading> {
+    let kept = Reading { allow_missing: true, ..reading.clone() };
+    let recording = kept.reader()?.within(folder).from_path(path)?;
+    let trace = |record| if let Record::Trace(trace) = record { Some(trace) } else { None };
+    let traces: Vec<Trace> = recording.records.into_iter().filter_map(trace).collect();
+    let Some((axis, step)) = traces.first().and_then(|trace| Some((&trace.axis, trace.axis.step()?))) else {
+        return Ok(kept);
+    };
+    let present = |i: usize| traces.iter().all(|trace| trace.values.get(i).is_some_and(|v| v.is_finite()));
+    let (mut longest, mut from) = (0..0, 0);
+    for i in (0..=axis.len()).filter(|i| !present(*i)) {
+        if i - from > longest.len() {
+            longest = from..i;
+        }
+        from = i + 1;
+    }
+    // Halfway between two samples, so that rounding does not decide which are read.
+    let digits = (2.0 - f64::log10(step)).clamp(0.0, MOST_DIGITS as f64) as usize;
+    let before = |i: usize| format!("{:.digits$}", axis.at(i) - 0.5 * step).parse().ok();
+    let span = before(longest.start).zip(before(longest.end));
+    Ok(Reading { span: span.filter(|_| !longest.is_empty()), ..kept })
 }
 
 impl Surveyed {
     /// Surveys a file with the sampling times that it states itself, else with the stated rate; where
-    /// samples are lost, the longest stretch with even sampling.
+    /// samples are lost or values are missing, the longest part without a gap.
     fn of(path: &Path, reading: &Reading, folder: &Folder) -> Surveyed {
         let survey = |reading: &Reading| reading.reader()?.within(folder).survey(path);
         let untimed_reading = reading.untimed();
@@ -62,7 +104,17 @@ impl Surveyed {
         let found = if timed || !stated { as_stored } else { survey(reading) };
         let lost = found.as_ref().ok().filter(|(_, headers, _)| untimed(headers));
         let stretch = lost.and_then(|(.., findings)| longest_stretch(findings));
-        let (reading, found) = if stretch.is_some() {
+        let lacks = found.as_ref().is_err_and(|error| error.settings().any(|key| key == MISSING_KEPT));
+        let present = lacks.then(|| longest_present(path, &untimed_reading, folder).ok()).flatten();
+        let part = if stretch.is_some() {
+            Some("the longest part without lost samples")
+        } else {
+            present.as_ref().map(|_| "values are missing: the longest part without")
+        };
+        let (reading, found) = if let Some(present) = present {
+            let found = survey(&present);
+            (present, found)
+        } else if stretch.is_some() {
             let of_stretch = Reading { stretch, ..untimed_reading };
             let found = survey(&of_stretch);
             (of_stretch, found)
@@ -77,7 +129,7 @@ impl Surveyed {
                 || reading.reader()?.within(folder).from_path(path)?.trace(Some("1"), None)?.sampling_rate();
             if uneven { why().map(|_| headers) } else { Ok(headers) }
         });
-        Surveyed { reading, headers }
+        Surveyed { reading, part, headers }
     }
 }
 
@@ -163,12 +215,12 @@ impl Inventory {
         };
         let surveyed: Vec<Surveyed> = paths.par_iter().map(survey).collect();
         for (kind, members) in found.kinds(paths.into_iter().zip(surveyed), &numbers, &within) {
-            let files: Vec<String> = members.iter().map(|(path, ..)| within(path)).collect();
+            let files: Vec<String> = members.iter().map(|one| within(&one.path)).collect();
             let pattern = kind.pattern(&files, &every, &numbers);
-            let reading = members[0].1.clone();
-            let headers = named_alike(&members.iter().map(|(.., all)| all.as_slice()).collect::<Vec<_>>());
+            let (reading, part) = (members[0].reading.clone(), members[0].part);
+            let headers = named_alike(&members.iter().map(|one| &*one.headers).collect::<Vec<_>>());
             let name = name(&files);
-            found.series.push(FileSeries { name, files, headers, pattern, alike: false, reading });
+            found.series.push(FileSeries { name, files, headers, pattern, alike: false, reading, part });
         }
         found.name_apart();
         if let ([first, more @ ..], None) = (others.as_slice(), known) {
@@ -202,7 +254,7 @@ impl Inventory {
     ) -> Vec<(FileKind, Vec<Member>)> {
         let mut kinds: Vec<(FileKind, Vec<Member>)> = Vec::new();
         let mut places: HashMap<FileKind, usize> = HashMap::new();
-        for (path, Surveyed { reading, headers }) in surveyed {
+        for (path, Surveyed { reading, part, headers }) in surveyed {
             let why = match headers {
                 Ok(headers) if headers.is_empty() => "no records".to_owned(),
                 Ok(headers) if untimed(&headers) => {
@@ -217,7 +269,7 @@ impl Inventory {
                     if place == kinds.len() {
                         kinds.push((kind, Vec::new()));
                     }
-                    kinds[place].1.push((path, reading, headers));
+                    kinds[place].1.push(Member { path, reading, part, headers });
                     continue;
                 }
                 // Only of a file with uneven times is the setting known that helps.

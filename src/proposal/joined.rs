@@ -174,7 +174,8 @@ impl FileSeries {
         let longest = members.iter().rev().max_by_key(|one| one.files.len());
         let common = longest.filter(|one| one.files.len() > 1).map(|one| one.name.clone());
         let name = common.unwrap_or_else(|| name(&files));
-        FileSeries { name, files, headers, pattern: None, alike: true, reading: members[0].reading.clone() }
+        let (reading, part) = (members[0].reading.clone(), members[0].part);
+        FileSeries { name, files, headers, pattern: None, alike: true, reading, part }
     }
 }
 
@@ -209,6 +210,7 @@ pub fn more_steps(within: &Folder, files: &[PathBuf]) -> Option<Finding> {
         pattern: None,
         alike: true,
         reading,
+        part: None,
     };
     let (force, _) = series.force_and_responses()?;
     let trial = Trial { folder: &folder, reading: &series.reading, kept: &AnswerCache::default() };

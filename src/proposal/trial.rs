@@ -92,7 +92,8 @@ impl Trial<'_> {
     /// or the reason why there is none.
     fn answers(&self, tables: &[Table]) -> Result<Answer, Refusal> {
         let path = self.folder.root().join(Proposal::FILE);
-        let text: String = tables.iter().map(|table| table.stated(self.reading).tried().toml(&[])).collect();
+        let text: String =
+            tables.iter().map(|table| table.stated(self.reading, None).tried().toml(&[])).collect();
         let answered =
             analysis::parse(self.folder, &path, text).and_then(|c| analysis::answers(&c, self.kept, &()));
         answered.map_err(|error| Refusal { why: short(&error), ..Refusal::default() })?.map_err(Refusal::from)

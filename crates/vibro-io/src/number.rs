@@ -17,7 +17,7 @@ const POWERS: [f64; 23] = [
 
 /// Words that instruments print for a missing or over-range value, in lower case, separated by `|`.
 const MISSING: &str = "novalue|nan|nat|inf|infinity|∞|na|n/a|null|none|ol|over|overload|overrange|over range|ovld|burnout|fffffff\
-                       |#div/0!|#n/a|#num!|#value!|#ref!|#name?|#null!";
+                       |err|#err|#div/0!|#n/a|#nv|#num!|#value!|#ref!|#name?|#null!|#wert!|#zahl!";
 
 /// Numbers that instruments print for infinity and "not a number" (SCPI-1999, volume 1, 7.2.1.4 and 7.2.1.5).
 const OVERLOAD: [f64; 2] = [9.9e37, 9.91e37];

@@ -28,6 +28,8 @@ pub struct Options {
     pub unit: Option<Unit>,
     /// Units of single channels, each by its name or by its number from 1; they take precedence.
     pub channel_units: Vec<(String, Unit)>,
+    /// Unit of the times or frequencies of a text's column that names none.
+    pub axis_unit: Option<String>,
     /// Whether a comma is the decimal mark; `None`: detected.
     pub decimal_comma: Option<bool>,
     /// Whether two value columns are the real and the imaginary part.

@@ -11,7 +11,7 @@ use crate::limit::Limit;
 use crate::recording::Recording;
 use crate::source::Source;
 use crate::sweep_list::SweepList;
-use crate::{foreign, level, magnitude, packed, span};
+use crate::{foreign, level, magnitude, packed, span, text};
 use rayon::prelude::*;
 use std::io::Read;
 use std::path::{Path, PathBuf};
@@ -121,6 +121,16 @@ impl Reader {
     pub fn wrapped(mut self, wrapped: Option<bool>) -> Reader {
         self.options.wrapped = wrapped;
         self
+    }
+
+    /// States the unit of the times or frequencies of a text whose column names none, such as ms or kHz.
+    /// Default: s or Hz, with a finding.
+    ///
+    /// # Errors
+    /// If it is no unit of time or frequency.
+    pub fn axis_unit(mut self, unit: Option<&str>) -> Result<Reader> {
+        self.options.axis_unit = unit.map(text::axis_unit).transpose()?;
+        Ok(self)
     }
 
     /// States the part of time traces that is read, in s: from the first time (included) to the second

@@ -45,6 +45,7 @@ use crate::limit::Limit;
 use crate::options::Options;
 use crate::source::Source;
 use crate::{level, magnitude, missing, number};
+pub(crate) use abscissa::axis_unit;
 use decoded::{Text, with_text};
 use dialect::Dialect;
 use fast::RowShape;

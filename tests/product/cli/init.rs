@@ -236,13 +236,38 @@ fn of_a_record_with_lost_samples_the_longest_even_stretch_is_proposed() {
     fs::write(dir.path().join("pause.csv"), table).unwrap();
     json(&["init", text(dir.path())]);
     let campaign = fs::read_to_string(dir.path().join("campaign.toml")).unwrap();
-    assert!(campaign.contains("\nstretch = 2\n"), "{campaign}");
+    assert!(campaign.contains("\nstretch = 2   # guessed: "), "{campaign}");
     let answer = json(&["run", text(dir.path())]);
     let spectrum = &answer["results"]["spectra"][0];
     let values: Vec<f64> = spectrum["value"].as_array().unwrap().iter().filter_map(Value::as_f64).collect();
     let largest = (0..values.len()).max_by(|a, b| values[*a].total_cmp(&values[*b])).unwrap();
     // A record of 1.5 s has lines 0.67 Hz apart.
     assert!((spectrum["frequency"][largest].as_f64().unwrap() - 20.0).abs() < 0.67, "{largest}");
+}
+
+/// A bad cell loses the shorter part of the record beside it, not the record.
+#[test]
+fn of_a_record_with_a_bad_cell_the_longest_part_without_is_proposed() {
+    let dir = tempfile::tempdir().unwrap();
+    for (name, cell) in [("blank.csv", ""), ("word.csv", "ERR")] {
+        let mut table = "time [s],acceleration [m/s²]\n".to_owned();
+        for i in 0..2500 {
+            let (t, cell) = (f64::from(i) * 1e-3, if i == 999 { Some(cell) } else { None });
+            let value = || format!("{:.5}", (TAU * 20.0 * t).sin());
+            writeln!(table, "{t:.3},{}", cell.map_or_else(value, str::to_owned)).unwrap();
+        }
+        fs::write(dir.path().join(name), table).unwrap();
+    }
+    json(&["init", text(dir.path())]);
+    let campaign = fs::read_to_string(dir.path().join("campaign.toml")).unwrap();
+    for key in ["allow_missing = true ", "span = [0.9995,2.4995] "] {
+        assert_eq!(campaign.matches(&format!("\n{key}")).count(), 2, "{key} in {campaign}");
+    }
+    let answer = json(&["run", text(dir.path())]);
+    for spectrum in answer["results"]["spectra"].as_array().unwrap() {
+        // 1500 samples: 751 lines.
+        assert_eq!(spectrum["frequency"].as_array().unwrap().len(), 751);
+    }
 }
 
 #[test]

@@ -6,6 +6,7 @@ use super::column::Column;
 use super::names::Name;
 use super::records::RecordContext;
 use super::tail;
+use super::unit_words::symbol;
 use crate::assemble::{self, JudgedAxis, NOMINAL, domain, from_values, short};
 use crate::held::Held;
 use crate::options::Options;
@@ -26,6 +27,19 @@ pub struct CommonAxis {
     /// Number of values expected from the spectral lines that the header states, if it differs from the
     /// number read.
     pub declared: Option<usize>,
+}
+
+/// The symbol of a unit of times or frequencies.
+///
+/// # Errors
+/// If the text is none.
+pub fn axis_unit(text: &str) -> Result<String> {
+    let unit = symbol(text.trim()).to_owned();
+    let name = Name { unit: Some(unit.clone()), ..Name::default() };
+    let is_axis = matches!(name.axis(true), Some(AxisKind::Time | AxisKind::Frequency));
+    let expected = "a unit of time or frequency: s, ms, µs, min, h, Hz, kHz, …";
+    let none = || Error::usage(format!("the unit {text:?} of times"), expected).setting("axis_unit");
+    if is_axis { Ok(unit) } else { Err(none()) }
 }
 
 impl CommonAxis {
@@ -129,6 +143,7 @@ impl RecordContext<'_> {
 
     /// The axis from its `column`, in s or Hz if its kind is known, with the findings on it.
     pub fn printed(&self, column: Column, others: &[Column]) -> Result<PrintedAbscissa> {
+        let column = self.with_stated_unit(column)?;
         let name = &column.name.name;
         let label = if name.is_empty() { place(&column) } else { format!("column {name:?}") };
         let values = column.reals();
@@ -163,6 +178,21 @@ impl RecordContext<'_> {
             clock,
             findings,
         })
+    }
+
+    /// The column with the unit that the user states, where it names none.
+    ///
+    /// # Errors
+    /// If the column names another.
+    fn with_stated_unit(&self, mut column: Column) -> Result<Column> {
+        let Some(stated) = self.options.axis_unit.as_deref() else { return Ok(column) };
+        match column.name.unit.replace(stated.to_owned()) {
+            Some(own) if own != stated => {
+                let found = format!("the column names the unit {own}, and {stated} was stated");
+                Err(Error::usage(found, "one unit").hint("leave it out").setting("axis_unit"))
+            }
+            _ => Ok(column),
+        }
     }
 
     /// Whether the column holds date and time.

@@ -84,6 +84,11 @@ impl<'a> RecordContext<'a> {
         let has_axis = printed.is_some();
         if !has_axis {
             without_gaps(&table)?;
+            if self.options.axis_unit.is_some() {
+                return Err(Error::usage("no column of times or frequencies", "one whose unit is stated")
+                    .hint("leave it out")
+                    .setting("axis_unit"));
+            }
         }
         let mut of_axis = Vec::new();
         if numbered && !has_axis {

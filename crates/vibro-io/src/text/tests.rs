@@ -237,6 +237,34 @@ fn what_is_assumed_is_said() {
 }
 
 #[test]
+fn a_stated_unit_holds_for_times_that_have_none() {
+    let stated = |unit: &str, text: &str| read_with(&Reader::new().axis_unit(Some(unit))?, text);
+    for (unit, head, step) in [
+        ("ms", "time,a [g]", 1e-3),
+        ("Minutes", "time,a [g]", 60.0),
+        ("ms", "time [ms],a [g]", 1e-3),
+        // Without a name the unit alone tells that these are times.
+        ("ms", "", 1e-3),
+    ] {
+        let recording = stated(unit, &format!("{head}\n0.0,1\n1.0,2\n2.0,3\n")).unwrap();
+        let axis = recording.records[0].axis();
+        assert_eq!((&axis.kind, axis.step()), (&AxisKind::Time, Some(step)), "{unit}, {head}");
+        assert!(!has_finding(&recording.findings, "axis-unit-assumed", &[]), "{:?}", recording.findings);
+    }
+    let lines = stated("kHz", "frequency,a [g]\n0,1\n1,2\n2,3\n").unwrap();
+    assert_eq!(lines.records[0].axis().step(), Some(1e3));
+    for (unit, text, why) in [
+        ("ms", "time [s],a\n0,1\n1,2\n", "the column names the unit s, and ms was stated"),
+        ("mm", "time,a\n0,1\n1,2\n", "the unit \"mm\" of times"),
+        ("ms", "a [g]\n5\n1\n2\n", "no column of times or frequencies"),
+    ] {
+        let error = stated(unit, text).unwrap_err();
+        assert!(error.to_string().contains(why), "{error}");
+        assert!(error.settings().any(|key| key == "axis_unit"), "{error}");
+    }
+}
+
+#[test]
 fn units_of_an_abscissa_as_words() {
     for (unit, step) in [
         ("second", 1.0),
