@@ -66,6 +66,9 @@ function described(record) {
   return `${what}${of}`;
 }
 
+/** What is wrong with a file, without its name. */
+const why = ({ path, problem }) => inShort(problem).split(`${path}, `).at(-1);
+
 /** Rows of the list that are shown at first. */
 const FIRST_ROWS = 12;
 
@@ -81,9 +84,10 @@ class Recordings {
     this.watch.disconnect();
     const head = make("tr", {}, ...["file", "channel", "what", "in SI unit", "rate", "length", ""].map((name) => make("th", { textContent: name, className: /rate|length/.test(name) ? "number" : "" })));
     const body = make("tbody");
-    const unread = recordings.filter(({ problem }) => problem);
+    // Of a file with missing values the records are listed, too.
+    const unread = recordings.filter(({ problem, records }) => problem && !records.length), read = recordings.filter((file) => !unread.includes(file));
     this.unread = new Set(unread.map(({ path }) => path));
-    for (const file of recordings.filter(({ problem }) => !problem)) body.append(...this.rows(file));
+    for (const file of read) body.append(...this.rows(file));
     const rows = Array.from(body.rows);
     rows.slice(FIRST_ROWS).forEach((row) => { row.hidden = true; });
     this.host.replaceChildren(make("div", { className: "files" }, make("table", {}, make("thead", {}, head), body)));
@@ -94,8 +98,8 @@ class Recordings {
     }
     this.left = make("div");
     this.host.append(this.left);
-    this.known = new Map(recordings.filter(({ problem }) => !problem).map(({ path, records }) => [path, records]));
-    this.fold(this.host, `${unread.length === 1 ? "1 file holds" : `${unread.length} files hold`} no record`, unread.map(({ path, problem }) => make("li", {}, ...worded(`${path}: ${inShort(problem).split(`${path}, `).at(-1)}`))));
+    this.known = new Map(read.map(({ path, records }) => [path, records]));
+    this.fold(this.host, `${unread.length === 1 ? "1 file holds" : `${unread.length} files hold`} no record`, unread.map((file) => make("li", {}, ...worded(`${file.path}: ${why(file)}`))));
   }
 
   /** Names of the channels of a file. */
@@ -139,12 +143,13 @@ class Recordings {
 
   rows(file) {
     const cell = (text, className = "") => make("td", { textContent: text, className });
+    const lacks = (k) => (file.problem && !k ? make("div", { className: "soft", textContent: obstacle(why(file)).split("; expected ")[0] }) : "");
     return file.records.map((record, k) => {
       const canvas = make("canvas", { title: "smallest and largest values" });
       Object.assign(canvas.dataset, { path: file.path, record: k });
       this.watch.observe(canvas);
-      const name = make("td", { textContent: k ? "" : file.path, title: `${file.format}, ${file.bytes} bytes` });
-      const rate = record.rate ? quantity(record.rate, "Hz") : record.dx && record.x_unit ? `${quantity(record.dx, record.x_unit)} apart` : "not stated";
+      const name = make("td", { textContent: k ? "" : file.path, title: `${file.format}, ${file.bytes} bytes` }, lacks(k));
+      const rate = record.rate ? quantity(record.rate, "Hz") : record.dx && record.x_unit ? `${quantity(record.dx, record.x_unit)} apart` : record.x_unit === "s" && record.dx === null ? "uneven" : "not stated";
       const length = record.duration ? quantity(record.duration, "s") : `${record.n} values`;
       const unit = record.unit || (record.quantity === "other" ? "not stated" : "1");
       return make("tr", {}, name, cell(record.name || String(k + 1)), cell(described(record)), cell(unit), cell(rate, "number"), cell(length, "number"), make("td", {}, canvas));

@@ -89,6 +89,9 @@ const SUCH_AS = { m: "57 cm", Hz: "20 kHz", s: "3 ms", kg: "250 g", "m/s": "1.5"
 /** As above, of two values. */
 const PAIR_AS = { s: "0.5 to 3 s", Hz: "200 to 800 Hz", kg: "0.1; 0.2 kg", "m/s": "1.5; 0" };
 
+/** Height of a row of the grid, and gap between cards, in pixels. */
+const [ROW, GAP] = [4, 13];
+
 /** The name of a key in plain words. */
 const labelOf = ({ key, label }) => label?.replaceAll("`", "") ?? key.replaceAll("_", " ");
 
@@ -144,6 +147,7 @@ class Tables {
     [this.numbers, this.doubts] = [[], []];
     // Values that were refused stand, with the reason, until they are typed anew.
     [this.refused, this.redraws, this.wrong] = [[], false, new Map()];
+    this.sizes = new ResizeObserver(() => this.pack());
     this.forget();
   }
 
@@ -155,6 +159,15 @@ class Tables {
     this.places = new Map();
   }
 
+  /** Gives each card as many rows of the grid as it is high, so that none leaves a gap below it. */
+  pack() {
+    for (const one of this.host.children) {
+      if (one.hidden) continue;
+      const rows = `span ${Math.ceil((one.offsetHeight + GAP) / ROW)}`;
+      if (one.style.gridRowEnd !== rows) one.style.gridRowEnd = rows;
+    }
+  }
+
   show(tables, problems) {
     this.problems = problems;
     pressed.after("tables", () => this.redraw(tables, problems));
@@ -163,7 +176,13 @@ class Tables {
   redraw(tables, problems) {
     // A browser may say that a field was left when it is only drawn anew: what is half typed in it is no value.
     this.redraws = true;
+    // A record that is looked at stays where it is on the screen, however high its card has become.
+    const seen = () => this.below.element.getBoundingClientRect(), before = seen();
     this.draw(tables, problems);
+    this.sizes.disconnect();
+    for (const one of this.host.children) this.sizes.observe(one);
+    this.pack();
+    if (before.height && before.top < innerHeight && before.bottom > 0) scrollBy(0, seen().top - before.top);
     this.redraws = false;
   }
 
@@ -199,6 +218,8 @@ class Tables {
   /** Puts what stands below a card there. */
   under(id) {
     this.host.querySelector(`[data-table="${CSS.escape(id ?? "")}"]`)?.after(this.below.element);
+    this.sizes.observe(this.below.element);
+    this.pack();
   }
 
   /** Lists the values that are missing, and those that were typed and refused, as links. */
@@ -223,6 +244,7 @@ class Tables {
     })];
     const without = silent.length ? [make("p", { className: "waits" }, `${silent.length} ${silent.length === 1 ? "record gives" : "records give"} no answer: `, ...silent.flatMap(([one, why], k) => [k ? "; " : "", one, `: ${obstacle(why)}`]))] : [];
     this.head.replaceChildren(...without, ...missing, ...refused);
+    this.head.hidden = !this.head.children.length;
   }
 
   /** A link to a field. */
@@ -246,7 +268,10 @@ class Tables {
     const said = this.said(table, wrong.filter((one) => !atKey(one)).map(({ text }) => here(text)));
     for (const text of said) card.append(make("p", { className: "refused" }, ...worded(text)));
     const of = ([record]) => table.line && (this.isOf(table, record) || this.covers(table, record));
-    for (const [, [heads, ...rows]] of this.numbers.filter(of)) card.append(this.answer(heads, rows));
+    const pending = Array.from(this.wrong).filter(([field]) => field.startsWith(`field-${id}-`)).map(([, { why }]) => why);
+    const numbers = this.numbers.filter(of);
+    for (const [, [heads, ...rows]] of numbers) card.append(this.answer(heads, rows));
+    if (pending.length && numbers.length) card.append(make("p", { className: "soft", textContent: "as before: the value that was refused is not in it" }));
     // Doubts first, then cautions that propose a value; a few are seen.
     const rank = ([, severity, text]) => (severity === "doubt" ? 2 : proposedIn([text]).length ? 1 : 0);
     const own = said.length ? [] : this.doubts.filter(of).sort((a, b) => rank(b) - rank(a));
@@ -268,7 +293,6 @@ class Tables {
     const wrongs = make("span", { className: "wrong" });
     if (proposed.length) card.append(make("div", { className: "does" }, ...proposed.map(take), wrongs));
     // Keys that an error names stand with those that are in use; the title names the file.
-    const pending = Array.from(this.wrong).filter(([field]) => field.startsWith(`field-${id}-`)).map(([, { why }]) => why);
     const named = namedIn([...told, ...pending, ...wrong.map(({ text }) => text)]), isTitle = (row) => row.key === "file" && fromToml(row.value) === table.files;
     // The unit is asked for where the file states none.
     const unitless = this.unitless(table), needed = namedIn(pending);
@@ -342,8 +366,7 @@ class Tables {
     choice.dataset.field = `${id} kind`;
     this.kinds.forEach(([section, title]) => choice.append(make("option", { value: section, textContent: title, selected: section === table.section })));
     choice.onchange = () => this.kind(id, choice.value);
-    const title = this.kinds.find(([section]) => section === table.section)[1];
-    return make("p", { className: "kind" }, choice, about && about !== title ? ` ${about}` : "");
+    return make("p", { className: "kind", title: about }, choice, table.guess ? " guessed" : "");
   }
 
   row(one, table, of) {
@@ -353,7 +376,7 @@ class Tables {
     const option = (choice) => make("option", { value: choice, textContent: choice || empty, selected: choice === plain });
     const input = isChoice ? make("select", { id }, ...["", ...picks].map(option)) : make("input", { id, value: plain, autocomplete: "off", spellcheck: false });
     const example = (isList ? PAIR_AS : SUCH_AS)[unit], such = example && `such as ${example}`;
-    if (!isChoice) input.placeholder = known === "missing" ? such ?? "" : [without?.replaceAll("`", ""), isList && such].filter(Boolean).join(", or ");
+    if (!isChoice) input.title = input.placeholder = known === "missing" ? such ?? "" : [without ? `not set: ${without.replaceAll("`", "")}` : "", isList && such].filter(Boolean).join(", or ");
     // A value of several lines is changed in the text.
     input.readOnly = value.includes("\n");
     [input.dataset.field, input.dataset.line] = [`${table} ${key}`, line ?? ""];

@@ -159,7 +159,8 @@ class TraceView {
 
   /** What the last value that was set here has changed. */
   changed() {
-    if (!this.before) return [];
+    // Taken back, a value changed nothing.
+    if (!this.before || this.value(this.before.key) !== this.before.value) return [];
     const { key, value, times, why } = this.before, now = this.lost ? [] : this.times, reason = this.refusals(this.table)[0] ?? "";
     const same = times.length === now.length && times.every((t, k) => t === now[k]) && why === reason;
     const text = same ? `nothing changed${reason ? ", the record gives no answer for the same reason" : `, the same ${now.length} impacts`}.` : now.length ? `${times.length || "no"} → ${now.length} impacts.` : "no answer now.";

@@ -16,7 +16,7 @@ pub struct SeenRecording {
     pub format: &'static str,
     /// Its records.
     pub records: Vec<Header>,
-    /// Why it cannot be read.
+    /// Why it cannot be read, or not without missing values: then it has records.
     pub problem: Option<String>,
 }
 
@@ -25,14 +25,13 @@ impl SeenRecording {
     pub fn of(folder: &Folder, path: &Path) -> SeenRecording {
         let bytes = folder.stamp(path).map_or(0, |(bytes, _)| bytes);
         let name = path.strip_prefix(folder.root()).unwrap_or(path).display().to_string();
-        match Reader::new().within(folder).survey(path) {
-            Ok((format, records, _)) => {
-                SeenRecording { path: name, bytes, format: format.name(), records, problem: None }
-            }
-            Err(error) => {
-                let (format, records, problem) = ("", Vec::new(), Some(words::error(&error)));
-                SeenRecording { path: name, bytes, format, records, problem }
-            }
-        }
+        let survey = |missing| Reader::new().within(folder).allow_missing(missing).survey(path);
+        let as_it_is = survey(false);
+        let problem = as_it_is.as_ref().err().map(words::error);
+        // What lacks some values has records all the same.
+        let found = as_it_is.or_else(|_| survey(true));
+        let (format, records) =
+            found.map_or_else(|_| ("", Vec::new()), |(format, all, _)| (format.name(), all));
+        SeenRecording { path: name, bytes, format, records, problem }
     }
 }

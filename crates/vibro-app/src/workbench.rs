@@ -180,8 +180,17 @@ impl Workbench {
         }
         let of_proposal = self.proposals.last().into_iter().flat_map(|one| &one.left);
         let said = |(file, why): &(String, String)| (file.clone(), words::as_kinds(why));
-        let left: Vec<_> = self.left.iter().chain(of_proposal).map(said).collect();
+        let unnamed = if is_own { self.unnamed().unwrap_or_default() } else { Vec::new() };
+        let left: Vec<_> = self.left.iter().chain(&unnamed).chain(of_proposal).map(said).collect();
         Ok(joined(json!({ "left": left, "none": none, "own": is_own }), self.state()))
+    }
+
+    /// Recordings that the campaign does not name, each with that as the reason why it is not used.
+    fn unnamed(&self) -> Result<LeftOut> {
+        let files = analysis::unnamed(&self.campaign()?, &analysis::recordings(&self.folder)?.files)?;
+        let name =
+            |path: &PathBuf| path.strip_prefix(self.folder.root()).unwrap_or(path).display().to_string();
+        Ok(files.iter().map(|path| (name(path), "the campaign does not name it".to_owned())).collect())
     }
 
     /// The text of a proposed campaign: the known one with tables for further files, else a new one.
@@ -312,7 +321,7 @@ impl Workbench {
 
     fn pictures(&self, path: &str) -> Result<Value> {
         let path = self.folder.path(Path::new(path))?;
-        let recording = Reader::new().within(&self.folder).from_path(path)?;
+        let recording = Reader::new().within(&self.folder).allow_missing(true).from_path(path)?;
         let pictures: Vec<Picture> =
             recording.records.iter().map(|record| Picture::of_record(record, COLUMNS)).collect();
         Ok(json!(pictures))
