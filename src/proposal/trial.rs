@@ -344,7 +344,7 @@ impl Trial<'_> {
             let table = table.guessed(
                 "beam_from",
                 "axis",
-                "beam_angle counts from the axis; the other choice is normal",
+                "from the axis of the motion; normal: from the normal of the surface",
             );
             match header.quantity {
                 "velocity" => table,

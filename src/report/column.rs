@@ -27,7 +27,8 @@ pub(super) struct Formatted {
 pub(super) fn power(column: &Column, cells: &[&Cell]) -> i32 {
     // Angles and percentages are not scaled. Counts and other numbers without a unit are not either, since
     // the head has no unit to show the scale; such a number keeps its own power of ten.
-    let unscaled = matches!(column.unit.as_str(), "°" | "rad" | "%" | "" | "1");
+    let unscaled =
+        matches!(column.unit.as_str(), "°" | "rad" | "%" | "" | "1" | "FS") || column.unit.starts_with("dB");
     if unscaled { 0 } else { engineering(largest(cells)) }
 }
 

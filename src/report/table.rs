@@ -2,7 +2,7 @@
 
 use super::column::{Formatted, largest, power};
 use super::{Cell, Column};
-use crate::units::notation::labelled;
+use crate::units::notation::{labelled, scaled_unit};
 use crate::write::csv::begins_formula;
 use serde::{Deserialize, Serialize};
 use std::fmt::Write;
@@ -191,8 +191,25 @@ impl Table {
                 beside.filter(|power| *power == own + 3 && largest(values) >= 0.1 * 10f64.powi(*power));
             Formatted::new(column, cells, larger.max().unwrap_or(own))
         };
-        columns.iter().map(shown).collect()
+        let mut formatted: Vec<Formatted> = columns.iter().map(shown).collect();
+        for i in 1..columns.len() {
+            let ((number, values), (unit, units)) = (&columns[i - 1], &columns[i]);
+            if unit.name == "unit" && number.unit.is_empty() {
+                let rows = values.iter().zip(units);
+                let in_units = rows.map(|(value, unit)| in_own_unit(&number.name, value, unit));
+                (formatted[i - 1].cells, formatted[i].cells) = in_units.unzip();
+            }
+        }
+        formatted
     }
+}
+
+/// A number of a row that has a unit of its own, and that unit, with the prefix that makes it readable.
+fn in_own_unit(name: &str, value: &Cell, unit: &Cell) -> (String, String) {
+    let unit = if let Cell::Text(unit) = unit { unit.as_str() } else { "" };
+    let column = Column { name: name.to_owned(), unit: unit.to_owned() };
+    let power = power(&column, &[value]);
+    (Formatted::new(&column, &[value], power).cells.concat(), scaled_unit(unit, power))
 }
 
 /// The shortest decimal that reads back as the same number.

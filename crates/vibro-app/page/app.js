@@ -39,7 +39,7 @@ class App {
     const kind = (id, section) => this.change(id, "kind", { section }).catch((error) => this.trouble(error.message));
     const look = (id) => this.trace.open(this.tables, id).catch((error) => this.trouble(error.message));
     const fileOf = (table) => fromToml(valueOf(table, "file")), below = { element: at("trace") };
-    this.cards = new Tables(at("tables"), { set, kind, look, below, find: (line) => this.editor.find(line), channels: (table) => this.recordings.channels(fileOf(table)), unitless: (table) => this.recordings.unitless(fileOf(table), fromToml(valueOf(table, "channel"))), isTrace: (table) => this.recordings.isTrace(fileOf(table)) });
+    this.cards = new Tables(at("tables"), { set, kind, refused: () => this.steps(), look, below, find: (line) => this.editor.find(line), channels: (table) => this.recordings.channels(fileOf(table)), unitless: (table) => this.recordings.unitless(fileOf(table), fromToml(valueOf(table, "channel"))), isTrace: (table) => this.recordings.isTrace(fileOf(table)) });
     this.editor = new Editor(at("campaign"), (text) => this.edit(text));
     // Edited: not as it was proposed. Unsaved: the edits are nowhere else.
     [this.edited, this.unsaved, this.setting, this.looking] = [false, false, Promise.resolve(), Promise.resolve()];
@@ -65,7 +65,11 @@ class App {
     for (const button of document.querySelectorAll("[data-example]")) button.onclick = () => this.look({ example: button.dataset.example });
     at("anew").onclick = () => location.reload();
     for (const [id, from, to] of [["undo", "history", "undone"], ["redo", "undone", "history"]]) {
-      at(id).onclick = () => this.step(this[from], this[to]).catch((error) => this.trouble(error.message));
+      at(id).onclick = () => {
+        // A value that was refused is in no text: it goes first.
+        if (id === "undo" && this.cards.wrong.size) this.cards.withoutWrong();
+        else this.step(this[from], this[to]).catch((error) => this.trouble(error.message));
+      };
     }
     // In a field or in the text the browser takes back what was typed.
     addEventListener("keydown", (event) => {
@@ -78,7 +82,7 @@ class App {
     addEventListener("keydown", (event) => event.key === "Escape" && document.body.classList.contains("reading") && this.read(false));
     at("again").onclick = () => this.look({ files: this.files, name: this.name, example: this.example, known: this.edited ? this.text : null });
     at("stop").onclick = () => this.program.end("stopped");
-    at("save-report").onclick = () => this.save("report.html", "text/html");
+    at("save-report").onclick = at("save-read").onclick = () => this.save("report.html", "text/html");
     at("save-campaign").onclick = () => this.save("campaign.toml", "text/plain");
     at("save-all").onclick = () => this.work("packing", async () => {
       await this.editor.flush();
@@ -241,8 +245,14 @@ class App {
     await this.changed(() => this.program.ask("edit", { text }), false);
   }
 
+  /** Whether there is a change to take back, and one to make again. */
+  steps() {
+    at("undo").disabled = !this.history.length && !this.cards.wrong.size;
+    at("redo").disabled = !this.undone.length;
+  }
+
   async state({ text, tables, problems, kinds }) {
-    for (const [id, list] of [["undo", this.history], ["redo", this.undone]]) at(id).disabled = list.length === 0;
+    this.steps();
     Object.assign(this, { text, tables, problems });
     this.cards.kinds = kinds;
     this.cards.show(tables, problems);

@@ -90,6 +90,8 @@ class Recordings {
     for (const file of read) body.append(...this.rows(file));
     const rows = Array.from(body.rows);
     rows.slice(FIRST_ROWS).forEach((row) => { row.hidden = true; });
+    // The pictures that are seen first are asked for before longer work.
+    for (const canvas of Array.from(body.querySelectorAll("canvas")).slice(0, FIRST_ROWS)) this.pictures(canvas.dataset.path).catch(() => []);
     this.host.replaceChildren(make("div", { className: "files" }, make("table", {}, make("thead", {}, head), body)));
     if (rows.length > FIRST_ROWS) {
       const all = make("button", { textContent: `show all ${rows.length} rows` });

@@ -10,6 +10,12 @@ const obstacle = (why) => here(why).split(/\.? Try: |; try: /)[0].replace(/^Left
 /** A sentence with what stands between backticks as code. */
 const worded = (text) => text.split("`").map((part, k) => (k % 2 ? make("code", { textContent: part }) : part));
 
+/** A sentence of a card with the names of its fields in place of their keys. */
+const inFields = (text, table) => worded(text.replaceAll(/`([a-z_]+)( = [^`]+)?`/g, (all, key, value = "") => {
+  const row = table.keys.find((one) => one.key === key && one.label);
+  return row ? `“${labelOf(row)}”${value}` : all;
+}));
+
 /** Parts and multiples of a unit. */
 const STEPS = { µ: 1e-6, u: 1e-6, m: 1e-3, c: 1e-2, "": 1, k: 1e3, M: 1e6 };
 
@@ -137,12 +143,12 @@ const pressed = new Pressed();
 /** The tables of the campaign as cards with fields. */
 class Tables {
   /**
-   * `set(identity, key, value)` states a value; `kind(identity, section)` makes it another kind;
+   * `set(identity, key, value)` states a value, and `refused()` is told of one that is refused; `kind(identity, section)` makes it another kind;
    * `look(identity)` shows the trace; `find(line)` shows the text; `channels(table)` are those of its file;
    * `unitless(table)` tells whether its file states no unit; `below` stands below the card that it names.
    */
-  constructor(host, { set, kind, look, find, channels, unitless, isTrace, below }) {
-    Object.assign(this, { host, set, kind, look, find, channels, unitless, isTrace, below, kinds: [] });
+  constructor(host, { set, kind, refused, look, find, channels, unitless, isTrace, below }) {
+    Object.assign(this, { host, set, kind, told: refused, look, find, channels, unitless, isTrace, below, kinds: [] });
     // What the last run found of each record: main numbers, and cautions and doubts with their severity.
     [this.numbers, this.doubts] = [[], []];
     // Values that were refused stand, with the reason, until they are typed anew.
@@ -157,6 +163,13 @@ class Tables {
     this.stood = new Map();
     // Places of the cards: they stay when the text has a table elsewhere.
     this.places = new Map();
+  }
+
+  /** Takes back the values that were typed and refused. */
+  withoutWrong() {
+    this.wrong.clear();
+    this.told();
+    this.show(this.tables, this.problems);
   }
 
   /** Gives each card as many rows of the grid as it is high, so that none leaves a gap below it. */
@@ -266,7 +279,7 @@ class Tables {
     // An error of a value stands below its field.
     const atKey = ({ line }) => table.keys.some((row) => row.line === line);
     const said = this.said(table, wrong.filter((one) => !atKey(one)).map(({ text }) => here(text)));
-    for (const text of said) card.append(make("p", { className: "refused" }, ...worded(text)));
+    for (const text of said) card.append(make("p", { className: "refused" }, ...inFields(text, table)));
     const of = ([record]) => table.line && (this.isOf(table, record) || this.covers(table, record));
     const pending = Array.from(this.wrong).filter(([field]) => field.startsWith(`field-${id}-`)).map(([, { why }]) => why);
     const numbers = this.numbers.filter(of);
@@ -277,7 +290,7 @@ class Tables {
     const own = said.length ? [] : this.doubts.filter(of).sort((a, b) => rank(b) - rank(a));
     // The files of a pattern may have the same one.
     const doubts = own.filter(([,, text], k) => own.findIndex((other) => other[2] === text) === k);
-    const lines = doubts.map(([, severity, text]) => make("p", { className: severity }, make("b", { textContent: severity }), " ", ...worded(text)));
+    const lines = doubts.map(([, severity, text]) => make("p", { className: severity }, make("b", { textContent: severity }), " ", ...inFields(text, table)));
     const seen = Math.max(MOST_CAUTIONS, doubts.filter(([, severity]) => severity === "doubt").length), more = lines.splice(seen);
     card.append(...lines);
     if (more.length) card.append(make("details", { className: "cautions" }, make("summary", { textContent: more.length === 1 ? "1 more caution" : `${more.length} more cautions` }), ...more));
@@ -289,7 +302,7 @@ class Tables {
       made.dataset.field = `${id} ${textContent}`;
       return made;
     };
-    const take = ({ key, value }) => button(`set ${key} = ${value}`, () => this.set(id, key, value).catch((error) => { wrongs.textContent = here(error.message); }));
+    const take = ({ key, value }) => button(`set ${labelOf(table.keys.find((row) => row.key === key))} = ${value}`, () => this.set(id, key, value).catch((error) => { wrongs.textContent = here(error.message); }));
     const wrongs = make("span", { className: "wrong" });
     if (proposed.length) card.append(make("div", { className: "does" }, ...proposed.map(take), wrongs));
     // Keys that an error names stand with those that are in use; the title names the file.
@@ -339,7 +352,11 @@ class Tables {
 
   /** The main numbers of a record: one row as a list, several as a table. */
   answer(heads, rows) {
+    const units = heads.indexOf("unit");
     if (rows.length > 1) {
+      // The unit stands behind its number.
+      const joined = (row) => row.map((cell, k) => (k + 1 === units ? `${cell} ${row[units]}`.trim() : cell)).filter((_, k) => k !== units);
+      if (units > 0) return this.answer(heads.filter((head) => head !== "unit"), rows.map(joined));
       const line = (cells, tag) => make("tr", {}, ...cells.map((textContent) => make(tag, { textContent })));
       return make("div", { className: "answer" }, make("table", {}, line(heads, "th"), ...rows.map((row) => line(row, "td"))));
     }
@@ -402,6 +419,7 @@ class Tables {
         await this.set(table, key, toml, also);
       } catch (error) {
         this.wrong.set(id, { value: input.value, toml, why: here(error.message) });
+        this.told();
         this.show(this.tables, this.problems);
       }
     };

@@ -35,7 +35,7 @@ use located::{Located, locate};
 use normalised::Normalised;
 use result::{UNKNOWN, contact_estimates, undamped};
 use vibro_record::units::Quantity;
-use vibro_record::units::notation::shortest;
+use vibro_record::units::notation::{quantity, shortest};
 use vibro_record::{Doubt, Error, Finding, Result, Trace, Uncertain};
 
 /// Options: what is known of a pulse beside its record.
@@ -109,6 +109,46 @@ const NEAR_CORNER: f64 = 2.0;
 /// in the pulse, one more than its shape has parameters.
 const FEWEST: f64 = 10.0 / 3.0;
 
+/// Speed in m/s below which a blow is asked about, if its body has 1 kg or more: the mass may be meant in g.
+const SLOWEST: f64 = 0.01;
+
+/// Least time above half the height of a pulse, times the corner of the low-pass that it has passed: that of
+/// the impulse response of order 1, `e^(−2πft)`, is ln 2/(2π) = 0.110; higher orders have a longer one.
+const LEAST_HALF_WIDTH: f64 = 0.1;
+
+/// Refuses a low-pass of this `corner` (Hz) behind which no pulse is as short as one above half its height
+/// for this `time` (s).
+fn is_possible(corner: f64, time: f64) -> Result<()> {
+    if time * corner >= LEAST_HALF_WIDTH {
+        return Ok(());
+    }
+    let (is, at_least) = (quantity(time, "s", 2), quantity(LEAST_HALF_WIDTH / corner, "s", 2));
+    let why = |typed: &str| {
+        Error::refused(format!(
+            "a low-pass of {} Hz{typed} Behind it every pulse is above half its height for {at_least} or longer, and this one is for {is}",
+            shortest(corner)
+        ))
+    };
+    let meant = 1e3 * corner;
+    Err(if time * meant >= LEAST_HALF_WIDTH {
+        let meant = shortest(meant);
+        why(&format!(": did you mean {meant} Hz ({} kHz)?", shortest(corner)))
+            .hint("the corner in Hz")
+            .set("low_pass", meant)
+    } else {
+        why(" is impossible.").hint("the corner of the filter that the pulse has passed").setting("low_pass")
+    })
+}
+
+/// The caution about a mass that struck too slowly for a blow; a force alone tells nothing of it.
+fn slow_blow(trace: &Trace, options: &PulseOptions, result: &PulseResult) -> Option<Finding> {
+    let mass = options.mass.filter(|mass| *mass >= 1.0)?;
+    let speed = result.initial_velocity.as_ref()?.value;
+    let is_slow = trace.meta.unit.quantity() == Quantity::Force && speed < SLOWEST;
+    let large = Finding::caution("pulse-mass-large").number("mass", mass).number("speed", speed);
+    is_slow.then(|| large.number("meant", 1e-3 * mass))
+}
+
 /// Fits the largest pulse of a record of acceleration (or of force).
 ///
 /// Residuals are taken as noise of one variance; where a test finds them correlated, uncertainties are
@@ -125,6 +165,7 @@ pub fn pulse(trace: &Trace, options: &PulseOptions) -> Result<PulseResult> {
     let located = locate(&trace.values)?;
     let seen = samples_of(&located, located.another(&trace.values).is_some())?;
     let filter = options.instrument.low_pass();
+    filter.map_or(Ok(()), |filter| is_possible(filter.corner, seen / rate))?;
     let (mut doubts, mut found) = (options.instrument.doubts(rate), Vec::new());
     let unlike = |error: Error| {
         let lasts = 1.5e3 * seen / rate;
@@ -200,7 +241,11 @@ pub fn pulse(trace: &Trace, options: &PulseOptions) -> Result<PulseResult> {
     let restitution = &result.restitution;
     let more = restitution.std.is_some_and(|std| restitution.value - 2.0 * std > 1.0);
     found.extend(more.then(|| gained(&result).of(&mut result)));
-    found.extend(unexplained.then(|| Finding::doubt("pulse-unexplained").of(&mut result)));
+    if unexplained {
+        let doubt = Finding::doubt("pulse-unexplained").of(&mut result);
+        found.push(if known { doubt } else { doubt.name("unknown", "low-pass of the instrument") });
+    }
+    found.extend(slow_blow(trace, options, &result));
     // Where a doubt has taken the uncertainties, none is enlarged.
     let code = "pulse-residuals-coloured";
     let pattern = match result.restitution.std {

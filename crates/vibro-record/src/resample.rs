@@ -110,7 +110,7 @@ impl Trace {
             });
         };
         let (rate, std) = clock.rate();
-        let found = Finding::note("stretch-used").count("stretch", number).count("of", all.len());
+        let found = Finding::caution("stretch-used").count("stretch", number).count("of", all.len());
         let found = found.count("n", samples.len()).number("start", clock.start).number("rate", rate);
         self.meta.found(found.number("std", std));
         self.meta.clock = clock.relative();

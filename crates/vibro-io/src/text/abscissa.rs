@@ -212,11 +212,19 @@ impl RecordContext<'_> {
             if self.is_clock(column) { Some(AxisKind::Time) } else { column.name.axis(column.at == 1) };
         let (kind, factor, assumed) = match (by_name, self.domain(values.len())) {
             (Some(kind), _) => {
-                let (factor, assumed) = column.name.to_axis(&kind)?;
-                (kind, factor, assumed)
+                let unsaid = column.name.unit.is_none() && kind == AxisKind::Time && !self.is_clock(column);
+                if let Some((unit, factor)) = self.unit_by_rate(values).filter(|_| unsaid) {
+                    (kind, factor, Some(Finding::note("axis-unit-by-rate").name("unit", unit)))
+                } else {
+                    let (factor, assumed) = column.name.to_axis(&kind)?;
+                    (kind, factor, assumed)
+                }
             }
             (None, Some(kind)) => {
-                let (unit, factor) = self.unit_by_rate(values).unwrap_or((domain(&kind).1, 1.0));
+                // Steps of 1 from 0 or 1 are a count of the values, without a unit.
+                let counts = matches!(values, [first @ (0.0 | 1.0), second, ..] if second - first == 1.0);
+                let unit = self.unit_by_rate(values).filter(|_| !counts);
+                let (unit, factor) = unit.unwrap_or((domain(&kind).1, 1.0));
                 (kind, factor, Some(Finding::caution(code::AXIS_UNIT_ASSUMED).name("unit", unit)))
             }
             (None, None) => {
@@ -271,12 +279,9 @@ impl RecordContext<'_> {
     /// agrees with the stated rate.
     fn unit_by_rate(&self, values: &[f64]) -> Option<(&'static str, f64)> {
         let step = (values.last()? - values[0]) / values.len().saturating_sub(1).max(1) as f64;
-        // Steps of 1 from 0 or 1 are a count of the values, without a unit.
-        if step == 1.0 && matches!(values[0], 0.0 | 1.0) {
-            return None;
-        }
+        let rate = self.options.rate.or(self.stated.rate);
         let agrees = |(_, factor): &(&str, f64)| {
-            self.options.rate.is_some_and(|rate| (step * factor * rate - 1.0).abs() <= NOMINAL)
+            rate.is_some_and(|rate| (step * factor * rate - 1.0).abs() <= NOMINAL)
         };
         [("s", 1.0), ("ms", 1e-3), ("µs", 1e-6)].into_iter().find(agrees)
     }

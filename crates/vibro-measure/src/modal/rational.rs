@@ -5,6 +5,7 @@ mod beside;
 mod blow_before;
 mod cover_noise;
 mod hidden;
+mod linear;
 mod rivals;
 
 pub(super) use hidden::MATTERS;
@@ -346,7 +347,7 @@ impl Scaled<'_> {
 ///
 /// Lines are weighted by their stated uncertainty. Else the coherence gives their noise: with the window of
 /// the segments, or with the level of noise or its share of the response smoothed over lines. Else noise is
-/// equal on all lines or proportional to the response. Of alternatives the likeliest is taken.
+/// in part equal on all lines, in part proportional to the response; the likeliest share is taken.
 pub(super) fn rational(
     measured: &Measured,
     part: std::ops::Range<usize>,
@@ -373,25 +374,20 @@ pub(super) fn rational(
     } else {
         few.start(known, width, &equal).ok_or_else(refuse)?.1
     };
-    let at = few.nearer(&start, &equal)?;
-    let rivals = rivals(measured, part, &scaled, &at);
-    let unlikely = |p: &[f64], noise: &LineNoise| {
-        let mut left = vec![0.0; scaled.rows()];
-        scaled.white(p, noise, &mut left);
-        noise.unlikely(&left)
-    };
-    let mut failed = refuse();
-    let mut near = Vec::new();
-    for (noise, named) in rivals {
-        let weight: Vec<f64> = noise.each.chunks(scaled.row()).map(average).collect();
-        match few.nearer(&at, &weight) {
-            Ok(p) => near.push((unlikely(&p, &noise), p, noise, named)),
-            Err(error) => failed = error,
-        }
+    let mut at = few.nearer(&start, &equal)?;
+    let weights = |noise: &LineNoise| noise.each.chunks(scaled.row()).map(average).collect::<Vec<f64>>();
+    let rivals = |p: &[f64]| scaled.likeliest_first(p, rivals(measured, part.clone(), &scaled, p));
+    let mut noises = rivals(&at);
+    // What is likely beside a fit to equal noise need not be so beside a fit to the likeliest.
+    if let [(likeliest, _), _, ..] = noises.as_slice()
+        && let Ok(nearer) = few.nearer(&at, &weights(likeliest))
+    {
+        noises = rivals(&nearer);
+        at = nearer;
     }
-    sort_by_number(&mut near, |a| a.0);
-    for (_, p, noise, named) in near {
-        match scaled.fit(&p, &noise) {
+    let mut failed = refuse();
+    for (noise, named) in noises {
+        match few.nearer(&at, &weights(&noise)).and_then(|p| scaled.fit(&p, &noise)) {
             Ok(fit) => {
                 let mut result = scaled.result(&fit, named, &noise);
                 result.fitted.iter_mut().zip(f).for_each(|(v, f)| *v += taken(*f));

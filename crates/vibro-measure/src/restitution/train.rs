@@ -237,7 +237,7 @@ fn rivalled(train: &Plausible, sounds: &[Sound]) -> Option<String> {
             let [first, other] = apart([time(b) - time(a), time(j) - time(i)]);
             let [begin, later] = apart([time(a), time(i)]);
             format!(
-                "{n} sounds: two series of bounces are equally likely, one from {begin} on (first flight {first}), one from {later} on ({other})"
+                "{n} sounds fit two series of bounces equally well: from {begin} on with a first flight of {first}, or from {later} on with one of {other}"
             )
         }
     })

@@ -13,7 +13,7 @@ pub struct Again<'a> {
     pub(super) scaled: Scaled<'a>,
     pub(super) fit: Fit,
     pub(super) noise: LineNoise,
-    /// What the noise may be instead.
+    /// All that the noise may be.
     pub(super) rivals: Vec<LineNoise>,
 }
 
@@ -37,8 +37,8 @@ impl Rational {
         }
         let scaled = Scaled::of(measured, part.clone(), starts, others);
         let fit = scaled.refit(&self.weights)?;
-        let others = rivals(measured, part, &scaled, &fit.parameters).into_iter();
-        let rivals = others.filter(|(_, named)| *named != self.noise).map(|(noise, _)| noise).collect();
+        let rivals = rivals(measured, part, &scaled, &fit.parameters);
+        let rivals = rivals.into_iter().map(|(noise, _)| noise).collect();
         Some(Again { scaled, fit, noise: self.weights.clone(), rivals })
     }
 }

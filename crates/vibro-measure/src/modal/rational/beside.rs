@@ -13,23 +13,31 @@ pub(super) struct Beside {
     pub cofactor: DMatrix<f64>,
 }
 
-/// Parts in which a further mode grows from nothing, each followed by a step of Gauss and Newton.
-const PARTS: i32 = 4;
+/// Parts in which a further mode as high as the highest grows from nothing, each followed by a step of Gauss
+/// and Newton; a lower one grows in fewer.
+const PARTS: f64 = 4.0;
 
 /// Least damping ratio over its first guess on the way; below it the modes no longer follow.
 const LEAST_DAMPED: f64 = 0.05;
 
 impl Scaled<'_> {
-    /// The fit again to the lines without those of a further mode, `taken`, whitened. `None` where the modes
-    /// do not follow it.
-    pub(super) fn beside(&self, noise: &LineNoise, fit: &Fit, taken: &DVector<f64>) -> Option<Beside> {
+    /// The fit again to the lines without those of a further mode, `taken`, whitened, of this height over the
+    /// highest mode. `None` where the modes do not follow it.
+    pub(super) fn beside(
+        &self,
+        noise: &LineNoise,
+        fit: &Fit,
+        taken: &DVector<f64>,
+        height: f64,
+    ) -> Option<Beside> {
+        let parts = (PARTS * height).ceil().clamp(1.0, PARTS) as u32;
         let mut p = fit.parameters.clone();
         let mut left = vec![0.0; self.rows()];
         let mut found = None;
         // The last step has the whole mode once more.
-        for part in (1..=PARTS).chain([PARTS]) {
+        for part in (1..=parts).chain([parts]) {
             self.white(&p, noise, &mut left);
-            let left = DVector::from_column_slice(&left) - taken * (f64::from(part) / f64::from(PARTS));
+            let left = DVector::from_column_slice(&left) - taken * (f64::from(part) / f64::from(parts));
             let jacobian = self.jacobian(&p, noise);
             let root = jacobian.tr_mul(&jacobian).cholesky()?;
             let step = root.solve(&jacobian.tr_mul(&left));
@@ -37,7 +45,7 @@ impl Scaled<'_> {
             if !(0..self.starts.len()).all(|m| p[4 * m + 1] > LEAST_DAMPED) {
                 return None;
             }
-            found = (part == PARTS).then(|| (left - jacobian * step, root));
+            found = (part == parts).then(|| (left - jacobian * step, root));
         }
         let (left, root) = found?;
         Some(Beside { parameters: p, sum_of_squares: left.norm_squared(), cofactor: root.inverse() })
@@ -104,7 +112,8 @@ mod tests {
         let noise = LineNoise::independent(vec![1.0; 121]);
         let one = scaled.refit(&noise).unwrap();
         let second: Vec<Complex64> = frequency.iter().map(|f| poles[1].at(*f, 1) / scaled.height).collect();
-        let found = scaled.beside(&noise, &one, &DVector::from_vec(noise.column(&second))).unwrap();
+        let taken = DVector::from_vec(noise.column(&second));
+        let found = scaled.beside(&noise, &one, &taken, 1.0).unwrap();
         let [f, zeta, constant, phase] = scaled.quantities(&found.parameters).try_into().unwrap();
         // Five steps, of which each squares the error of the one before.
         assert!((f - 100.0).abs() < 1e-3 && (zeta - 0.02).abs() < 1e-5, "{f} {zeta}");

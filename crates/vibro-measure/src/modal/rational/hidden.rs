@@ -4,26 +4,26 @@
 //! parameters of the others and leaves almost no residual. So the uncertainty is a mean over both cases: no
 //! further mode, or one from a prior, weighted by their likelihoods.
 //!
-//! The prior: modes are as dense as the others of the fit beside one of them (a Poisson process whose rate is
-//! known by their number, Jeffreys' prior), of similar damping, and of any order of magnitude in height.
-//! Structures of proportional damping have real modal constants, any other constants of any phase; both are
-//! as likely. Where fewer modes stand for more, their constants have phases.
+//! The prior: modes are as dense as the others beside one of them in the band of the fit (a Poisson process
+//! whose rate is known by their number, Jeffreys' prior), of similar damping, and of any order of magnitude in
+//! height. Structures of proportional damping have real modal constants, any other constants of any phase; both
+//! are as likely. Where fewer modes stand for more, their constants have phases.
 //!
 //! The others follow a further mode by a fit of their own to the lines without it, nearly in proportion to
 //! its height only while that is small. So its posterior is no normal one, and follows by importance sampling
 //! (`MacKay`, Information Theory, Inference, and Learning Algorithms, 2003, chapter 29). Heights a are drawn
 //! from a mixture that leaves no part of the posterior without draws (Hesterberg 1995): the priors, and the
-//! posteriors of the linear problem, twice as wide. Later draws are beside the heaviest before (population
-//! Monte Carlo: Cappé, Guillin, Marin & Robert 2004). With C as the lines of a height of 1, whitened as the
-//! residuals r with the Jacobian J, the other parameters leave `D = CᵀC − CᵀJ(JᵀJ)⁻¹JᵀC` of its power. A
-//! prior covariance P of both components of a then gives a mean of G⁻¹Cᵀr/s² and a covariance of G⁻¹ with G =
-//! D/s² + P⁻¹.
+//! posteriors of the linear problem, twice as wide. Draws beside the heaviest (population Monte Carlo) were
+//! worse: an uncertainty depends on the ends of the posterior, which these draws leave out. With C as the
+//! lines of a height of 1, whitened as the residuals r with the Jacobian J, the other parameters leave `D =
+//! CᵀC − CᵀJ(JᵀJ)⁻¹JᵀC` of its power. A prior covariance P of both components of a then gives a mean of
+//! G⁻¹Cᵀr/s² and a covariance of G⁻¹ with G = D/s² + P⁻¹.
 
 use super::Rational;
 use super::again::Again;
 use crate::chance::normal_above;
 use crate::mean::mixture;
-use nalgebra::{DMatrix, DVector, Matrix2, Matrix4, Vector2, Vector4};
+use nalgebra::{DMatrix, DVector, Matrix2, Vector2};
 use num_complex::Complex64;
 use std::f64::consts::{PI, TAU};
 use vibro_math::{Noise, bisected};
@@ -49,21 +49,17 @@ const HEIGHTS: [f64; 3] = [0.1, 0.3, 1.0];
 /// Standard deviation in rad of the phase of a real modal constant: damping is proportional, but for that.
 const REAL: f64 = 0.05;
 
-/// Draws of a further mode before those beside the heaviest, and draws in each round of these.
-const DRAWS: [usize; 3] = [240, 120, 120];
+/// Draws of a further mode: a few, which tell whether one is likely enough to matter, and all.
+const DRAWS: [usize; 2] = [240, 1680];
 
 /// Least odds of a further mode, given the lines, for more draws.
 const NEEDED: f64 = 1e-3;
 
 /// One draw: what a further mode does to quantities of the fit.
 struct Draw {
-    /// Frequency, logarithm of the damping ratio, and both components of the height.
-    at: Vector4<f64>,
-    /// Logarithm of the posterior density over the evidence of no further mode, both over the prior density
-    /// of frequency and damping.
-    log_posterior: f64,
-    /// Density of the height where it was drawn first.
-    first: f64,
+    /// Logarithm of the posterior density over the evidence of no further mode, and over the density of the
+    /// draw.
+    log_weight: f64,
     /// Change of each quantity, and its variance.
     changes: Vec<(f64, f64)>,
 }
@@ -126,55 +122,6 @@ fn of_phases(quantities: &[f64], covariance: &DMatrix<f64>) -> [f64; 2] {
     [real, 1.0 / whole_turn]
 }
 
-/// Normal distributions of one covariance about draws, as likely as these are heavy.
-struct Kernels {
-    about: Vec<(f64, Vector4<f64>)>,
-    inverse: Matrix4<f64>,
-    root: Matrix4<f64>,
-    height: f64,
-}
-
-/// Width of a kernel over that of all draws, by the rule of Silverman (1986) for some 50 draws in four
-/// dimensions.
-const KERNEL: f64 = 0.6;
-
-impl Kernels {
-    /// Kernels about draws with these logarithms of weights. Square roots of the weights leave more than the
-    /// heaviest; `least` are the least widths.
-    fn of(draws: &[Draw], log_weights: &[f64], least: Vector4<f64>) -> Option<Kernels> {
-        let highest = log_weights.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        let weights: Vec<f64> = log_weights.iter().map(|w| (0.5 * (w - highest)).exp()).collect();
-        let total: f64 = weights.iter().sum();
-        let about: Vec<(f64, Vector4<f64>)> =
-            weights.iter().zip(draws).map(|(w, draw)| (w / total, draw.at)).collect();
-        let mean: Vector4<f64> = about.iter().map(|(w, at)| at * *w).sum();
-        let spread: Matrix4<f64> =
-            about.iter().map(|(w, at)| (at - mean) * (at - mean).transpose() * *w).sum();
-        let covariance = (spread + Matrix4::from_diagonal(&least.component_mul(&least))) * (KERNEL * KERNEL);
-        let root = covariance.cholesky()?;
-        let (inverse, root) = (root.inverse(), root.l());
-        Some(Kernels { about, inverse, root, height: 1.0 / (TAU * TAU * root.determinant()) })
-    }
-
-    /// The centre with this cumulative weight, moved by `step` standard deviations.
-    fn draw(&self, mut part: f64, step: Vector4<f64>) -> Vector4<f64> {
-        let beyond = |(w, _): &&(f64, Vector4<f64>)| {
-            part -= w;
-            part <= 0.0
-        };
-        let about = self.about.iter().find(beyond).or(self.about.last());
-        about.map_or_else(Vector4::zeros, |(_, at)| at + self.root * step)
-    }
-
-    fn density(&self, at: &Vector4<f64>) -> f64 {
-        let each = self.about.iter().map(|(w, centre)| {
-            let off = at - centre;
-            w * (-0.5 * off.dot(&(self.inverse * off))).exp()
-        });
-        each.sum::<f64>() * self.height
-    }
-}
-
 /// Share of a posterior that may lie beyond four standard uncertainties. A further mode that is unlikely
 /// but moves a quantity far hardly changes its standard deviation: that would leave this chance beyond any
 /// number of them.
@@ -204,18 +151,19 @@ impl Rational {
         if self.modes.len() < 2 {
             return;
         }
-        let odds = self.modes.len() as f64 - 0.5;
         let Some(hidden) = Hidden::of(again, self.whiteness.inflation) else { return };
-        let (draws, log_weights) = hidden.draws(odds);
+        let odds = hidden.odds();
+        let draws = hidden.draws(odds);
+        let each = (odds / draws.len() as f64).ln();
         for (q, std) in self.std.iter_mut().flatten().enumerate() {
-            let with =
-                |(draw, weight): (&Draw, &f64)| (weight + odds.ln(), draw.changes[q].0, draw.changes[q].1);
-            let all: Vec<(f64, f64, f64)> =
-                draws.iter().zip(&log_weights).map(with).chain([(0.0, 0.0, std.powi(2))]).collect();
+            let with = |draw: &Draw| (draw.log_weight + each, draw.changes[q].0, draw.changes[q].1);
+            let found = draws.iter().flatten().map(with);
+            let all: Vec<(f64, f64, f64)> = found.chain([(0.0, 0.0, std.powi(2))]).collect();
             let (mean, variance) = mixture(&all);
             *std = holding(&all, std.max(variance.sqrt().hypot(mean)));
         }
-        self.covers_hidden = !draws.is_empty();
+        // All were drawn where a further mode matters.
+        self.covers_hidden = draws.len() > DRAWS[0];
     }
 }
 
@@ -259,51 +207,31 @@ impl<'a> Hidden<'a> {
         Some(Hidden { again, variance, free, modes, highest, between, quantities, of_phases, classes })
     }
 
-    /// Draws, and the logarithm of the weight of each, whose sum is the evidence of a further mode over that
-    /// of none.
-    fn draws(&self, odds: f64) -> (Vec<Draw>, Vec<f64>) {
+    /// Odds of a further mode before the lines are seen.
+    fn odds(&self) -> f64 {
+        let x = &self.again.scaled.x;
+        (self.modes.len() as f64 - 0.5) * (self.between.1 - self.between.0) / (x[x.len() - 1] - x[0])
+    }
+
+    /// Draws of a further mode, evenly over frequency; the mean of their weights is its evidence. `None` for
+    /// one of weight 0.
+    fn draws(&self, odds: f64) -> Vec<Option<Draw>> {
         let (low, high) = self.between;
         let mut random = Noise::new(1);
-        let (mut draws, mut kernels) = (Vec::<Draw>::new(), Vec::<Kernels>::new());
-        let mut log_weights = Vec::new();
-        // Prior density of frequency and damping ratio.
-        let even = 1.0 / ((high - low) * 2.0 * DAMPED_ALIKE.ln());
-        for (round, count) in DRAWS.into_iter().enumerate() {
+        let mut draws: Vec<Option<Draw>> = Vec::new();
+        for count in DRAWS {
             for k in 0..count {
-                let part = (k as f64 + 0.5) / count as f64;
-                let draw = match kernels.last() {
-                    None => {
-                        let own = low + (high - low) * part;
-                        let nearest = self.nearest(own).ln();
-                        let damping = nearest + DAMPED_ALIKE.ln() * random.between(-1.0, 1.0);
-                        let step = Vector2::from_fn(|_, _| random.normal());
-                        self.at(own, damping, |all| {
-                            let from = all.get(k % all.len().max(1))?;
-                            Some(from.mean + from.root * step)
-                        })
-                    }
-                    Some(last) => {
-                        let at = last.draw(part, Vector4::from_fn(|_, _| random.normal()));
-                        self.at(at[0], at[1], |_| Some(Vector2::new(at[2], at[3])))
-                    }
-                };
-                draws.extend(draw);
+                let own = low + (high - low) * (k as f64 + 0.5) / count as f64;
+                let damping = self.nearest(own).ln() + DAMPED_ALIKE.ln() * random.between(-1.0, 1.0);
+                let step = Vector2::from_fn(|_, _| random.normal());
+                draws.push(self.at((own, damping.exp()), k, step));
             }
-            let from = |draw: &Draw| {
-                let later = DRAWS[1..].iter().zip(&kernels);
-                let later: f64 = later.map(|(n, kernels)| *n as f64 * kernels.density(&draw.at)).sum();
-                draw.log_posterior - (DRAWS[0] as f64 * draw.first + later / even).ln()
-            };
-            log_weights = draws.iter().map(from).collect();
-            let evidence: f64 = log_weights.iter().map(|w| w.exp()).sum();
-            if round + 1 == DRAWS.len() || odds * evidence < NEEDED {
+            let weights = draws.iter().flatten().map(|draw| draw.log_weight.exp());
+            if odds * weights.sum::<f64>() < NEEDED * draws.len() as f64 {
                 break;
             }
-            let least = Vector4::new(0.02 * (high - low), 0.1, 0.02 * self.highest, 0.02 * self.highest);
-            let Some(next) = Kernels::of(&draws, &log_weights, least) else { break };
-            kernels.push(next);
         }
-        (draws, log_weights)
+        draws
     }
 
     /// Damping ratio of the mode nearest to a frequency.
@@ -313,21 +241,11 @@ impl<'a> Hidden<'a> {
         nearest.map_or(f64::NAN, |(_, zeta)| *zeta)
     }
 
-    /// The draw of a further mode with this frequency and logarithm of the damping ratio, and a height from
-    /// the distributions of its first draws. `None` where the prior holds none, or the modes do not follow.
-    fn at(
-        &self,
-        own: f64,
-        damping: f64,
-        height: impl FnOnce(&[Normal]) -> Option<Vector2<f64>>,
-    ) -> Option<Draw> {
+    /// The draw of a further mode with this frequency and damping ratio, and a height from the distribution
+    /// `k`, at `step` standard deviations. `None` where the prior holds none, or the modes do not follow.
+    fn at(&self, (own, zeta): (f64, f64), k: usize, step: Vector2<f64>) -> Option<Draw> {
         let Again { scaled, fit, noise, .. } = self.again;
         let n = scaled.x.len();
-        let zeta = damping.exp();
-        let alike = (damping - self.nearest(own).ln()).abs() <= DAMPED_ALIKE.ln();
-        if !(alike && self.between.0 <= own && own <= self.between.1) {
-            return None;
-        }
         let peak = self.again.peak((own, zeta));
         let lines: Vec<Complex64> = (0..n).map(|i| scaled.shaped(i, (own, zeta)) / peak).collect();
         let turned: Vec<Complex64> = lines.iter().map(|v| v * Complex64::i()).collect();
@@ -342,8 +260,9 @@ impl<'a> Hidden<'a> {
         };
         let mut all = self.classes.concat();
         all.extend(self.classes.iter().flatten().filter_map(posterior));
-        let a = height(&all)?;
-        let found = scaled.beside(noise, fit, &(&columns * a))?;
+        let from = &all[k % all.len()];
+        let a = from.mean + from.root * step;
+        let found = scaled.beside(noise, fit, &(&columns * a), a.norm() / self.highest)?;
         let p = &found.parameters;
         let one = |s: (f64, f64)| (own - s.0).abs() < APART * (own * zeta + s.0 * s.1);
         if (0..self.modes.len()).any(|m| one(scaled.shape(p, m))) {
@@ -358,15 +277,20 @@ impl<'a> Hidden<'a> {
         // volume √|(JᵀJ)⁻¹|.
         let volume = found.cofactor.determinant() / fit.cofactor.determinant();
         let better = self.free * (fit.sum_of_squares() / found.sum_of_squares).ln();
-        let log_posterior = 0.5 * (better + volume.ln()) + (prior / self.of_phases).ln();
-        let change = |(q, (after, before)): (usize, (&f64, &f64))| {
+        let drawn = Normal::mean_density(&all, a);
+        let log_weight = 0.5 * (better + volume.ln()) + (prior / self.of_phases / drawn).ln();
+        // The mode of a peak is the nearest to it, whether it follows or is the further one.
+        let further = [own * scaled.unit, zeta, a.norm() / peak * scaled.to_constant(), a[1].atan2(a[0])];
+        let change = |(q, before): (usize, &f64)| {
+            let m = q - q % 4;
+            let off = |frequency: f64| (frequency - self.quantities[m]).abs();
+            let after = if off(further[0]) < off(after[m]) { further[q % 4] } else { after[q] };
             let by = after - before;
             // The last of four is an angle.
             (if q % 4 == 3 { by.sin().atan2(by.cos()) } else { by }, covariance[(q, q)])
         };
-        let changes = after.iter().zip(&self.quantities).enumerate().map(change).collect();
-        let (at, first) = (Vector4::new(own, damping, a[0], a[1]), Normal::mean_density(&all, a));
-        log_posterior.is_finite().then_some(Draw { at, log_posterior, first, changes })
+        let changes = self.quantities.iter().enumerate().map(change).collect();
+        log_weight.is_finite().then_some(Draw { log_weight, changes })
     }
 }
 

@@ -3,13 +3,21 @@
 use super::{LineNoise, Measured, Scaled};
 use crate::modal::noise::of_both;
 
+/// Equal noise of all lines over the noise in proportion to the response at its peak, standard deviations.
+/// Mostly one of both does not matter: five of six times each end counts. Where both mattered beside the peak,
+/// few lines would take their own scatter for such noise.
+const EQUAL: [f64; 12] = [1e-6, 1e-6, 1e-6, 1e-6, 1e-6, 0.01, 0.03, 1e4, 1e4, 1e4, 1e4, 1e4];
+
+/// Noise with its name.
+pub(super) type Named = (LineNoise, &'static str);
+
 /// Alternatives for the noise of the lines, each with a name; `at` are parameters near the best fit.
 pub(super) fn rivals(
     measured: &Measured,
     part: std::ops::Range<usize>,
     scaled: &Scaled<'_>,
     at: &[f64],
-) -> Vec<(LineNoise, &'static str)> {
+) -> Vec<Named> {
     let lines = part.len();
     let height = |i: usize| scaled.at(at, i).norm();
     match (&measured.std, &measured.coherence) {
@@ -18,9 +26,10 @@ pub(super) fn rivals(
             vec![(LineNoise::independent(weight), "noise as stated")]
         }
         (None, None) => {
-            let relative = LineNoise::independent((0..lines).map(|i| height(i).max(1e-2)).collect());
-            let equal = LineNoise::independent(vec![1.0; lines]);
-            vec![(equal, "equal noise on all lines"), (relative, "noise proportional to the response")]
+            let both = |equal: f64| {
+                LineNoise::independent((0..lines).map(|i| height(i).max(1e-2).hypot(equal)).collect())
+            };
+            EQUAL.iter().map(|equal| (both(*equal), "equal and proportional noise")).collect()
         }
         (None, Some(coherence)) => {
             // Variance of a line: |H|²(1 − γ²)/(2γ²) over the averages (Bendat & Piersol 2010, 9.90), whose
