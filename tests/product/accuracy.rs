@@ -17,4 +17,5 @@ mod rivals;
 mod score;
 mod sine;
 mod spectrum;
+mod stroke;
 mod transfer;

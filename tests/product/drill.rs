@@ -6,14 +6,12 @@
 pub mod noise;
 #[path = "../../crates/vibro-demo/src/hammer_drill/record.rs"]
 pub mod record;
-#[allow(dead_code)]
-#[path = "../../crates/vibro-demo/src/hammer_drill/stroke.rs"]
-pub mod stroke;
 
 use serde_json::Value;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
+use vibroimpact::model::drill::{Course, Impact, Interface, Machine, Rung, run};
 use vibroimpact::record::{Axis, Meta, Record, Trace};
 use vibroimpact::units::Unit;
 use vibroimpact::write::wav::write;
@@ -68,8 +66,8 @@ pub fn wav(folder: &Path, name: &str, channels: &[Record]) -> PathBuf {
 #[test]
 fn the_example_comes_out_as_it_was_made() {
     let folder = tempfile::tempdir().unwrap();
-    let made = record::record(2.0);
-    let channels = [volts("striker", made.striker.clone()), volts("pulse", made.pulse.clone())];
+    let made = record::run(0, 2.0).unwrap();
+    let channels = [volts("striker", made.velocity.clone()), volts("pulse", made.pulse.clone())];
     let file = wav(folder.path(), "drill.wav", &channels);
     let still = wav(folder.path(), "still.wav", &[volts("striker", record::still(1.0))]);
     let out = folder.path().join("out");
@@ -103,7 +101,10 @@ fn the_example_comes_out_as_it_was_made() {
     }
     let restitution = &found["restitution"];
     let (value, std) = (restitution["value"].as_f64().unwrap(), restitution["std"].as_f64().unwrap());
-    assert!((value - record::RESTITUTION).abs() < 4.0 * std && std < 0.01);
+    // Balance of momentum with the struck mass at rest before, as the record of the striker alone must take it.
+    let sum = |of: &dyn Fn(&record::Struck) -> f64| made.impacts.iter().map(of).sum::<f64>();
+    let truth = sum(&|i| 0.5 * (i.before - i.after) - i.after) / sum(&|i| i.before);
+    assert!((value - truth).abs() < 4.0 * std && std < 0.01, "{value} ± {std}, {truth}");
     assert!((found["beam"]["factor"].as_f64().unwrap() - 2.0).abs() < 1e-12);
     let average = &found["average"];
     for key in ["phase", "mean", "std"] {
@@ -122,7 +123,7 @@ fn the_truth_beside_the_example_is_the_one_it_is_made_from() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/hammer_drill/TRUTH.csv");
     let text = std::fs::read_to_string(path).unwrap();
     let rows = text.lines().skip(1).map(|l| l.split(',').map(|v| v.parse().unwrap()).collect::<Vec<f64>>());
-    let made = record::record(0.5).impacts;
+    let made = record::run(0, 0.5).unwrap().impacts;
     assert!(made.len() > 20 && text.lines().count() > 900);
     for (row, made) in rows.zip(&made) {
         // The truth has four decimals. The rest allows for roundings of another machine's mathematics
@@ -133,19 +134,37 @@ fn the_truth_beside_the_example_is_the_one_it_is_made_from() {
     }
 }
 
+/// Writes the recordings of the example, of `seconds` s each.
+pub fn example(data: &Path, seconds: f64) {
+    for (body, (file, name)) in
+        [("drill", "striker"), ("piston", "piston"), ("bit", "bit")].into_iter().enumerate()
+    {
+        let made = record::run(body, seconds).unwrap();
+        let channels = [volts(name, made.velocity), volts("pulse", made.pulse)];
+        wav(data, &format!("{file}.wav"), &channels);
+    }
+    wav(data, "still.wav", &[volts("striker", record::still(0.5))]);
+}
+
+/// The blow of a settled machine: striker on intermediate piston and that on the bit, as a measurement shows
+/// them.
+fn run_of(machine: &Machine) -> [Impact; 2] {
+    let course = Course { judged: 1, samples: 8000, ..Course::turns(60) };
+    let run = run(machine, Rung::Compliant, &course).unwrap();
+    let period = machine.crank.period();
+    [Interface::Striker, Interface::Bit].map(|interface| {
+        let own = run.turns[0].impacts.iter().filter(|impact| impact.interface == interface);
+        let blow = own.max_by(|a, b| a.before[0].total_cmp(&b.before[0])).unwrap();
+        run.turns[0].at_once(blow, 59.0 * period, period)
+    })
+}
+
 #[test]
 fn a_campaign_joins_the_bodies_by_the_crank() {
     let folder = tempfile::tempdir().unwrap();
     let data = folder.path().join("data");
     std::fs::create_dir(&data).unwrap();
-    let made = record::record(2.0);
-    let runs =
-        [("striker", [made.striker, made.pulse]), ("piston", record::piston(2.0)), ("bit", record::bit(2.0))];
-    for (name, [velocity, pulse]) in runs {
-        let file = if name == "striker" { "drill.wav".to_owned() } else { format!("{name}.wav") };
-        wav(&data, &file, &[volts(name, velocity), volts("pulse", pulse)]);
-    }
-    wav(&data, "still.wav", &[volts("striker", record::still(0.5))]);
+    example(&data, 2.0);
     let own = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/hammer_drill");
     let text = std::fs::read_to_string(own.join("campaign.toml")).unwrap();
     std::fs::copy(own.join("drill.toml"), folder.path().join("drill.toml")).unwrap();
@@ -167,47 +186,64 @@ fn a_campaign_joins_the_bodies_by_the_crank() {
     let machine = &found["results"]["drill_machines"][0];
     assert_eq!(machine["bodies"], serde_json::json!(["striker", "intermediate piston", "bit"]));
     let passages = machine["passages"].as_array().unwrap();
+    // The bodies as the model moves them without scatter from turn to turn. That of 3 % of leakage changes the
+    // means by its square, far below the uncertainty of 90 turns.
+    let truth = record::machine().unwrap();
+    let model = run_of(&truth);
     let near = |estimate: &Value, truth: f64| {
         let (value, std) = (estimate["value"].as_f64().unwrap(), estimate["std"].as_f64().unwrap());
         assert!((value - truth).abs() < 4.0 * std && std < 0.02 * truth, "{truth}: {estimate}");
     };
-    // The striker gives (1 + R)mM/(m + M) of 7.5 m/s, the piston (1 + R')MM'/(M + M') of what it gains.
-    let (m, p, b) = (record::STRIKER, record::PISTON, record::BIT);
-    let driven = (1.0 + record::RESTITUTION) * m / (m + p) * 7.5;
-    let momenta = [p * driven, (1.0 + record::RESTITUTION_OF_BIT) * p * b / (p + b) * driven];
-    let restitutions = [record::RESTITUTION, record::RESTITUTION_OF_BIT];
     assert_eq!(passages.len(), 2);
-    for ((passage, momentum), restitution) in passages.iter().zip(momenta).zip(restitutions) {
-        near(&passage["given"], momentum);
-        near(&passage["taken"], momentum);
-        near(&passage["restitution"], restitution);
-        near(&passage["restitution_from_one"], restitution);
+    let masses = [truth.striker.mass, truth.intermediate.mass, truth.bit.mass];
+    for (k, (passage, impact)) in passages.iter().zip(&model).enumerate() {
+        near(&passage["given"], masses[k] * (impact.before[0] - impact.after[0]));
+        near(&passage["taken"], masses[k + 1] * (impact.after[1] - impact.before[1]));
+        let separation = impact.after[1] - impact.after[0];
+        near(&passage["restitution"], separation / (impact.before[0] - impact.before[1]));
         let [given, taken, lost] = ["given", "taken", "lost"]
             .map(|what| passage[format!("energy_{what}")]["value"].as_f64().unwrap());
         assert!((given - taken - lost).abs() < 1e-12 && lost > 0.0, "{passage}");
     }
-    // The velocity scatters by 2 % from blow to blow: its mean square is 0.04 % larger.
-    near(&machine["blow_energy"], 0.5 * m * 7.5 * 7.5 * 1.0004);
-    let bit = momenta[1] / b;
-    near(&machine["efficiency"], b * bit * bit / (m * 7.5 * 7.5));
+    let energy = |k: usize, v: f64| 0.5 * masses[k] * v * v;
+    near(&machine["blow_energy"], energy(0, model[0].before[0]));
+    let taken = energy(2, model[1].after[1]) - energy(2, model[1].before[1]);
+    near(&machine["efficiency"], taken / energy(0, model[0].before[0]));
     assert!((machine["blow_rate"].as_f64().unwrap() - 60.0 * 47.3).abs() < 60.0);
     let model = &machine["model"];
-    for (body, measured) in model["bodies"].as_array().unwrap().iter().zip(drills) {
+    let bodies = model["bodies"].as_array().unwrap();
+    assert_eq!(bodies.len(), 3);
+    for body in bodies {
         assert_eq!(body["velocity"].as_array().unwrap().len(), 720);
-        assert!(body["rms"].as_f64().unwrap() < 4.0, "{}: {}", measured["name"], body["rms"]);
+        // Root mean square in standard deviations from turn to turn: of the mean of 90 turns that is 0.11.
+        assert!(body["scatters"].as_f64().unwrap() < 0.3, "{}: {}", body["name"], body["scatters"]);
     }
     let differences = model["differences"].as_array().unwrap();
-    assert_eq!(differences.len(), 9, "{differences:?}");
+    assert_eq!(differences.len(), 10, "{differences:?}");
     for difference in differences {
         let [measured, model] = ["measured", "model"].map(|key| difference[key]["value"].as_f64().unwrap());
         if let Some(std) = difference["measured"]["std"].as_f64() {
+            let deviations = difference["deviations"].as_f64().unwrap();
             let expected = (measured - model) / std;
-            assert!((difference["deviations"].as_f64().unwrap() - expected).abs() < 1e-9 * expected.abs());
+            assert!(
+                (deviations - expected).abs() < 1e-9 * expected.abs() && expected.abs() < 4.0,
+                "{difference}"
+            );
         }
     }
-    // The recordings are of an invented motion: no key of the model has an uncertainty.
-    assert_eq!(finding(model, "drill-fit-lack")["severity"], "doubt");
-    assert!(model["fit"]["keys"].as_array().unwrap().iter().all(|key| key["estimate"]["std"].is_null()));
+    // The keys that `drill.toml` states otherwise are found again, and nothing is in doubt.
+    let findings = model["findings"].as_array().unwrap();
+    assert!(findings.iter().all(|finding| finding["severity"] != "doubt"), "{findings:?}");
+    let keys = model["fit"]["keys"].as_array().unwrap();
+    assert_eq!(keys.len(), 4);
+    for key in keys {
+        let [value, std] = ["value", "std"].map(|part| key["estimate"][part].as_f64().unwrap());
+        let true_value = truth.value(key["key"].as_str().unwrap()).unwrap();
+        let stated = key["start"].as_f64().unwrap();
+        assert!((value - true_value).abs() < 4.0 * std, "{key}: {true_value}");
+        // So clearly that the stated value is excluded.
+        assert!((stated - true_value).abs() > 4.0 * std, "{key}: {stated}");
+    }
     for name in ["drill_average_striker_run.svg", "drill_joined.svg", "drill_chain.csv", "drill_model.svg"] {
         assert!(folder.path().join("results").join(name).exists(), "{name}");
     }
@@ -285,8 +321,8 @@ fn what_allows_no_answer_says_why() {
 #[test]
 fn without_a_reference_the_turns_come_from_the_impacts() {
     let folder = tempfile::tempdir().unwrap();
-    let made = record::record(2.0);
-    let channels = [volts("striker", made.striker.clone()), volts("pulse", made.pulse)];
+    let made = record::run(0, 2.0).unwrap();
+    let channels = [volts("striker", made.velocity.clone()), volts("pulse", made.pulse)];
     let file = wav(folder.path(), "drill.wav", &channels);
     let out = folder.path().join("out");
     let masses = ["--mass", "0.14", "--struck-mass", "0.43", "--out", out.to_str().unwrap()];
@@ -308,8 +344,8 @@ fn without_a_reference_the_turns_come_from_the_impacts() {
     assert!((said["numbers"]["rpm"].as_f64().unwrap() / 60.0 / speed("value") - 1.0).abs() < 1e-12);
     assert!(finding(&with, "drill-turns-from-impacts").is_null());
     assert_eq!((own["phase"]["value"].as_f64(), own["phase"]["std"].is_null()), (Some(0.0), true));
-    // The average begins in the middle of the impact, half-way between 7.5 m/s before and −0.7 m/s after.
-    assert!((own["average"]["mean"][0].as_f64().unwrap() - 0.5 * (7.5 - 0.7)).abs() < 1.5);
+    // The average begins in the middle of the impact, half-way between 7.6 m/s before and −1.4 m/s after.
+    assert!((own["average"]["mean"][0].as_f64().unwrap() - 0.5 * (7.6 - 1.4)).abs() < 1.5);
     assert!(out.join("drill_trace.svg").exists());
     // A crank motion without impacts is refused, and so is `--edge` without a reference.
     let sine = csv(folder.path(), "sine.csv", |i| ((i as f64 * 0.03).sin(), 0.0));
@@ -366,8 +402,8 @@ fn all_that_is_missing_is_asked_at_once() {
 #[test]
 fn channels_of_different_rates_are_refused() {
     let folder = tempfile::tempdir().unwrap();
-    let made = record::record(0.3);
-    let striker = volts("striker", made.striker);
+    let made = record::run(0, 0.3).unwrap();
+    let striker = volts("striker", made.velocity);
     let Record::Trace(mut pulse) = volts("pulse", made.pulse) else { unreachable!() };
     pulse.axis = Axis::time(0.0, 2.0 / record::RATE, pulse.values.len());
     let path = folder.path().join("rates.uff");
@@ -401,14 +437,14 @@ fn missing_samples_of_the_reference_between_its_pulses_cost_no_turn() {
 #[test]
 fn each_impact_and_the_handle() {
     let folder = tempfile::tempdir().unwrap();
-    let made = record::record(2.0);
+    let made = record::run(0, 2.0).unwrap();
     // Handle: 10 m/s² along and 5 m/s² across at 100 Hz, in V at 100 m/s² per volt.
     let wave = |amplitude: f64| {
         let turn = std::f64::consts::TAU * 100.0 / record::RATE;
-        (0..made.striker.len()).map(|i| 0.01 * amplitude * (turn * i as f64).sin()).collect()
+        (0..made.velocity.len()).map(|i| 0.01 * amplitude * (turn * i as f64).sin()).collect()
     };
     let channels = [
-        volts("striker", made.striker.clone()),
+        volts("striker", made.velocity.clone()),
         volts("pulse", made.pulse.clone()),
         volts("along", wave(10.0)),
         volts("across", wave(5.0)),
@@ -585,17 +621,18 @@ fn swapped_channels_and_a_vibration_as_reference_are_refused() {
 #[test]
 fn impacts_beyond_the_range_are_in_no_mean() {
     let folder = tempfile::tempdir().unwrap();
-    let made = record::record(1.0);
+    let made = record::run(0, 1.0).unwrap();
     let limited = |limit: f64| {
-        let striker = made.striker.iter().map(|v| v.min(0.25 * limit)).collect();
+        let striker = made.velocity.iter().map(|v| v.min(0.25 * limit)).collect();
         let channels = [volts("striker", striker), volts("pulse", made.pulse.clone())];
         json(&with(
             &wav(folder.path(), "limited.wav", &channels),
             &["--mass", "0.14", "--struck-mass", "0.43"],
         ))
     };
-    // Velocities before the impact scatter by 0.15 m/s about 7.5 m/s: a quarter of them exceeds 7.6 m/s.
-    let some = limited(7.6);
+    // Velocities before the impact scatter by 0.07 m/s about 7.63 m/s. At the beginning of the fits, 0.6 ms before,
+    // they are 0.22 m/s higher: a quarter of them exceeds 7.9 m/s there.
+    let some = limited(7.9);
     let impacts = some["impacts"].as_array().unwrap();
     let clipped = |i: &&Value| i["clipped"].as_bool().unwrap();
     let count = impacts.iter().filter(clipped).count();
@@ -604,12 +641,11 @@ fn impacts_beyond_the_range_are_in_no_mean() {
     for impact in impacts {
         let number = |key: &str| impact[key].as_f64().unwrap();
         let truth = made.impacts.iter().find(|t| (t.time - number("time")).abs() < 5e-5).unwrap();
-        // Before the contact the velocity rises by 0.012 m/s a sample. The contact begins three samples
-        // before its middle, and two samples at the limit count as clipped: 0.046 m/s, plus four times the
-        // noise of 12 mm/s.
-        if truth.before > 7.7 {
+        // Two samples at the limit count as clipped; the velocity falls by 0.003 m/s a sample. Four times the
+        // noise of 12 mm/s is 0.05 m/s.
+        if truth.before > 7.68 + 0.06 {
             assert!(clipped(&impact), "{impact} {}", truth.before);
-        } else if truth.before < 7.55 {
+        } else if truth.before < 7.68 - 0.06 {
             assert!(!clipped(&impact), "{impact} {}", truth.before);
             assert!((number("before") - truth.before).abs() < 6.0 * number("before_std"), "{impact}");
         }

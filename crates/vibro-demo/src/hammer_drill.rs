@@ -1,14 +1,15 @@
 //! Recordings of the example hammer drill: striker, intermediate piston and bit under a laser vibrometer in
-//! three runs, with a pulse per turn.
+//! three runs, with a pulse per turn. The motion is that of the model in `drill.toml` with other values of a
+//! few keys, which vary from turn to turn.
 //!
 //! - `data/drill.wav`: striker and pulse in volts, 20 s at 102.4 kHz (16 MB);
 //! - `data/piston.wav`, `data/bit.wav`: runs of the other bodies, 4 s each (3 MB);
 //! - `data/still.wav`: noise of the same vibrometer with the machine at rest;
-//! - `drill.toml`: the impact unit as a model, for `vibro model drill`;
+//! - `drill.toml`: the impact unit as a model, for `vibro model drill` and the campaign;
+//! - `TRUTH.toml`: the keys of the machine that `drill.toml` does not state as they are;
 //! - `TRUTH.csv`: turn, time, phase and velocities of every impact of the striker, without noise and faults.
 
 mod record;
-mod stroke;
 
 use super::{Sink, noise};
 use std::fmt::Write as _;
@@ -24,22 +25,29 @@ const OTHERS: f64 = 4.0;
 /// Writes all files.
 pub fn recordings(sink: &mut Sink<'_>) -> Result<()> {
     sink("drill.toml", include_bytes!("hammer_drill/drill.toml"))?;
-    let made = record::record(SECONDS);
-    let mut wave = |name: &str, channels: Vec<Record>| {
-        let mut bytes = Vec::new();
-        write(&channels, Precision::Single, &mut bytes)?;
-        sink(name, &bytes)
-    };
-    wave("data/drill.wav", vec![volts("striker", made.striker), volts("pulse", made.pulse)])?;
-    for (name, [velocity, pulse]) in [("piston", record::piston(OTHERS)), ("bit", record::bit(OTHERS))] {
-        wave(&format!("data/{name}.wav"), vec![volts(name, velocity), volts("pulse", pulse)])?;
+    sink("TRUTH.toml", include_bytes!("hammer_drill/TRUTH.toml"))?;
+    let runs = [("drill", "striker", SECONDS), ("piston", "piston", OTHERS), ("bit", "bit", OTHERS)];
+    let mut impacts = Vec::new();
+    for (body, (file, name, seconds)) in runs.into_iter().enumerate() {
+        let made = record::run(body, seconds)?;
+        wave(sink, file, &[volts(name, made.velocity), volts("pulse", made.pulse)])?;
+        if body == 0 {
+            impacts = made.impacts;
+        }
     }
-    wave("data/still.wav", vec![volts("striker", record::still(5.0))])?;
+    wave(sink, "still", &[volts("striker", record::still(5.0))])?;
     let mut truth = String::from("turn,time (s),phase (1),before (m/s),after (m/s)\n");
-    for i in &made.impacts {
+    for i in &impacts {
         let _ = writeln!(truth, "{},{:.7},{:.5},{:.4},{:.4}", i.turn, i.time, i.phase, i.before, i.after);
     }
     sink("TRUTH.csv", truth.as_bytes())
+}
+
+/// Writes a recording.
+fn wave(sink: &mut Sink<'_>, name: &str, channels: &[Record]) -> Result<()> {
+    let mut bytes = Vec::new();
+    write(channels, Precision::Single, &mut bytes)?;
+    sink(&format!("data/{name}.wav"), &bytes)
 }
 
 /// A channel in volts.

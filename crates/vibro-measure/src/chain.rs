@@ -10,6 +10,7 @@ mod shown;
 
 pub use body::{Body, Hits};
 pub use passage::Passage;
+pub use shown::Jump;
 
 use crate::Estimate;
 use body::turn_between;

@@ -41,6 +41,7 @@ pub use faults::FaultCount;
 pub use floor::NoiseFloor;
 use groups::Offset;
 pub use groups::{Group, Impact};
+pub(crate) use jumps::PART;
 pub use options::{AngleOrigin, Beam, Corner, DrillOptions, Smoothing, TurnsFrom};
 pub use result::{Displacement, Drill, Pulses};
 pub(crate) use survey::levels;

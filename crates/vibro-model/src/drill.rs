@@ -39,6 +39,7 @@ pub use cushion::Cushion;
 pub use draft::MachineDraft;
 pub use flow::{Flow, GAS_CONSTANT, Vent};
 pub use machine::{Bit, Interface, Intermediate, Machine, SOUND_SPEED, Striker};
+pub use motion::Motion;
 pub use run::{Course, Regime, Run, Start, WaveLimit, run};
 pub use rungs::{Ladder, Rung, Step, climb};
 pub use turn::{Blow, Book, Extremes, Impact, Sample, Turn};

@@ -77,7 +77,8 @@ pub fn differences(
     // Energy and rate of the chain are those of its first body.
     let first = chain.bodies.first().is_some_and(|name| name.eq_ignore_ascii_case(BODIES[0]));
     if first {
-        let energies = chain.blow_energy.as_ref().zip(turn.run.blow_energy);
+        let energy = mean(turn, Interface::Striker, |i| 0.5 * machine.striker.mass * i.before[0].powi(2));
+        let energies = chain.blow_energy.as_ref().zip(energy);
         found.extend(energies.map(|(measured, model)| Difference::of("blow energy", measured, model)));
     }
     if let Some(rate) = chain.blow_rate.filter(|_| first) {

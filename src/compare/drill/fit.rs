@@ -334,7 +334,7 @@ impl Answer<'_> {
             let Unknown { key, start, .. } = problem.keys[k];
             let std = problem.keys[k].slope(u[i]) * self.std(i);
             let value = machine.value(key).unwrap_or(f64::NAN);
-            let estimate = estimate(value, std, Machine::unit_of(key));
+            let estimate = estimate(value, std, machine.unit(key));
             FittedKey { key: key.to_owned(), estimate, start: Some(start), reason: None }
         };
         let all = self.unknowns();

@@ -1,8 +1,8 @@
 //! The model's turn of the measured bodies.
 
 use crate::error::Result;
-use crate::measure::chain::Body;
-use crate::model::drill::{Course, Machine, Run, Rung, run};
+use crate::measure::chain::{Body, Jump};
+use crate::model::drill::{Course, Impact, Machine, Run, Rung, run};
 
 /// Turns of the model that are averaged: a pattern of up to this many turns is whole.
 pub const JUDGED: usize = 4;
@@ -20,12 +20,15 @@ pub struct TurnModel<'a> {
     pub direction: f64,
 }
 
-/// Motion of a machine over its mean turn from top dead centre.
+/// Motion of a machine over its mean turn from top dead centre. Its impacts are as the measurement shows them,
+/// without duration.
 #[derive(Debug, Clone)]
 pub struct ModelTurn {
     pub run: Run,
     /// Mean positions in m at even angles from the beginning to the end of a turn, of each measured body.
     positions: Vec<Vec<f64>>,
+    /// Jumps of the velocity of each measured body in the first of its turns.
+    jumps: Vec<Vec<Jump>>,
 }
 
 impl TurnModel<'_> {
@@ -47,8 +50,20 @@ impl TurnModel<'_> {
             mean
         };
         let positions = self.bodies.iter().map(|(_, body)| mean(*body)).collect();
-        run.turns.iter_mut().for_each(|turn| turn.samples.clear());
-        Ok(ModelTurn { run, positions })
+        let (period, first) = (machine.crank.period(), self.course.turns.saturating_sub(self.course.judged));
+        for (k, turn) in run.turns.iter_mut().enumerate() {
+            let began = (first + k) as f64 * period;
+            turn.impacts = turn.impacts.iter().map(|impact| turn.at_once(impact, began, period)).collect();
+            turn.samples.clear();
+        }
+        let jump = |impact: &Impact, body: usize| {
+            let side = impact.interface.bodies().iter().position(|side| *side == Some(body))?;
+            let phase = ((impact.time + 0.5 * impact.duration) / period).fract();
+            Some(Jump { phase, height: impact.after[side] - impact.before[side] })
+        };
+        let impacts = || run.turns.first().map_or(&[][..], |turn| &turn.impacts).iter();
+        let jumps = |(_, body): &(&Body, usize)| impacts().filter_map(|i| jump(i, *body)).collect();
+        Ok(ModelTurn { positions, jumps: self.bodies.iter().map(jumps).collect(), run })
     }
 
     /// Velocities in m/s in the direction of a blow at the phases of each average, with the pulse `ahead`
@@ -57,7 +72,8 @@ impl TurnModel<'_> {
     /// # Errors
     /// As [`Body::shown`].
     pub fn shown(&self, turn: &ModelTurn, ahead: f64) -> Result<Vec<Vec<f64>>> {
-        self.bodies.iter().zip(&turn.positions).map(|((body, _), x)| body.shown(x, ahead)).collect()
+        let motions = turn.positions.iter().zip(&turn.jumps);
+        self.bodies.iter().zip(motions).map(|((body, _), (x, jumps))| body.shown(x, jumps, ahead)).collect()
     }
 
     /// Measured phases of a body's average: a phase that faults hide in every turn has no mean.

@@ -1,8 +1,8 @@
 //! Synthetic drill records of machines whose values are known.
 
 use super::draws::{Draws, none_far};
+use super::stroke::{Machine, Run, Struck};
 use crate::drill::noise::ShiftedNoise;
-use crate::drill::stroke::{Machine, Run, Struck};
 use vibroimpact::measure::Estimate;
 use vibroimpact::measure::drill::{AngleOrigin, Beam, Drill, DrillOptions, Edge, Slices, TurnsFrom, drill};
 

@@ -355,15 +355,15 @@ fn sweeps(folder: &Path) -> Vec<Case> {
 fn drills(folder: &Path) -> Vec<Case> {
     const PLAIN: &str = "drill --velocity striker --reference pulse --beam-angle 30 --beam-from normal \
                          --pulses-per-turn 1 --edge rising --mass 0.14";
-    let made = record::record(1.0);
+    let made = record::run(0, 1.0).unwrap();
     let drill = |name: &'static str, more: &str, striker: Vec<f64>, pulse: Vec<f64>, codes| {
         let channels = [volts("striker", striker), volts("pulse", pulse)];
         let file = wav(folder, &format!("{}.wav", name.replace(' ', "_")), &channels);
         case(name, &format!("{PLAIN} --sensitivity 2 {more}"), Some(&file), codes)
     };
-    let (striker, pulse) = (|| made.striker.clone(), || made.pulse.clone());
+    let (striker, pulse) = (|| made.velocity.clone(), || made.pulse.clone());
     let moved =
-        |by: &dyn Fn(usize, f64) -> f64| made.striker.iter().enumerate().map(|(i, v)| by(i, *v)).collect();
+        |by: &dyn Fn(usize, f64) -> f64| made.velocity.iter().enumerate().map(|(i, v)| by(i, *v)).collect();
     let seconds = |i: usize| i as f64 / record::RATE;
     // Pulses of another shaft, of 61.3 turns a second.
     let other = (0..made.pulse.len()).map(|i| f64::from(u8::from((61.3 * seconds(i)).fract() < 0.1)));
@@ -400,22 +400,14 @@ fn drills(folder: &Path) -> Vec<Case> {
     ]
 }
 
-/// The example's hammer drill, whose recordings are not of its model.
+/// The example's hammer drill with another damper than that of its recordings.
 fn joined_drill(folder: &Path) -> Case {
     let example = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/hammer_drill");
     std::fs::create_dir_all(folder.join("data")).unwrap();
-    for file in ["campaign.toml", "drill.toml"] {
-        std::fs::copy(example.join(file), folder.join(file)).unwrap();
-    }
-    let made = record::record(1.0);
-    let runs =
-        [("drill", [made.striker, made.pulse]), ("piston", record::piston(1.0)), ("bit", record::bit(1.0))];
-    for (name, [velocity, pulse]) in runs {
-        let channel = if name == "drill" { "striker" } else { name };
-        let channels = [volts(channel, velocity), volts("pulse", pulse)];
-        wav(&folder.join("data"), &format!("{name}.wav"), &channels);
-    }
-    wav(&folder.join("data"), "still.wav", &[volts("striker", record::still(0.5))]);
+    std::fs::copy(example.join("campaign.toml"), folder.join("campaign.toml")).unwrap();
+    let drill = std::fs::read_to_string(example.join("drill.toml")).unwrap();
+    std::fs::write(folder.join("drill.toml"), drill.replace("damping = 1060", "damping = 700")).unwrap();
+    crate::drill::example(&folder.join("data"), 1.0);
     case("another drill", "run", Some(&folder.join("campaign.toml")), &["drill-fit-lack"])
 }
 

@@ -1,76 +1,127 @@
-//! Synthesises records of a vibrometer and of a pulse pick-up on the crank: runs of the striker, the
-//! intermediate piston and the bit.
+//! Records of a vibrometer and of a pulse pick-up on the crank: runs of the striker, the intermediate piston
+//! and the bit of the modelled machine, whose speed, leakage, friction and blow vary from turn to turn.
 
 use super::noise::ShiftedNoise;
-use super::stroke::{Machine, Struck};
+use vibro_model::drill::{Impact, Interface, Machine, MachineDraft, Motion, Rung, Start};
+use vibro_record::Result;
 
 /// Sampling rate in Hz.
 pub const RATE: f64 = 102_400.0;
-/// Mass of the striker in kg.
-pub const STRIKER: f64 = 0.14;
-/// Mass of the intermediate piston in kg.
-pub const PISTON: f64 = 0.28;
-/// Mass of the bit in kg.
-pub const BIT: f64 = 0.43;
-/// Restitution between striker and intermediate piston, which rests before.
-pub const RESTITUTION: f64 = 0.64;
-/// Restitution between intermediate piston and bit, which rests before.
-pub const RESTITUTION_OF_BIT: f64 = 0.8;
-/// Time in s from the middle of the first contact to that of the second.
-pub const CROSSING: f64 = 1.6e-3;
+/// Relative standard deviations from turn to turn: of the speed, of leakage and friction, of the damping in
+/// the contacts.
+const SPEED_SCATTER: f64 = 0.004;
+const SEAL_SCATTER: f64 = 0.03;
+const CONTACT_SCATTER: f64 = 0.05;
+/// Turns from rest before a record begins.
+const SETTLING: usize = 40;
+/// Standard deviation of the vibrometer's noise in V: 6 mm/s along the beam, at 2 m/s per volt.
+const NOISE: f64 = 0.003;
 
-/// Channels in volts, and the true impacts.
+/// One impact of the striker.
+#[derive(Debug, Clone, Copy)]
+pub struct Struck {
+    /// Time in s at which half of the velocity has changed.
+    pub time: f64,
+    /// Number of the turn, from 0.
+    #[allow(dead_code, reason = "the table of the truth has it")]
+    pub turn: usize,
+    /// Phase in turns after top dead centre.
+    pub phase: f64,
+    /// Velocity in m/s before the impact, continued to that time.
+    pub before: f64,
+    /// Velocity in m/s after the impact, continued back to it.
+    pub after: f64,
+}
+
+/// Channels in volts, and the true impacts of the striker.
 pub struct Record {
-    /// Velocity of the striker, 4 m/s per volt.
-    pub striker: Vec<f64>,
+    /// Velocity of the body, 4 m/s per volt.
+    pub velocity: Vec<f64>,
     /// Signal of the crank's pick-up, with a pulse of 4 V at each top dead centre.
     pub pulse: Vec<f64>,
     /// Impacts during the record.
     pub impacts: Vec<Struck>,
-    /// Number of drop-outs of the striker's channel.
+    /// Number of drop-outs of the velocity.
     #[allow(dead_code, reason = "tests count them")]
     pub dropouts: usize,
 }
 
-/// Standard deviation of the vibrometer's noise in V: 6 mm/s along the beam, at 2 m/s per volt.
-const NOISE: f64 = 0.003;
-
-/// 47.3 impacts per second, each at 0.62 of a turn after top dead centre, at 7.5 m/s and with a contact of
-/// 60 µs.
-fn machine() -> Machine {
-    Machine {
-        speed: 47.3,
-        speed_scatter: 0.004,
-        phase: 0.62,
-        phase_scatter: 0.004,
-        before: 7.5,
-        before_scatter: 0.02,
-        // Velocity of the striker after an impact divided by that before it, by balance of momentum.
-        rebound: (STRIKER - RESTITUTION * PISTON) / (STRIKER + PISTON),
-        rebound_scatter: 0.01,
-        contact: 6e-5,
-    }
+/// The machine of the runs.
+///
+/// # Errors
+/// None: `TRUTH.toml` is one.
+pub fn machine() -> Result<Machine> {
+    MachineDraft::from_toml(include_str!("TRUTH.toml"))?.machine()
 }
 
-/// A record of the striker of `seconds` s, the same every time.
-pub fn record(seconds: f64) -> Record {
-    let machine = machine();
-    let count = (seconds * RATE) as usize;
-    let run = machine.run(seconds, &mut ShiftedNoise::new(1));
-    let (mut striker_noise, mut pick_up_noise) = (ShiftedNoise::new(2), ShiftedNoise::new(4));
-    // The beam at 60° to the axis measures half of the velocity; divided by 2 m/s per volt, this is 0.25.
-    let mut striker: Vec<f64> =
-        run.velocity(RATE, count).iter().map(|v| 0.25 * v + NOISE * striker_noise.normal()).collect();
-    let pulse =
-        run.pulse(RATE, count).iter().map(|p| 4.0 * p + 0.3 + 0.01 * pick_up_noise.normal()).collect();
-    let dropouts = drop_out(&mut striker, &mut ShiftedNoise::new(5));
-    let during_record = |t: f64| (0.0..count as f64 / RATE).contains(&t);
-    Record {
-        striker,
-        pulse,
-        impacts: run.impacts.into_iter().filter(|i| during_record(i.time)).collect(),
-        dropouts,
+/// Time, position and velocity.
+type Knot = [f64; 3];
+
+/// Velocity at the time `t` (s) between two knots: the slope of the cubic through both with their velocities.
+fn between([t0, x0, v0]: Knot, [t1, x1, v1]: Knot, t: f64) -> f64 {
+    let s = (t - t0) / (t1 - t0);
+    let mean = (x1 - x0) / (t1 - t0);
+    v0 + s * (v1 - v0) + 6.0 * s * (1.0 - s) * (mean - 0.5 * (v0 + v1))
+}
+
+/// A run of a body (0: striker, 1: intermediate piston, 2: bit) of `seconds` s, the same every time.
+///
+/// # Errors
+/// None for these machines: those of the model.
+pub fn run(body: usize, seconds: f64) -> Result<Record> {
+    let seed = 10 * body as u64 + 1;
+    let mean = machine()?;
+    let mut noise = ShiftedNoise::new(seed);
+    let mut motion = Motion::new(&mean, Rung::Compliant, &Start::rest(&mean), 1e-9)?;
+    for _ in 0..SETTLING {
+        motion.turn(None)?;
     }
+    let count = (seconds * RATE) as usize;
+    let (mut velocity, mut impacts) = (Vec::with_capacity(count), Vec::new());
+    // The recording begins during the first turn, so that its top dead centre is before it.
+    let (mut edges, mut last) = (vec![-noise.uniform() * mean.crank.period()], None);
+    // The model counts its time from rest.
+    let rest = edges[0] - SETTLING as f64 * mean.crank.period();
+    while velocity.len() < count {
+        let mut machine = mean.clone();
+        let mut vary = |value: &mut f64, scatter: f64| *value *= 1.0 + scatter * noise.normal();
+        vary(&mut machine.crank.frequency, SPEED_SCATTER);
+        vary(&mut machine.flow.leakage, SEAL_SCATTER);
+        vary(&mut machine.striker.friction, SEAL_SCATTER);
+        let laws = machine.contacts.iter_mut().filter_map(|contact| contact.law.as_mut());
+        laws.for_each(|law| vary(&mut law.damping, CONTACT_SCATTER));
+        motion.change(&machine)?;
+        let (turn, begun, period) = (edges.len() - 1, edges[edges.len() - 1], machine.crank.period());
+        let samples = (2.0 * RATE * period).ceil();
+        let course = motion.turn(Some(samples as usize))?;
+        for (i, sample) in course.samples.iter().enumerate() {
+            let time = begun + i as f64 / samples * period;
+            let knot = [time, sample.positions[body], sample.velocities[body]];
+            while let Some(last) = last.filter(|_| velocity.len() < count) {
+                let t = velocity.len() as f64 / RATE;
+                if t >= time {
+                    break;
+                }
+                velocity.push(between(last, knot, t));
+            }
+            last = Some(knot);
+        }
+        let struck = |impact: &Impact| {
+            let Impact { time, before, after, .. } = course.at_once(impact, begun - rest, period);
+            let time = rest + time;
+            Struck { time, turn, phase: (time - begun) / period, before: before[0], after: after[0] }
+        };
+        let own = course.impacts.iter().filter(|impact| impact.interface == Interface::Striker);
+        let within = |impact: &Struck| (0.0..count as f64 / RATE).contains(&impact.time);
+        impacts.extend(own.map(struck).filter(within));
+        edges.push(begun + period);
+    }
+    let (mut laser, mut pick_up) = (ShiftedNoise::new(seed + 1), ShiftedNoise::new(seed + 2));
+    // The beam at 60° to the axis measures half of the velocity; divided by 2 m/s per volt, this is 0.25.
+    let mut volts: Vec<f64> = velocity.into_iter().map(|v| 0.25 * v + NOISE * laser.normal()).collect();
+    let pulse = pulse(&edges, count).into_iter().map(|p| 4.0 * p + 0.3 + 0.01 * pick_up.normal()).collect();
+    let dropouts = drop_out(&mut volts, &mut ShiftedNoise::new(seed + 3));
+    Ok(Record { velocity: volts, pulse, impacts, dropouts })
 }
 
 /// Noise of the vibrometer in V over this many seconds, with the machine at rest.
@@ -79,69 +130,21 @@ pub fn still(seconds: f64) -> Vec<f64> {
     (0..(seconds * RATE) as usize).map(|_| NOISE * laser.normal()).collect()
 }
 
-/// A run of another body of the same machine, in volts: its velocity, and the pulse of the crank. `seed`
-/// distinguishes runs, `moved` gives the velocity in m/s.
-fn other_run(seconds: f64, seed: u64, moved: impl Fn(&mut [f64], &Struck, f64)) -> [Vec<f64>; 2] {
-    let machine = machine();
-    let count = (seconds * RATE) as usize;
-    let run = machine.run(seconds, &mut ShiftedNoise::new(seed));
-    let (mut laser, mut pick_up) = (ShiftedNoise::new(seed + 1), ShiftedNoise::new(seed + 2));
-    let mut velocity = vec![0.0; count];
-    for impact in &run.impacts {
-        moved(&mut velocity, impact, machine.contact);
-    }
-    let pulse = run.pulse(RATE, count).iter().map(|p| 4.0 * p + 0.3 + 0.01 * pick_up.normal()).collect();
-    [velocity.iter().map(|v| 0.25 * v + NOISE * laser.normal()).collect(), pulse]
-}
-
-/// Part of a contact of this duration (s) that is over at `t` (s) from its middle, as half a sine.
-fn rise(t: f64, contact: f64) -> f64 {
-    0.5 + 0.5 * (std::f64::consts::PI * (t / contact).clamp(-0.5, 0.5)).sin()
-}
-
-/// Adds a velocity (m/s) of the time (s) since `from` (s), to `until` (s) after it.
-fn add(velocity: &mut [f64], from: f64, until: f64, of: impl Fn(f64) -> f64) {
-    let first = (from * RATE).ceil().max(0.0) as usize;
-    let last = ((from + until) * RATE).max(0.0) as usize;
-    for (i, v) in velocity.iter_mut().enumerate().take(last).skip(first) {
-        *v += of(i as f64 / RATE - from);
-    }
-}
-
-/// Velocity in m/s that the intermediate piston gains of an impact of the striker.
-fn gained(impact: &Struck) -> f64 {
-    STRIKER * (impact.before - impact.after) / PISTON
-}
-
-/// Run of the intermediate piston: the striker drives it, the bit throws it back, and it returns to its place
-/// within the turn.
-pub fn piston(seconds: f64) -> [Vec<f64>; 2] {
-    // Velocity behind the second impact over that before, and time constant in s of the way back.
-    let (thrown, time) = (1.0 - (1.0 + RESTITUTION_OF_BIT) * BIT / (PISTON + BIT), 2.5e-3);
-    // e^(−s)(1 + κs) has the integral 1 + κ: so much goes back the way of the crossing.
-    let back = -CROSSING / (thrown * time) - 1.0;
-    other_run(seconds, 11, |velocity, impact, contact| {
-        let begun = impact.time - 0.5 * contact;
-        add(velocity, begun, 0.0205, |t| {
-            let (first, second) = (t - 0.5 * contact, t - 0.5 * contact - CROSSING);
-            let s = second.max(0.0) / time;
-            let returning = thrown * (-s).exp() * (1.0 + back * s);
-            gained(impact) * (rise(first, contact) + (returning - 1.0) * rise(second, contact))
-        });
-    })
-}
-
-/// Run of the bit: the intermediate piston drives it, and it returns to its place as a critically damped
-/// oscillator of time constant 2 ms.
-pub fn bit(seconds: f64) -> [Vec<f64>; 2] {
-    other_run(seconds, 21, |velocity, impact, contact| {
-        let step = (1.0 + RESTITUTION_OF_BIT) * PISTON / (PISTON + BIT) * gained(impact);
-        add(velocity, impact.time + CROSSING - 0.5 * contact, 0.02, |t| {
-            let t = t - 0.5 * contact;
-            let elapsed = t.max(0.0) / 2e-3;
-            step * rise(t, contact) * (1.0 - elapsed) * (-elapsed).exp()
-        });
-    })
+/// `count` samples of a signal with one pulse from 0 to 1 per turn. The pulse rises within a few samples at
+/// the top dead centre and lasts a tenth of a turn.
+fn pulse(edges: &[f64], count: usize) -> Vec<f64> {
+    let rise = |samples: f64| 0.5 + 0.5 * (samples / 3.0).tanh();
+    let mut k = 0;
+    (0..count)
+        .map(|i| {
+            let t = i as f64 / RATE;
+            while edges.get(k + 2).is_some_and(|e| t > 0.5 * (edges[k + 1] + e)) {
+                k += 1;
+            }
+            let near = [k, k + 1].into_iter().filter_map(|j| Some((edges.get(j)?, edges.get(j + 1)?)));
+            near.map(|(a, b)| rise((t - a) * RATE) - rise((t - a - 0.1 * (b - a)) * RATE)).sum()
+        })
+        .collect()
 }
 
 /// Sets the signal to 0 for 0.1 to 1 ms about three times a second, as a decoder does when the laser signal

@@ -34,6 +34,9 @@ const PARTED: f64 = 3.0;
 /// Number of standard uncertainties by which the mean velocities of two blows a turn must differ to be
 /// unlike.
 const UNLIKE: f64 = 4.0;
+/// Speed after an impact over that before it, beyond which the mass is struck: one that strikes a mass at rest
+/// is no faster after than before.
+const DRIVEN: f64 = 2.0;
 /// Standard uncertainties beyond which a restitution outside 0 to 1 is impossible, not chance.
 const BEYOND: f64 = 2.0;
 
@@ -463,9 +466,9 @@ fn followed(impacts: &[&Impact]) -> usize {
 /// mean of (v₂⁺ − v₁⁺ − R v₁⁻)/mean(v₁⁻), which is the propagated one (delta method). `moved` gives the bias
 /// of a quantity from its derivatives by the velocities before and after.
 ///
-/// No restitution is given if most approaches are consistent with 0, as for a bit, which is struck. Nor is
-/// it given if it is negative or above 1 by more than its uncertainty explains. Without an uncertainty, a
-/// value above 1 stays.
+/// No restitution is given if most approaches are consistent with 0 or far slower than the separations, as
+/// those of a bit, which is struck. Nor is it given if it is negative or above 1 by more than its uncertainty
+/// explains. Without an uncertainty, a value above 1 stays.
 fn restitution(
     impacts: &[&Impact],
     front: bool,
@@ -476,7 +479,8 @@ fn restitution(
     let approach = impacts.iter().map(|i| i.before).sum::<f64>() / n;
     let unclear =
         impacts.iter().filter(|i| i.before_std.is_some_and(|std| i.before.abs() < CLEAR * std)).count();
-    if 2 * unclear > impacts.len() {
+    let driven = impacts.iter().filter(|i| i.after.abs() > DRIVEN * i.before.abs()).count();
+    if 2 * unclear.max(driven) > impacts.len() {
         return Err(Finding::caution("drill-not-striking").number("speed", approach));
     }
     let masses = options.mass.zip(options.struck_mass).filter(|_| front);

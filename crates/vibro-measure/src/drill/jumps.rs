@@ -16,7 +16,7 @@ use vibro_record::{median, sort_by_number};
 /// cycles of the machine.
 const MOST: usize = 4;
 /// Smallest jump that counts, over the largest of its turn, and over the median of these largest jumps.
-const PART: f64 = 0.25;
+pub(crate) const PART: f64 = 0.25;
 /// Share of a jump's height between two neighbouring samples above which the jump counts as shorter than one
 /// sample.
 const AT_ONCE: f64 = 0.8;

@@ -16,7 +16,7 @@ pub(super) const STUCK: usize = 4;
 pub(super) const ROWS: [[f64; 3]; CONSTRAINTS] =
     [[-1.0, 1.0, 0.0], [0.0, -1.0, 1.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0]];
 /// Bodies of each interface, in the direction of a blow; `None` is the housing or the damper.
-const BODIES: [[Option<usize>; 2]; 4] =
+pub(super) const BODIES: [[Option<usize>; 2]; 4] =
     [[Some(0), Some(1)], [Some(1), Some(2)], [Some(2), None], [None, Some(1)]];
 
 /// Masses in kg, and the gaps in m with all positions 0.

@@ -5,6 +5,8 @@ use crate::given::leaves;
 use crate::least::{NumberRange, number};
 use vibro_record::{Error, Result};
 
+/// Keys of the contacts, in the order of [`Interface::ALL`].
+const CONTACTS: [&str; 4] = ["contacts.striker", "contacts.bit", "contacts.damper", "contacts.buffer"];
 /// Largest ratio of two masses: impulses pass the chain by the ratios of its masses.
 const MOST_RATIO: f64 = 1e6;
 
@@ -20,6 +22,14 @@ impl Machine {
     /// Unit of a key in a file; empty where it has none.
     pub fn unit_of(key: &str) -> &'static str {
         Machine::example().numbers().into_iter().find(|row| row.0 == key).map_or("", |row| row.2)
+    }
+
+    /// Unit of a key of this machine: that of a damping depends on the law of its contact.
+    pub fn unit(&self, key: &str) -> &'static str {
+        let damped = |name: &str| key.strip_prefix(name) == Some(".damping");
+        let contact = self.contacts.iter().zip(CONTACTS).find(|(_, name)| damped(name));
+        let law = contact.and_then(|(contact, _)| contact.law);
+        law.map_or_else(|| Machine::unit_of(key), |law| law.form.damping_unit)
     }
 
     /// Value of a key in a file; `None` where that is no number.
@@ -66,8 +76,7 @@ impl Machine {
         let rows = self.numbers();
         let numbers =
             rows.into_iter().map(|(key, value, unit, range)| (key, number(key, value, unit, range)));
-        let keys = ["contacts.striker", "contacts.bit", "contacts.damper", "contacts.buffer"];
-        let contacts = Interface::ALL.into_iter().zip(keys).map(|(interface, key)| {
+        let contacts = Interface::ALL.into_iter().zip(CONTACTS).map(|(interface, key)| {
             let contact = self.contacts[interface as usize];
             let restitution = number("restitution", contact.restitution, "", NumberRange::Part);
             (key, restitution.and_then(|()| contact.law.map_or(Ok(()), |law| law.check())))

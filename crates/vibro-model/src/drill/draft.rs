@@ -3,6 +3,7 @@
 use super::machine::Machine;
 use crate::given::{Given, leaves};
 use serde::Deserialize;
+use std::fmt::Write as _;
 use std::path::Path;
 use toml::{Table, Value};
 use vibro_record::{Error, Result, Written};
@@ -60,7 +61,7 @@ impl MachineDraft {
     /// # Errors
     /// If the key is unknown or the value of the wrong kind.
     pub fn set(&mut self, assignment: &str) -> Result<()> {
-        self.given.set(assignment, DRILL, table)
+        self.given.set(assignment, DRILL, assigned)
     }
 
     /// Sets a key to a number, such as `cushion.length`.
@@ -88,7 +89,8 @@ impl MachineDraft {
     /// # Errors
     /// If a value is impossible; the error shows the line in the file.
     pub fn machine(&self) -> Result<Machine> {
-        let drill = self.given.table.get("drill").cloned().unwrap_or_else(|| Value::Table(Table::new()));
+        let mut drill = self.given.table.get("drill").cloned().unwrap_or_else(|| Value::Table(Table::new()));
+        complete_contacts(&mut drill);
         let machine = Machine::deserialize(drill).map_err(|e| Error::usage(e.message(), ""))?;
         match machine.fault() {
             Some((key, error)) => Err(self.given.at(&format!("{DRILL}{key}"), error)),
@@ -103,6 +105,37 @@ fn table(text: &str) -> Result<Table> {
     let all = written.parse()?;
     written.read::<DrillFile>(&all, 0..0)?;
     written.read(&all, 0..0)
+}
+
+/// Parses an assignment. A key of a contact is checked within a complete contact: the other keys are those of
+/// the file.
+fn assigned(text: &str) -> Result<Table> {
+    let key = text.split('=').next().unwrap_or_default().trim();
+    let contact = key.rsplit_once('.').filter(|(contact, _)| contact.starts_with("drill.contacts."));
+    let Some((contact, own)) = contact else { return table(text) };
+    let all =
+        [("restitution", "0.5"), ("law", "\"hunt-crossley\""), ("stiffness", "1.0"), ("damping", "0.0")];
+    let mut whole = text.to_owned();
+    for (name, value) in all.iter().filter(|(name, _)| *name != own) {
+        let _ = write!(whole, "\n{contact}.{name} = {value}");
+    }
+    table(&whole)?;
+    toml::from_str(text).map_err(|e| Error::usage(e.message(), ""))
+}
+
+/// Completes contacts of which only single keys are set, with those of the example.
+fn complete_contacts(drill: &mut Value) {
+    let Some(contacts) = drill.get_mut("contacts").and_then(Value::as_table_mut) else { return };
+    let example = Table::try_from(Machine::example()).unwrap_or_default();
+    for (name, contact) in contacts.iter_mut() {
+        let own = contact.as_table_mut().filter(|own| !own.contains_key("restitution"));
+        let known = example.get("contacts").and_then(|all| all.get(name)).and_then(Value::as_table);
+        for (own, known) in own.into_iter().zip(known) {
+            for (key, value) in known {
+                own.entry(key).or_insert_with(|| value.clone());
+            }
+        }
+    }
 }
 
 /// Error for a file without a table `[drill]`.
@@ -141,6 +174,23 @@ mod tests {
     }
 
     #[test]
+    fn one_number_of_a_contact_can_be_set() {
+        let mut expected = Machine::example();
+        let law = expected.contacts[Interface::Striker as usize].law.as_mut().unwrap();
+        (law.damping, law.stiffness) = (0.05, 1e10);
+        let own = "[drill.contacts.striker]\nrestitution = 0.8\nlaw = \"hunt-crossley\"\nstiffness = 1e9\n\
+                   exponent = 1.5\ndamping = 1";
+        for file in ["[drill]", own] {
+            let mut draft = MachineDraft::from_toml(file).unwrap();
+            draft.set("contacts.striker.damping=0.05").unwrap();
+            draft.put("contacts.striker.stiffness", 1e10).unwrap();
+            assert_eq!(draft.machine().unwrap(), expected, "{file}");
+            assert_eq!(expected.unit("contacts.striker.damping"), "s/m");
+            assert_eq!(expected.unit("contacts.damper.damping"), "N s/m");
+        }
+    }
+
+    #[test]
     fn mistakes_point_at_their_line() {
         for (text, line, words) in [
             ("[drill]\n[drill.crank]\nradius = -0.01", "line 3", "crank.radius is -0.01 m"),
@@ -162,6 +212,11 @@ mod tests {
                 MachineDraft::from_toml(text).and_then(|draft| draft.machine()).unwrap_err().to_string();
             assert!(error.contains(line) && error.contains(words), "{text}: {error}");
         }
+        let mut draft = MachineDraft::from_toml("[drill.contacts.bit]\nrestitution = 0.8").unwrap();
+        draft.put("contacts.bit.damping", 0.1).unwrap();
+        assert!(draft.machine().unwrap_err().to_string().contains("damping without a law"));
+        let error = draft.put("contacts.striker.damp", 0.1).unwrap_err().to_string();
+        assert!(error.contains("unknown key `damp`"), "{error}");
         let mut draft = MachineDraft::from_toml("[drill]").unwrap();
         draft.put("flow.leakage", -1.0).unwrap();
         assert!(draft.machine().unwrap_err().to_string().contains("flow.leakage is -1"));

@@ -1,5 +1,6 @@
 //! Impact unit of a hammer drill: its dimensions, masses and contacts.
 
+use super::chain::BODIES;
 use super::contact::{Contact, contacts};
 use super::crank::Crank;
 use super::cushion::Cushion;
@@ -131,6 +132,12 @@ impl Interface {
     pub const ALL: [Interface; 4] =
         [Interface::Striker, Interface::Bit, Interface::Damper, Interface::Buffer];
 
+    /// Numbers of the bodies behind and in front (0: striker, 1: intermediate piston, 2: bit); the ground has
+    /// none.
+    pub const fn bodies(self) -> [Option<usize>; 2] {
+        BODIES[self as usize]
+    }
+
     /// Both sides, in the direction of a blow.
     pub const fn name(self) -> &'static str {
         match self {
@@ -166,18 +173,18 @@ impl Machine {
                 temperature: 293.15,
             },
             flow: Flow {
-                leakage: 8.7e-10,
+                leakage: 8e-10,
                 critical_ratio: 0.5,
                 vents: vec![Vent { position: 0.009, area: 0.0 }, Vent { position: 0.013, area: 1.6e-6 }],
             },
             striker: Striker { mass: 0.14, friction: 2.0, damping: 0.55, strike: 0.0202 },
-            intermediate: Intermediate { mass: 0.28, travel: 0.0055 },
+            intermediate: Intermediate { mass: 0.28, travel: 0.007 },
             bit: Bit { mass: 0.43, length: 0.3, clearance: 0.0 },
             contacts: [
                 contact,
                 contact,
                 Contact { restitution: 0.3, law: Some(Law::spring(2.4e5, 1060.0)) },
-                Contact::rigid(0.4),
+                Contact::rigid(0.15),
             ],
             gravity: 9.81,
         }

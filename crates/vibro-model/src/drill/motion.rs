@@ -37,25 +37,42 @@ const GAUSS: [(f64, f64); 4] = [
     (0.930_568_155_797_026_3, 0.173_927_422_568_726_93),
 ];
 
-/// The machine in motion.
+/// A machine in motion, turn by turn from top dead centre, where its numbers may change.
+///
+/// ```
+/// use vibro_model::drill::{Machine, Motion, Rung, Start};
+/// let mut machine = Machine::example();
+/// let mut motion = Motion::new(&machine, Rung::Friction, &Start::rest(&machine), 1e-9)?;
+/// for frequency in [45.0, 44.9, 45.2] {
+///     machine.crank.frequency = frequency;
+///     motion.change(&machine)?;
+///     assert_eq!(motion.turn(Some(100))?.samples.len(), 100);
+/// }
+/// # Ok::<(), vibro_record::Error>(())
+/// ```
 #[derive(Debug, Clone)]
-pub(super) struct Motion {
+pub struct Motion {
     plant: Plant,
+    rung: Rung,
     y: Vector,
-    /// Turns so far, and the time in s since the present one began.
-    turns: usize,
+    /// Time in s at which the present turn began, and since then.
+    began: f64,
     time: f64,
     next_step: f64,
     tolerance: Tolerance<SIZE>,
     /// First touch of each compliant contact: time since the start, velocities, and the step before.
     touched: [(f64, [f64; 2], f64); 4],
     /// Accepted steps so far, and the most that may be.
-    pub steps: usize,
-    pub most_steps: usize,
+    pub(super) steps: usize,
+    pub(super) most_steps: usize,
     turn: Turn,
 }
 
 impl Motion {
+    /// A machine on a rung, with steps of this relative error.
+    ///
+    /// # Errors
+    /// If a number of the machine or the start is impossible, or bodies overlap.
     pub fn new(machine: &Machine, rung: Rung, start: &Start, relative: f64) -> Result<Motion> {
         machine.check()?;
         for value in start.positions.iter().chain(&start.velocities) {
@@ -90,8 +107,9 @@ impl Motion {
         let mut motion = Motion {
             next_step: 1e-3 * m.crank.period(),
             plant,
+            rung,
             y,
-            turns: 0,
+            began: 0.0,
             time: 0.0,
             tolerance: Tolerance { relative, floor },
             touched: [(0.0, [0.0; 2], 0.0); 4],
@@ -105,17 +123,20 @@ impl Motion {
 
     /// State; see [`SIZE`].
     #[cfg(test)]
-    pub fn state(&self) -> &Vector {
+    pub(super) fn state(&self) -> &Vector {
         &self.y
     }
 
     /// Time in s since the start.
     fn now(&self) -> f64 {
-        self.turns as f64 * self.plant.machine.crank.period() + self.time
+        self.began + self.time
     }
 
     /// Follows a whole turn; `samples` states at even angles are kept. With `None` impulses, extremes and
     /// the energies that pass are not computed either.
+    ///
+    /// # Errors
+    /// If the striker strikes the driving piston, or a chatter without loss cannot be followed.
     pub fn turn(&mut self, samples: Option<usize>) -> Result<Turn> {
         let (before, air) = (self.energies(), self.stored_air());
         self.fly(samples)?;
@@ -128,19 +149,37 @@ impl Motion {
         turn.book =
             Book { piston, kinetic, potential, elastic, air, impacts, contacts, seal, flow, residual };
         [turn.end, _] = halves(&self.y);
-        self.turns += 1;
+        self.began += self.plant.machine.crank.period();
         self.time = 0.0;
         Ok(turn)
     }
 
     /// The turn so far, with its blow and momentum; the next begins.
-    pub fn take_turn(&mut self) -> Turn {
+    pub(super) fn take_turn(&mut self) -> Turn {
         let mut turn = std::mem::take(&mut self.turn);
         let (crank, [striker, .., bit]) = (self.plant.machine.crank, self.plant.chain.masses);
         turn.blow = Turn::blow_among(&turn.impacts, crank.top_speed(), striker, bit);
         let [_, v] = halves(&self.y);
         turn.momentum = v.iter().zip(&self.plant.chain.masses).map(|(v, mass)| v * mass).sum();
         turn
+    }
+
+    /// Goes on with another machine of the same masses and gaps: position and speed of the driving piston are
+    /// the same at top dead centre.
+    ///
+    /// # Errors
+    /// If a number of the machine is impossible, or a mass or a gap is another.
+    pub fn change(&mut self, machine: &Machine) -> Result<()> {
+        machine.check()?;
+        let mut plant = Plant::new(machine, self.rung);
+        if plant.chain != self.plant.chain {
+            return Err(Error::usage("another mass or gap", "those of the machine that moves"));
+        }
+        (plant.stages, plant.slack) = (self.plant.stages, self.plant.slack);
+        plant.stretch = machine.flow.stretch(self.y[0]);
+        plant.flow = machine.flow.regime(self.y[PRESSURE], machine.cushion.ambient);
+        self.plant = plant;
+        self.settle(None)
     }
 
     /// Kinetic, potential and elastic energy in J.

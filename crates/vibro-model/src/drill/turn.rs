@@ -2,6 +2,7 @@
 
 use super::machine::Interface;
 use serde::Serialize;
+use vibro_math::border;
 
 /// Impact of two bodies.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -147,7 +148,43 @@ pub struct Turn {
     pub end: [f64; 3],
 }
 
+/// Longest contact in s that a measurement takes for an impact.
+const LONGEST: f64 = 0.2e-3;
+
 impl Turn {
+    /// An impact as if it took no time, as a measured velocity shows it: at the instant at which half of the
+    /// change has come, with the velocities before and after continued to it along straight lines. By the
+    /// samples of the turn, which began at the time `began` (s) and lasted `period` (s); where they do not hold
+    /// the contact and half of its duration before and after it, as it is.
+    #[must_use]
+    pub fn at_once(&self, impact: &Impact, began: f64, period: f64) -> Impact {
+        let is_short = impact.duration > 0.0 && impact.duration <= LONGEST;
+        let seen = is_short.then(|| self.instant_of(impact, began, period)).flatten();
+        seen.unwrap_or(*impact)
+    }
+
+    fn instant_of(&self, impact: &Impact, began: f64, period: f64) -> Option<Impact> {
+        let (half, step) = (0.5 * impact.duration, period / self.samples.len() as f64);
+        let velocity = |body: usize, time: f64| {
+            let at = (time - began) / step;
+            let pair = self.samples.get(at.floor() as usize..at.floor() as usize + 2)?;
+            let [v, w] = [pair[0].velocities[body], pair[1].velocities[body]];
+            (at >= 0.0).then_some(v + at.fract() * (w - v))
+        };
+        let mut seen = Impact { duration: 0.0, ..*impact };
+        for (side, body) in impact.interface.bodies().into_iter().enumerate() {
+            let Some(body) = body else { continue };
+            seen.before[side] = 2.0 * impact.before[side] - velocity(body, impact.time - half)?;
+            seen.after[side] = 2.0 * impact.after[side] - velocity(body, impact.end() + half)?;
+            let middle = 0.5 * (seen.before[side] + seen.after[side]);
+            let is_before = |time: f64| {
+                velocity(body, time).is_some_and(|v| (v < middle) == (seen.before[side] < middle))
+            };
+            seen.time = border(impact.time, impact.end(), is_before);
+        }
+        Some(seen)
+    }
+
     /// Blow among impacts in the order of their ends: the fastest striker, if it reaches `least` (m/s).
     /// Masses in kg.
     pub(super) fn blow_among(impacts: &[Impact], least: f64, striker: f64, bit: f64) -> Option<Blow> {

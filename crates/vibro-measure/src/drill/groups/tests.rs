@@ -185,6 +185,8 @@ fn what_strikes_has_a_restitution_and_what_is_struck_has_none() {
     assert!((found.value - 0.4).abs() < 4.0 * 0.003 / 20f64.sqrt(), "{found:?}");
     let why = |i: &[Impact], o| restitution(&i.iter().collect::<Vec<_>>(), true, &o, &|_| 0.0).unwrap_err();
     assert_eq!(why(&twenty(0.01, 2.7, 0.02), options(None)).code, "drill-not-striking");
+    // Struck from behind while it moves.
+    assert_eq!(why(&twenty(0.5, 4.0, 0.02), options(None)).code, "drill-not-striking");
     for after in [-5.5, 2.5] {
         let why = why(&twenty(5.0, after, 0.02), options(None));
         assert_eq!(why.code, "drill-restitution-impossible");

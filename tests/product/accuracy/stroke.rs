@@ -5,7 +5,7 @@
 //! impacts are at the same place. During a contact the velocity changes from one flight to the next as half a
 //! sine. Duration of a turn, phase of the impact and velocities vary from turn to turn.
 
-use super::noise::ShiftedNoise;
+use crate::drill::noise::ShiftedNoise;
 use std::f64::consts::PI;
 
 /// Nominal values, and their standard deviations from turn to turn.
@@ -36,8 +36,6 @@ pub struct Machine {
 pub struct Struck {
     /// Time of the middle of the contact in s.
     pub time: f64,
-    /// Number of the turn, from 0.
-    pub turn: usize,
     /// Phase in turns after top dead centre.
     pub phase: f64,
     /// Velocity in m/s before the impact, extrapolated to the middle of the contact.
@@ -64,12 +62,12 @@ impl Machine {
         let mut edges = vec![-noise.uniform() / self.speed];
         let mut impacts = Vec::new();
         while edges[edges.len() - 1] < duration + 1.0 / self.speed {
-            let (turn, start) = (edges.len() - 1, edges[edges.len() - 1]);
+            let start = edges[edges.len() - 1];
             let period = (1.0 + self.speed_scatter * noise.normal()) / self.speed;
             let phase = self.phase + self.phase_scatter * noise.normal();
             let before = self.before * (1.0 + self.before_scatter * noise.normal());
             let after = before * (self.rebound + self.rebound_scatter * noise.normal());
-            impacts.push(Struck { time: start + phase * period, turn, phase, before, after });
+            impacts.push(Struck { time: start + phase * period, phase, before, after });
             edges.push(start + period);
         }
         Run { edges, impacts, contact: self.contact }
