@@ -3,16 +3,15 @@
 use super::ContactModel;
 use super::fit::{FittedPulse, Samples};
 use super::result::LIKELY;
-use crate::mean::mixture;
 use crate::residuals::Whiteness;
-use vibro_math::{Minimum, minimise};
+use vibro_math::{Fit, Minimum, minimise};
 use vibro_record::sort_by_number;
 
 /// Index of the loss α among the parameters.
 const LOSS: usize = 4;
 
 /// Index of the exponent of the spring.
-const EXPONENT: usize = 5;
+pub(super) const EXPONENT: usize = 5;
 
 /// Index of the exponent of the loss.
 const LOSS_EXPONENT: usize = 6;
@@ -70,7 +69,18 @@ impl Samples<'_> {
             guess
         });
         let starts = free.filter(|p| p[LOSS] > 0.0).chain(guesses);
-        let mut firsts: Vec<_> = starts.filter_map(|p| self.with_loss(&p, p[LOSS], noise)).collect();
+        let one = 2.0 * fitted.fit.variance() * self.dispersion(&fitted.fit);
+        // Where noise is low, a guess lies far from its minimum: all parameters are fitted first.
+        let first = |p: Vec<f64>| {
+            let first = self.with_loss(&p, p[LOSS], noise)?;
+            if first.cost(noise) - fitted.cost(noise) < FAR * one {
+                return Some(first);
+            }
+            let free = self.from(ContactModel::PowerLaw, noise, &first.fit.parameters, None)?;
+            let loss = free.fit.parameters[LOSS];
+            if loss > 0.0 { self.with_loss(&free.fit.parameters, loss, noise) } else { None }
+        };
+        let mut firsts: Vec<_> = starts.filter_map(first).collect();
         sort_by_number(&mut firsts, |fit| fit.cost(noise));
         let best = firsts.first()?;
         let (least, unit) = (best.cost(noise), 2.0 * best.fit.variance() * self.dispersion(&best.fit));
@@ -167,21 +177,18 @@ impl Samples<'_> {
     /// The fit of the other parameters from these.
     fn given_loss(&self, start: &[f64], loss: f64, noise: f64) -> Option<FittedPulse> {
         let model = ContactModel::PowerLaw;
-        // The exponent of the loss has no values below 0: its logarithm is fitted.
-        let whole = |of: &[f64]| [&of[..LOSS], &[loss, of[LOSS], of[LOSS + 1].exp()]].concat();
-        let mut begin = [&start[..LOSS], &start[EXPONENT..]].concat();
-        begin[LOSS + 1] = begin[LOSS + 1].max(LEAST_EXPONENT).ln();
+        let whole = |of: &[f64]| exponential(&[&of[..LOSS], &[loss], &of[LOSS..]].concat());
+        let mut begin = logarithmic(start);
+        begin.remove(LOSS);
         let scale: Vec<f64> = begin.iter().map(|p| p.abs().max(0.1)).collect();
         let (n, residuals) = (self.times.len(), self.residuals(model, noise, None));
         let residuals = |of: &[f64], out: &mut [f64]| residuals(&whole(of), out);
         let fit = minimise(residuals, n + LIKELY.len(), &begin, &scale, Some(GAIN));
         let mut fit = fit.and_then(Minimum::fit).ok()?;
         fit.residuals.truncate(n);
-        fit.parameters = whole(&fit.parameters);
-        let exponent = fit.parameters[LOSS_EXPONENT];
-        fit.cofactor.row_mut(LOSS + 1).scale_mut(exponent);
-        fit.cofactor.column_mut(LOSS + 1).scale_mut(exponent);
+        fit.parameters.insert(LOSS, loss);
         fit.cofactor = fit.cofactor.insert_row(LOSS, 0.0).insert_column(LOSS, 0.0);
+        let fit = of_exponent(fit);
         let whiteness = Whiteness { p_value: None, inflation: 1.0 };
         let (also, losses) = (Vec::new(), Vec::new());
         let converged = fit.converged;
@@ -189,21 +196,30 @@ impl Samples<'_> {
     }
 }
 
-impl FittedPulse {
-    /// Effective number of parameters: an exponent counts by the part of its prior variance that the samples
-    /// remove (Spiegelhalter et al., J. R. Statist. Soc. B 64 (2002) 583).
-    pub(super) fn determined(&self) -> f64 {
-        let known = |(i, (_, std)): (usize, &(f64, f64))| {
-            let of = |(weight, fit): &(f64, FittedPulse)| {
-                (*weight, fit.fit.parameters[EXPONENT + i], fit.fit.covariance(EXPONENT + i, EXPONENT + i))
-            };
-            let (_, variance) = mixture(&self.losses.iter().map(of).collect::<Vec<_>>());
-            (variance / (std * std)).min(1.0)
-        };
-        let unknown = if self.losses.is_empty() { 0.0 } else { LIKELY.iter().enumerate().map(known).sum() };
-        self.fit.parameters.len() as f64 - unknown
-    }
+/// Parameters of a power law with the logarithm of the exponent of the loss, which has no values below 0.
+pub(super) fn logarithmic(parameters: &[f64]) -> Vec<f64> {
+    let mut p = parameters.to_vec();
+    p[LOSS_EXPONENT] = p[LOSS_EXPONENT].max(LEAST_EXPONENT).ln();
+    p
+}
 
+/// Parameters of a power law from those with the logarithm of the exponent of the loss.
+pub(super) fn exponential(parameters: &[f64]) -> Vec<f64> {
+    let mut p = parameters.to_vec();
+    p[LOSS_EXPONENT] = p[LOSS_EXPONENT].exp();
+    p
+}
+
+/// A fit of the exponent of the loss from one of its logarithm.
+pub(super) fn of_exponent(mut fit: Fit) -> Fit {
+    fit.parameters = exponential(&fit.parameters);
+    let exponent = fit.parameters[LOSS_EXPONENT];
+    fit.cofactor.row_mut(LOSS_EXPONENT).scale_mut(exponent);
+    fit.cofactor.column_mut(LOSS_EXPONENT).scale_mut(exponent);
+    fit
+}
+
+impl FittedPulse {
     /// Sum of squares of the residuals, and of the distances of exponents from their prior means, where one
     /// standard deviation of the prior counts as one of the `noise`.
     fn cost(&self, noise: f64) -> f64 {

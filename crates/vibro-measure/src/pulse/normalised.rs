@@ -12,6 +12,7 @@ use crate::residuals::widened;
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::ops::Range;
+use vibro_math::Fit;
 use vibro_record::code;
 use vibro_record::units::Quantity;
 use vibro_record::{Doubt, Error, Finding, Result, Trace};
@@ -209,6 +210,19 @@ impl<'a> Normalised<'a> {
         if count > 0.0 { beyond * widened(count as usize) } else { 0.0 }
     }
 
+    /// The fit with the covariance that a level under the contact other than the baseline gives it, as by
+    /// drift: each parameter changes by `C_ib/C_bb` for a change of the baseline b.
+    fn drifting(&self, fitted: &FittedPulse) -> Fit {
+        let mut fit = fitted.fit.clone();
+        let level = self.level_std(fitted) / fitted.widening.unwrap_or(1.0);
+        if level == 0.0 || fit.variance() <= 0.0 {
+            return fit;
+        }
+        let slopes = fit.cofactor.column(1) / fit.cofactor[(1, 1)];
+        fit.cofactor += &slopes * slopes.transpose() * (level * level / fit.variance());
+        fit
+    }
+
     /// Standard uncertainty of the duration of a power law, in lengths of the pulse, for ends that the
     /// samples do not show. Its exponents are free because no law is known: the law of the fit may not go on
     /// where the force is below the noise. There the ends of the contact lie anywhere. A part at an end is
@@ -274,9 +288,9 @@ impl<'a> Normalised<'a> {
         mass: Option<f64>,
         known: bool,
     ) -> BTreeMap<&'static str, Estimate> {
-        let FittedPulse { model, fit, .. } = fitted;
-        let n = fit.residuals.len();
+        let n = fitted.fit.residuals.len();
         let widening = fitted.widening.filter(|_| known).unwrap_or(f64::NAN);
+        let (model, fit) = (&fitted.model, &self.drifting(fitted));
         let estimate = |value: f64, std: f64, unit| {
             let value = fitted.widening.map_or(f64::NAN, |_| value);
             Estimate::new(value, Some(std), unit, n, "least squares")
@@ -330,17 +344,15 @@ impl<'a> Normalised<'a> {
             let of_all = |i: usize, j: usize| fit.covariance(2 + i, 2 + j) * widening.powi(2);
             let p = &fit.parameters[2..3 + model.parameters()];
             let steps = [&[scale[0]], &scale[..]].concat();
-            let level = self.level_std(fitted);
-            let mut put = |name, factor: f64, unit, level: f64, of: &dyn Fn(&[f64]) -> Option<f64>| {
+            let mut put = |name, factor: f64, unit, of: &dyn Fn(&[f64]) -> Option<f64>| {
                 if let Some((value, std)) = propagated(p, &steps, of_all, of) {
-                    parameters.insert(name, estimate(factor * value, factor.abs() * std.hypot(level), unit));
+                    parameters.insert(name, estimate(factor * value, factor.abs() * std, unit));
                 }
             };
-            put("peak", force, "N", level, &|p| of(p, &|c| c.peak(), &|c| c.peak(p[1])));
+            put("peak", force, "N", &|p| of(p, &|c| c.peak(), &|c| c.peak(p[1])));
             let gained = |restitution: f64| 1.0 + restitution;
             let impulse = |p: &[f64]| of(p, &|c| gained(c.restitution()), &|c| gained(c.restitution));
-            let level = level * (fitted.end() - fit.parameters[0]);
-            put("impulse", force * self.length, "N s", level, &impulse);
+            put("impulse", force * self.length, "N s", &impulse);
         }
         if *model == ContactModel::PowerLaw
             && let Some(duration) = parameters.get_mut("duration")

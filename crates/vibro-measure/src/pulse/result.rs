@@ -3,7 +3,7 @@
 use super::{KelvinVoigt, Rebound};
 use crate::Estimate;
 use crate::mean::mixture;
-use crate::residuals::NO_SUPPORT;
+use crate::residuals::quasi;
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
@@ -54,7 +54,8 @@ impl ContactModel {
         match (self, shape) {
             (ContactModel::Hertz, []) => HERTZ.clone(),
             (ContactModel::HuntCrossley, &[alpha]) => Rebound::power_law(alpha, 1.5, 1.5),
-            (ContactModel::PowerLaw, &[alpha, n, s]) => Rebound::power_law(alpha, n, s),
+            // Differences around an exponent of the loss near 0 would begin below it.
+            (ContactModel::PowerLaw, &[alpha, n, s]) => Rebound::power_law(alpha, n, s.max(0.0)),
             (ContactModel::Yielding, &[restitution]) => Rebound::yielding(restitution),
             _ => None,
         }
@@ -179,15 +180,16 @@ impl PulseResult {
     }
 
     /// Adds the spread between the supported models to the uncertainties of restitution, duration and
-    /// velocity of approach. Where the record prefers another model than spring and damper, they are means
+    /// velocity of approach. Where the record prefers an `other` model than spring and damper, they are means
     /// over these models, a finding says so, and there are no values of spring and damper.
-    /// `inflation` enlarges uncertainties for correlated residuals of the best model: its square divides
-    /// differences of the criterion (Burnham & Anderson 2002, 2.5). `also` are further minima of the models.
-    pub(super) fn led_by_best(&mut self, also: &[PulseFit], inflation: f64) -> Option<Finding> {
+    /// `dispersion` is that of the residuals of the best model. `also` are further minima of the models.
+    pub(super) fn led_by_best(&mut self, also: &[PulseFit], dispersion: f64, other: bool) -> Option<Finding> {
         let best = self.fits.iter().min_by(|a, b| a.aicc.total_cmp(&b.aicc))?;
-        let behind = |fit: &PulseFit| (fit.aicc - best.aicc) / (inflation * inflation);
-        let ahead = behind(&self.fits[0]);
-        let (other, lower) = (ahead > NO_SUPPORT, self.fits[0].aicc - best.aicc);
+        let behind = |fit: &PulseFit| {
+            let ratio = (fit.residual / best.residual).powi(2);
+            quasi(fit.aicc - best.aicc, fit.n, ratio, dispersion)
+        };
+        let lower = self.fits[0].aicc - best.aicc;
         let lead = if other { best } else { &self.fits[0] };
         // Model averaging (Burnham & Anderson 2002, eq. 4.9) of squares, about the value of spring and damper
         // where that leads, else about the mean. A model whose onset does not match the record has no values
