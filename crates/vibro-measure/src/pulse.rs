@@ -17,6 +17,7 @@ mod located;
 mod losses;
 mod low_pass;
 mod normalised;
+mod rebound;
 mod result;
 mod ringing;
 mod sensor;
@@ -30,10 +31,10 @@ pub use result::{ContactModel, PulseCurve, PulseFit, PulsePicture, PulseResult, 
 use super::Estimate;
 use super::residuals::NO_SUPPORT;
 
-use contact::Rebound;
 use fit::{FittedPulse, Samples};
 use located::{Located, locate};
 use normalised::Normalised;
+use rebound::Rebound;
 use result::{UNKNOWN, contact_estimates, undamped};
 use vibro_record::units::Quantity;
 use vibro_record::units::notation::shortest;
@@ -173,13 +174,19 @@ pub fn pulse(trace: &Trace, options: &PulseOptions) -> Result<PulseResult> {
     let of_best = best.whiteness;
     let dispersion = samples.dispersion(&best.fit);
     found.extend(samples.mode.map(|_| scale.rings(best)));
-    result.fits = fits.iter().map(|f| scale.report(f, options.mass, known && !unexplained)).collect();
-    let also = fits.iter().flat_map(|f| &f.also);
-    let also: Vec<_> = also.map(|f| scale.report(f, options.mass, known && !unexplained)).collect();
     let against = |fit: &FittedPulse| fits[0].behind(fit, dispersion) - fit.improbable();
     let other = fits.iter().any(|fit| against(fit) > NO_SUPPORT);
+    // Against spring and damper free exponents pay for the laws that they rule out; among other laws, which
+    // may all be wrong, they do not.
+    let price = |fit: &FittedPulse| if other { 0.0 } else { fit.improbable() };
+    let report = |fit: &FittedPulse| PulseFit {
+        behind: fit.behind(best, dispersion) + price(fit),
+        ..scale.report(fit, options.mass, known && !unexplained)
+    };
+    result.fits = fits.iter().map(report).collect();
+    let also: Vec<_> = fits.iter().flat_map(|fit| &fit.also).map(report).collect();
     let lead = if other { leader(&fits) } else { &fits[0] };
-    let led = result.led_by_best(&also, dispersion, other);
+    let led = result.led_by_best(&also, other);
     let noise = samples.noise().0;
     result.peak_read = scale.peak_read(lead, noise, options.mass);
     if !known || unexplained || result.restitution.value.is_nan() {

@@ -1,7 +1,6 @@
 //! Models of a contact fitted to the samples of a pulse.
 
 use super::linear::Linear;
-use super::losses::{exponential, logarithmic, of_exponent};
 use super::ringing::Ringing;
 use super::{ContactModel, KelvinVoigt, LowPass, Rebound};
 use crate::converter::{concealed, hidden, rounding};
@@ -327,14 +326,8 @@ impl Samples<'_> {
         let n = self.times.len();
         let rows = n + model.unlikely(start, noise).len();
         let residuals = self.residuals(model, noise, first);
-        let scale = |start: &[f64]| start.iter().map(|p| p.abs().max(0.1)).collect::<Vec<f64>>();
-        let mut fit = if model == ContactModel::PowerLaw {
-            let residuals = |p: &[f64], out: &mut [f64]| residuals(&exponential(p), out);
-            let start = logarithmic(start);
-            of_exponent(least_squares(residuals, rows, &start, &scale(&start)).ok()?)
-        } else {
-            least_squares(residuals, rows, start, &scale(start)).ok()?
-        };
+        let scale: Vec<f64> = start.iter().map(|p| p.abs().max(0.1)).collect();
+        let mut fit = least_squares(residuals, rows, start, &scale).ok()?;
         fit.residuals.truncate(n);
         let whiteness = Whiteness { p_value: None, inflation: 1.0 };
         fit.converged.then_some(FittedPulse {

@@ -40,6 +40,10 @@ const LEVEL: f64 = 0.5;
 /// goes into the baseline.
 const NEAR: f64 = 8.0;
 
+/// Stretches of a contact whose levels show drift: more of them lie beside it, and their levels scatter by
+/// drift as much as that of a whole contact or more.
+const STRETCHES: f64 = 4.0;
+
 /// Baseline fitted before and after the pulse, in lengths of the pulse.
 const BESIDE: f64 = 2.0;
 
@@ -183,27 +187,29 @@ impl<'a> Normalised<'a> {
     }
 
     /// Standard uncertainty of the level under the contact, over the height of the pulse, that drift, hum and
-    /// 1/f noise leave beyond white noise: stretches beside it, as long as the contact, scatter by it about
-    /// the fitted baseline. The white part is that of the differences of neighbours.
+    /// 1/f noise leave beyond white noise: the residuals of stretches beside it scatter by it about zero. The white part is that of the differences of neighbours.
     fn level_std(&self, fitted: &FittedPulse) -> f64 {
         let (onset, end) = (fitted.fit.parameters[0], fitted.end());
         let delay = self.filter.as_ref().map_or(0.0, LowPass::delay);
-        let values = &self.trace.values;
-        let n = ((end - onset) * self.length / self.step).ceil().max(1.0);
-        let begin = self.index(onset - 2.0 * self.step / self.length);
-        let before = values[self.index(onset - NEAR)..begin].rchunks_exact(n as usize);
+        let n = ((end - onset) * self.length / self.step / STRETCHES).ceil().max(2.0);
+        // What the fit leaves, without another pulse, which is no drift.
+        let left = |range: Range<usize>| {
+            let samples = self.samples(range);
+            let model = fitted.at(&samples, &samples.times).unwrap_or_default();
+            let left = samples.values.iter().zip(model).map(|(value, model)| value - model);
+            left.collect::<Vec<f64>>()
+        };
+        let quiet = |stretch: &&[f64]| stretch.iter().all(|v| v.abs() < 0.5);
+        let before = left(self.index(onset - NEAR)..self.index(onset - 2.0 * self.step / self.length));
         // Behind the contact a sensor with a mode rings.
         let rings = fitted.fit.parameters.len() > 3 + fitted.model.parameters();
         let settled = self.index(end + TAIL * delay);
-        let after = &values[settled..if rings { settled } else { self.index(end + TAIL * delay + NEAR) }];
+        let after = left(settled..if rings { settled } else { self.index(end + TAIL * delay + NEAR) });
         let (mut count, mut squares, mut steps) = (0.0, 0.0, 0.0);
-        // Another pulse is no drift.
-        let quiet = |v: &f64| ((v - self.found.baseline) / self.height).abs() < 0.5;
-        let quiet = |stretch: &&[f64]| stretch.iter().all(|v| v.is_finite() && quiet(v));
-        for stretch in before.chain(after.chunks_exact(n as usize)).filter(quiet) {
-            let level = average(stretch) / self.height - fitted.fit.parameters[1];
-            let neighbours = stretch.windows(2).map(|w| ((w[1] - w[0]) / self.height).powi(2)).sum::<f64>();
-            (count, squares, steps) = (count + 1.0, squares + level * level, steps + neighbours);
+        let stretches = before.rchunks_exact(n as usize).chain(after.chunks_exact(n as usize));
+        for stretch in stretches.filter(quiet) {
+            let neighbours = stretch.windows(2).map(|w| (w[1] - w[0]).powi(2)).sum::<f64>();
+            (count, squares, steps) = (count + 1.0, squares + average(stretch).powi(2), steps + neighbours);
         }
         let white = steps / (2.0 * count * (n - 1.0).max(1.0)) / n;
         let beyond = (squares / count - white).max(0.0).sqrt();
@@ -269,6 +275,7 @@ impl<'a> Normalised<'a> {
             aicc: fitted.aicc(),
             whiteness: fitted.whiteness.p_value,
             n,
+            behind: 0.0,
             parameters,
         }
     }
@@ -329,8 +336,8 @@ impl<'a> Normalised<'a> {
         let shape = &fit.parameters[3..3 + model.parameters()];
         let variance = |i: usize, j: usize| fit.covariance(3 + i, 3 + j) * widening.powi(2);
         let kelvin_voigt = |p: &[f64]| KelvinVoigt::new(p[0], p[1]);
-        // All but spring and damper are integrated, and smooth only to 1e-5: differences need larger steps.
-        let scale = vec![if *model == ContactModel::KelvinVoigt { 1.0 } else { 1e3 }; shape.len()];
+        // All but spring and damper are integrated, with more rounding: differences need larger steps.
+        let scale = vec![if *model == ContactModel::KelvinVoigt { 1.0 } else { 1e2 }; shape.len()];
         if let Some(force) = self.to_force(mass).map(|factor| factor * self.found.height.signum()) {
             let of = |p: &[f64], value: &dyn Fn(&KelvinVoigt) -> f64, other: &dyn Fn(&Rebound) -> f64| {
                 Some(

@@ -3,7 +3,6 @@
 use super::{KelvinVoigt, Rebound};
 use crate::Estimate;
 use crate::mean::mixture;
-use crate::residuals::quasi;
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
@@ -54,8 +53,7 @@ impl ContactModel {
         match (self, shape) {
             (ContactModel::Hertz, []) => HERTZ.clone(),
             (ContactModel::HuntCrossley, &[alpha]) => Rebound::power_law(alpha, 1.5, 1.5),
-            // Differences around an exponent of the loss near 0 would begin below it.
-            (ContactModel::PowerLaw, &[alpha, n, s]) => Rebound::power_law(alpha, n, s.max(0.0)),
+            (ContactModel::PowerLaw, &[alpha, n, s]) => Rebound::power_law(alpha, n, s),
             (ContactModel::Yielding, &[restitution]) => Rebound::yielding(restitution),
             _ => None,
         }
@@ -182,13 +180,9 @@ impl PulseResult {
     /// Adds the spread between the supported models to the uncertainties of restitution, duration and
     /// velocity of approach. Where the record prefers an `other` model than spring and damper, they are means
     /// over these models, a finding says so, and there are no values of spring and damper.
-    /// `dispersion` is that of the residuals of the best model. `also` are further minima of the models.
-    pub(super) fn led_by_best(&mut self, also: &[PulseFit], dispersion: f64, other: bool) -> Option<Finding> {
+    /// `also` are further minima of the models.
+    pub(super) fn led_by_best(&mut self, also: &[PulseFit], other: bool) -> Option<Finding> {
         let best = self.fits.iter().min_by(|a, b| a.aicc.total_cmp(&b.aicc))?;
-        let behind = |fit: &PulseFit| {
-            let ratio = (fit.residual / best.residual).powi(2);
-            quasi(fit.aicc - best.aicc, fit.n, ratio, dispersion)
-        };
         let lower = self.fits[0].aicc - best.aicc;
         let lead = if other { best } else { &self.fits[0] };
         // Model averaging (Burnham & Anderson 2002, eq. 4.9) of squares, about the value of spring and damper
@@ -196,14 +190,14 @@ impl PulseResult {
         // (NaN) and is left out. So is, of a mean, the contact of Hertz, which is that of Hunt and Crossley
         // without losses: no pulse shows that there are none.
         let likely = |fit: &&PulseFit| {
-            (-0.5 * behind(fit)).exp() > NEGLIGIBLE && !(other && fit.model == ContactModel::Hertz)
+            (-0.5 * fit.behind).exp() > NEGLIGIBLE && !(other && fit.model == ContactModel::Hertz)
         };
         let supported: Vec<&PulseFit> = self.fits.iter().chain(also).filter(likely).collect();
         let stated = |name: &str, own: Option<&Estimate>| {
             let led = lead.parameters.get(name)?;
             let of = |fit: &&PulseFit| {
                 let fitted = fit.parameters.get(name).filter(|p| !p.value.is_nan())?;
-                Some((-0.5 * behind(fit), fitted.value, fitted.std.unwrap_or(f64::NAN).powi(2)))
+                Some((-0.5 * fit.behind, fitted.value, fitted.std.unwrap_or(f64::NAN).powi(2)))
             };
             let (mean, variance) = mixture(&supported.iter().filter_map(of).collect::<Vec<_>>());
             let value = if other && !led.value.is_nan() { mean } else { led.value };
@@ -248,6 +242,9 @@ pub struct PulseFit {
     pub whiteness: Option<f64>,
     /// Samples fitted.
     pub n: usize,
+    /// Twice the logarithm of the evidence for the likeliest model over that for this one.
+    #[serde(skip)]
+    pub behind: f64,
     /// Parameters by name.
     pub parameters: BTreeMap<&'static str, Estimate>,
 }
