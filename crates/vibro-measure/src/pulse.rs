@@ -7,6 +7,7 @@
 
 mod contact;
 mod edge;
+mod evidence;
 mod expected;
 mod fit;
 mod impulse;
@@ -16,6 +17,7 @@ mod located;
 mod losses;
 mod low_pass;
 mod normalised;
+mod rebound;
 mod result;
 mod ringing;
 mod sensor;
@@ -29,10 +31,10 @@ pub use result::{ContactModel, PulseCurve, PulseFit, PulsePicture, PulseResult, 
 use super::Estimate;
 use super::residuals::NO_SUPPORT;
 
-use contact::Rebound;
 use fit::{FittedPulse, Samples};
 use located::{Located, locate};
 use normalised::Normalised;
+use rebound::Rebound;
 use result::{UNKNOWN, contact_estimates, undamped};
 use vibro_record::units::Quantity;
 use vibro_record::units::notation::{quantity, shortest};
@@ -207,23 +209,25 @@ pub fn pulse(trace: &Trace, options: &PulseOptions) -> Result<PulseResult> {
         found.push(near.number("corner", filter.corner));
     }
     result.unfitted = unfitted;
+    over_losses(&samples, &mut fits, &mut result.unfitted);
     let best = leader(&fits);
     let unexplained = samples.unexplained(best);
-    let (of_best, inflation) = (best.whiteness, best.whiteness.inflation.max(1.0));
-    let lower = fits[0].aicc() - best.aicc();
+    let of_best = best.whiteness;
+    let dispersion = samples.dispersion(&best.fit);
     found.extend(samples.mode.map(|_| scale.rings(best)));
-    // A power law needs its losses only where spring and damper does not lead.
-    let law = fits.iter_mut().find(|fit| fit.model == ContactModel::PowerLaw);
-    if let Some(law) = law.filter(|_| lower > NO_SUPPORT * inflation.powi(2))
-        && let Some(averaged) = samples.over_losses(law)
-    {
-        *law = averaged;
-    }
-    result.fits = fits.iter().map(|f| scale.report(f, options.mass, known && !unexplained)).collect();
-    let also = fits.iter().flat_map(|f| &f.also);
-    let also: Vec<_> = also.map(|f| scale.report(f, options.mass, known && !unexplained)).collect();
-    let lead = if lower > NO_SUPPORT * inflation.powi(2) { leader(&fits) } else { &fits[0] };
-    let led = result.led_by_best(&also, inflation);
+    let against = |fit: &FittedPulse| fits[0].behind(fit, dispersion) - fit.improbable();
+    let other = fits.iter().any(|fit| against(fit) > NO_SUPPORT);
+    // Against spring and damper free exponents pay for the laws that they rule out; among other laws, which
+    // may all be wrong, they do not.
+    let price = |fit: &FittedPulse| if other { 0.0 } else { fit.improbable() };
+    let report = |fit: &FittedPulse| PulseFit {
+        behind: fit.behind(best, dispersion) + price(fit),
+        ..scale.report(fit, options.mass, known && !unexplained)
+    };
+    result.fits = fits.iter().map(report).collect();
+    let also: Vec<_> = fits.iter().flat_map(|fit| &fit.also).map(report).collect();
+    let lead = if other { leader(&fits) } else { &fits[0] };
+    let led = result.led_by_best(&also, other);
     let noise = samples.noise().0;
     result.peak_read = scale.peak_read(lead, noise, options.mass);
     if !known || unexplained || result.restitution.value.is_nan() {
@@ -262,6 +266,23 @@ pub fn pulse(trace: &Trace, options: &PulseOptions) -> Result<PulseResult> {
     result.picture = Some(scale.picture(&samples, &fits));
     result.width = seen / rate;
     Ok(result)
+}
+
+/// Replaces a power law by that with all likely losses. It needs them only where spring and damper does not
+/// lead. A law that is only likely with a loss below 0 is no contact.
+fn over_losses(samples: &Samples<'_>, fits: &mut Vec<FittedPulse>, unfitted: &mut Vec<Unfitted>) {
+    let best = leader(fits);
+    let behind = fits[0].behind(best, samples.dispersion(&best.fit)) > NO_SUPPORT;
+    let law = fits.iter().position(|fit| behind && fit.model == ContactModel::PowerLaw);
+    let Some(law) = law else { return };
+    match samples.over_losses(&fits[law]) {
+        Some(averaged) => fits[law] = averaged,
+        None if fits[law].loss() < 0.0 => {
+            let reason = "the samples prefer a loss below 0".to_owned();
+            unfitted.push(Unfitted { model: fits.remove(law).model, reason });
+        }
+        None => {}
+    }
 }
 
 /// The fit of the lowest `AICc`.

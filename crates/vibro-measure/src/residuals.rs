@@ -151,6 +151,14 @@ pub fn aicc(sum_of_squares: f64, n: usize, parameters: f64) -> f64 {
     n * (sum_of_squares / n).ln() + 2.0 * k + 2.0 * k * (k + 1.0) / (n - k - 1.0)
 }
 
+/// Difference of two `AICc` of fits to the same `n` values, where the variance of the residuals of the first
+/// is `ratio` times that of the second and noise has `dispersion` times the density of white noise of the
+/// same variance: the dispersion divides the likelihood and leaves the price of parameters (`QAICc`, Burnham
+/// & Anderson 2002, 2.5).
+pub fn quasi(difference: f64, n: usize, ratio: f64, dispersion: f64) -> f64 {
+    difference - n as f64 * ratio.ln() * (1.0 - 1.0 / dispersion)
+}
+
 /// A difference of Akaike's criterion that leaves no support for the worse model (Burnham & Anderson, Model
 /// Selection and Multimodel Inference, 2002, section 2.6).
 pub const NO_SUPPORT: f64 = 10.0;
@@ -165,6 +173,16 @@ mod tests {
         assert_eq!([0, 1, 2].map(student), [None; 3]);
         // Variance 3 at ν = 3 and 2 at ν = 4.
         assert_eq!([3, 4].map(student), [Some(3f64.sqrt()), Some(2f64.sqrt())]);
+    }
+
+    /// A dispersion of 4 leaves a fourth of the likelihood. Parameters keep their price, 2 each but for the
+    /// correction of few values, 2(k + 1)(k + 2)/(n − k − 2), below 0.1 for 1000 values.
+    #[test]
+    fn colour_divides_the_likelihood_and_not_the_price_of_parameters() {
+        let (few, more) = (aicc(1.1, 1000, 3.0), aicc(1.0, 1000, 5.0));
+        let gained = 1000.0 * 1.1_f64.ln();
+        assert!((quasi(few - more, 1000, 1.1, 1.0) - (gained - 4.0)).abs() < 0.1);
+        assert!((quasi(few - more, 1000, 1.1, 4.0) - (gained / 4.0 - 4.0)).abs() < 0.1);
     }
 
     #[test]

@@ -5,7 +5,7 @@ use super::ringing::Ringing;
 use super::{ContactModel, KelvinVoigt, LowPass, Rebound};
 use crate::converter::{concealed, hidden, rounding};
 use crate::mean::{average, scatter};
-use crate::residuals::{Whiteness, aicc, student};
+use crate::residuals::{Whiteness, student};
 use std::cell::RefCell;
 use vibro_math::{Fit, least_squares};
 use vibro_record::{Error, Result, sort_by_number};
@@ -316,17 +316,18 @@ impl Samples<'_> {
     }
 
     /// The fit from one first guess; `None` where it does not converge.
-    fn from(
+    pub(super) fn from(
         &self,
         model: ContactModel,
         noise: f64,
         start: &[f64],
         first: Option<usize>,
     ) -> Option<FittedPulse> {
-        let scale: Vec<f64> = start.iter().map(|p| p.abs().max(0.1)).collect();
         let n = self.times.len();
         let rows = n + model.unlikely(start, noise).len();
-        let mut fit = least_squares(self.residuals(model, noise, first), rows, start, &scale).ok()?;
+        let residuals = self.residuals(model, noise, first);
+        let scale: Vec<f64> = start.iter().map(|p| p.abs().max(0.1)).collect();
+        let mut fit = least_squares(residuals, rows, start, &scale).ok()?;
         fit.residuals.truncate(n);
         let whiteness = Whiteness { p_value: None, inflation: 1.0 };
         fit.converged.then_some(FittedPulse {
@@ -458,6 +459,11 @@ fn scaled(shape: &[f64], p: &[f64]) -> Vec<f64> {
 }
 
 impl FittedPulse {
+    /// Loss of a power law.
+    pub fn loss(&self) -> f64 {
+        self.fit.parameters[4]
+    }
+
     fn loss_exponent(&self) -> f64 {
         self.fit.parameters.get(6).copied().unwrap_or(f64::NAN)
     }
@@ -469,11 +475,6 @@ impl FittedPulse {
             times.partition_point(|t| *t < onset)
         });
         samples.model(self.model, &self.fit.parameters, times, first)
-    }
-
-    /// Corrected Akaike criterion (`AICc`).
-    pub fn aicc(&self) -> f64 {
-        aicc(self.fit.sum_of_squares(), self.fit.residuals.len(), self.determined())
     }
 
     /// Time at which the contact ends, in lengths of the pulse.

@@ -12,6 +12,7 @@ use crate::residuals::widened;
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::ops::Range;
+use vibro_math::Fit;
 use vibro_record::code;
 use vibro_record::units::Quantity;
 use vibro_record::{Doubt, Error, Finding, Result, Trace};
@@ -38,6 +39,10 @@ const LEVEL: f64 = 0.5;
 /// Record beside the contact whose level counts for it, on either side, in lengths of the pulse: slower drift
 /// goes into the baseline.
 const NEAR: f64 = 8.0;
+
+/// Stretches of a contact whose levels show drift: more of them lie beside it, and their levels scatter by
+/// drift as much as that of a whole contact or more.
+const STRETCHES: f64 = 4.0;
 
 /// Baseline fitted before and after the pulse, in lengths of the pulse.
 const BESIDE: f64 = 2.0;
@@ -182,31 +187,46 @@ impl<'a> Normalised<'a> {
     }
 
     /// Standard uncertainty of the level under the contact, over the height of the pulse, that drift, hum and
-    /// 1/f noise leave beyond white noise: stretches beside it, as long as the contact, scatter by it about
-    /// the fitted baseline. The white part is that of the differences of neighbours.
+    /// 1/f noise leave beyond white noise: the residuals of stretches beside it scatter by it about zero. The white part is that of the differences of neighbours.
     fn level_std(&self, fitted: &FittedPulse) -> f64 {
         let (onset, end) = (fitted.fit.parameters[0], fitted.end());
         let delay = self.filter.as_ref().map_or(0.0, LowPass::delay);
-        let values = &self.trace.values;
-        let n = ((end - onset) * self.length / self.step).ceil().max(1.0);
-        let begin = self.index(onset - 2.0 * self.step / self.length);
-        let before = values[self.index(onset - NEAR)..begin].rchunks_exact(n as usize);
+        let n = ((end - onset) * self.length / self.step / STRETCHES).ceil().max(2.0);
+        // What the fit leaves, without another pulse, which is no drift.
+        let left = |range: Range<usize>| {
+            let samples = self.samples(range);
+            let model = fitted.at(&samples, &samples.times).unwrap_or_default();
+            let left = samples.values.iter().zip(model).map(|(value, model)| value - model);
+            left.collect::<Vec<f64>>()
+        };
+        let quiet = |stretch: &&[f64]| stretch.iter().all(|v| v.abs() < 0.5);
+        let before = left(self.index(onset - NEAR)..self.index(onset - 2.0 * self.step / self.length));
         // Behind the contact a sensor with a mode rings.
         let rings = fitted.fit.parameters.len() > 3 + fitted.model.parameters();
         let settled = self.index(end + TAIL * delay);
-        let after = &values[settled..if rings { settled } else { self.index(end + TAIL * delay + NEAR) }];
+        let after = left(settled..if rings { settled } else { self.index(end + TAIL * delay + NEAR) });
         let (mut count, mut squares, mut steps) = (0.0, 0.0, 0.0);
-        // Another pulse is no drift.
-        let quiet = |v: &f64| ((v - self.found.baseline) / self.height).abs() < 0.5;
-        let quiet = |stretch: &&[f64]| stretch.iter().all(|v| v.is_finite() && quiet(v));
-        for stretch in before.chain(after.chunks_exact(n as usize)).filter(quiet) {
-            let level = average(stretch) / self.height - fitted.fit.parameters[1];
-            let neighbours = stretch.windows(2).map(|w| ((w[1] - w[0]) / self.height).powi(2)).sum::<f64>();
-            (count, squares, steps) = (count + 1.0, squares + level * level, steps + neighbours);
+        let stretches = before.rchunks_exact(n as usize).chain(after.chunks_exact(n as usize));
+        for stretch in stretches.filter(quiet) {
+            let neighbours = stretch.windows(2).map(|w| (w[1] - w[0]).powi(2)).sum::<f64>();
+            (count, squares, steps) = (count + 1.0, squares + average(stretch).powi(2), steps + neighbours);
         }
         let white = steps / (2.0 * count * (n - 1.0).max(1.0)) / n;
         let beyond = (squares / count - white).max(0.0).sqrt();
         if count > 0.0 { beyond * widened(count as usize) } else { 0.0 }
+    }
+
+    /// The fit with the covariance that a level under the contact other than the baseline gives it, as by
+    /// drift: each parameter changes by `C_ib/C_bb` for a change of the baseline b.
+    fn drifting(&self, fitted: &FittedPulse) -> Fit {
+        let mut fit = fitted.fit.clone();
+        let level = self.level_std(fitted) / fitted.widening.unwrap_or(1.0);
+        if level == 0.0 || fit.variance() <= 0.0 {
+            return fit;
+        }
+        let slopes = fit.cofactor.column(1) / fit.cofactor[(1, 1)];
+        fit.cofactor += &slopes * slopes.transpose() * (level * level / fit.variance());
+        fit
     }
 
     /// Standard uncertainty of the duration of a power law, in lengths of the pulse, for ends that the
@@ -255,6 +275,7 @@ impl<'a> Normalised<'a> {
             aicc: fitted.aicc(),
             whiteness: fitted.whiteness.p_value,
             n,
+            behind: 0.0,
             parameters,
         }
     }
@@ -274,9 +295,9 @@ impl<'a> Normalised<'a> {
         mass: Option<f64>,
         known: bool,
     ) -> BTreeMap<&'static str, Estimate> {
-        let FittedPulse { model, fit, .. } = fitted;
-        let n = fit.residuals.len();
+        let n = fitted.fit.residuals.len();
         let widening = fitted.widening.filter(|_| known).unwrap_or(f64::NAN);
+        let (model, fit) = (&fitted.model, &self.drifting(fitted));
         let estimate = |value: f64, std: f64, unit| {
             let value = fitted.widening.map_or(f64::NAN, |_| value);
             Estimate::new(value, Some(std), unit, n, "least squares")
@@ -315,8 +336,8 @@ impl<'a> Normalised<'a> {
         let shape = &fit.parameters[3..3 + model.parameters()];
         let variance = |i: usize, j: usize| fit.covariance(3 + i, 3 + j) * widening.powi(2);
         let kelvin_voigt = |p: &[f64]| KelvinVoigt::new(p[0], p[1]);
-        // All but spring and damper are integrated, and smooth only to 1e-5: differences need larger steps.
-        let scale = vec![if *model == ContactModel::KelvinVoigt { 1.0 } else { 1e3 }; shape.len()];
+        // All but spring and damper are integrated, with more rounding: differences need larger steps.
+        let scale = vec![if *model == ContactModel::KelvinVoigt { 1.0 } else { 1e2 }; shape.len()];
         if let Some(force) = self.to_force(mass).map(|factor| factor * self.found.height.signum()) {
             let of = |p: &[f64], value: &dyn Fn(&KelvinVoigt) -> f64, other: &dyn Fn(&Rebound) -> f64| {
                 Some(
@@ -330,17 +351,15 @@ impl<'a> Normalised<'a> {
             let of_all = |i: usize, j: usize| fit.covariance(2 + i, 2 + j) * widening.powi(2);
             let p = &fit.parameters[2..3 + model.parameters()];
             let steps = [&[scale[0]], &scale[..]].concat();
-            let level = self.level_std(fitted);
-            let mut put = |name, factor: f64, unit, level: f64, of: &dyn Fn(&[f64]) -> Option<f64>| {
+            let mut put = |name, factor: f64, unit, of: &dyn Fn(&[f64]) -> Option<f64>| {
                 if let Some((value, std)) = propagated(p, &steps, of_all, of) {
-                    parameters.insert(name, estimate(factor * value, factor.abs() * std.hypot(level), unit));
+                    parameters.insert(name, estimate(factor * value, factor.abs() * std, unit));
                 }
             };
-            put("peak", force, "N", level, &|p| of(p, &|c| c.peak(), &|c| c.peak(p[1])));
+            put("peak", force, "N", &|p| of(p, &|c| c.peak(), &|c| c.peak(p[1])));
             let gained = |restitution: f64| 1.0 + restitution;
             let impulse = |p: &[f64]| of(p, &|c| gained(c.restitution()), &|c| gained(c.restitution));
-            let level = level * (fitted.end() - fit.parameters[0]);
-            put("impulse", force * self.length, "N s", level, &impulse);
+            put("impulse", force * self.length, "N s", &impulse);
         }
         if *model == ContactModel::PowerLaw
             && let Some(duration) = parameters.get_mut("duration")

@@ -3,7 +3,6 @@
 use super::{KelvinVoigt, Rebound};
 use crate::Estimate;
 use crate::mean::mixture;
-use crate::residuals::NO_SUPPORT;
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
@@ -179,29 +178,26 @@ impl PulseResult {
     }
 
     /// Adds the spread between the supported models to the uncertainties of restitution, duration and
-    /// velocity of approach. Where the record prefers another model than spring and damper, they are means
+    /// velocity of approach. Where the record prefers an `other` model than spring and damper, they are means
     /// over these models, a finding says so, and there are no values of spring and damper.
-    /// `inflation` enlarges uncertainties for correlated residuals of the best model: its square divides
-    /// differences of the criterion (Burnham & Anderson 2002, 2.5). `also` are further minima of the models.
-    pub(super) fn led_by_best(&mut self, also: &[PulseFit], inflation: f64) -> Option<Finding> {
+    /// `also` are further minima of the models.
+    pub(super) fn led_by_best(&mut self, also: &[PulseFit], other: bool) -> Option<Finding> {
         let best = self.fits.iter().min_by(|a, b| a.aicc.total_cmp(&b.aicc))?;
-        let behind = |fit: &PulseFit| (fit.aicc - best.aicc) / (inflation * inflation);
-        let ahead = behind(&self.fits[0]);
-        let (other, lower) = (ahead > NO_SUPPORT, self.fits[0].aicc - best.aicc);
+        let lower = self.fits[0].aicc - best.aicc;
         let lead = if other { best } else { &self.fits[0] };
         // Model averaging (Burnham & Anderson 2002, eq. 4.9) of squares, about the value of spring and damper
         // where that leads, else about the mean. A model whose onset does not match the record has no values
         // (NaN) and is left out. So is, of a mean, the contact of Hertz, which is that of Hunt and Crossley
         // without losses: no pulse shows that there are none.
         let likely = |fit: &&PulseFit| {
-            (-0.5 * behind(fit)).exp() > NEGLIGIBLE && !(other && fit.model == ContactModel::Hertz)
+            (-0.5 * fit.behind).exp() > NEGLIGIBLE && !(other && fit.model == ContactModel::Hertz)
         };
         let supported: Vec<&PulseFit> = self.fits.iter().chain(also).filter(likely).collect();
         let stated = |name: &str, own: Option<&Estimate>| {
             let led = lead.parameters.get(name)?;
             let of = |fit: &&PulseFit| {
                 let fitted = fit.parameters.get(name).filter(|p| !p.value.is_nan())?;
-                Some((-0.5 * behind(fit), fitted.value, fitted.std.unwrap_or(f64::NAN).powi(2)))
+                Some((-0.5 * fit.behind, fitted.value, fitted.std.unwrap_or(f64::NAN).powi(2)))
             };
             let (mean, variance) = mixture(&supported.iter().filter_map(of).collect::<Vec<_>>());
             let value = if other && !led.value.is_nan() { mean } else { led.value };
@@ -246,6 +242,9 @@ pub struct PulseFit {
     pub whiteness: Option<f64>,
     /// Samples fitted.
     pub n: usize,
+    /// Twice the logarithm of the evidence for the likeliest model over that for this one.
+    #[serde(skip)]
+    pub behind: f64,
     /// Parameters by name.
     pub parameters: BTreeMap<&'static str, Estimate>,
 }

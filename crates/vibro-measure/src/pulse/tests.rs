@@ -1,4 +1,5 @@
 use super::*;
+use std::ops::Range;
 use vibro_math::Noise;
 use vibro_record::units::Unit;
 use vibro_record::{Axis, Meta, Severity};
@@ -68,9 +69,8 @@ fn all_that_follows_from_a_pulse() {
     assert!(result.fits[1..].iter().all(|f| f.aicc > result.fits[0].aicc + 10.0), "{:?}", result.fits);
 }
 
-/// Errors of ξ over their standard uncertainties, for `draws` records of 8 bits with noise of `part` of the
-/// peak.
-fn of_eight_bits(draws: u64, part: f64) -> Vec<f64> {
+/// Errors of ξ over their standard uncertainties, for records of 8 bits with noise of `part` of the peak.
+fn of_eight_bits(seeds: Range<u64>, part: f64) -> Vec<f64> {
     let contact = KelvinVoigt::new(0.18, 10e3).unwrap();
     let peak = contact.unbounded(contact.time_to_peak().unwrap());
     let step = peak / 110.0;
@@ -87,15 +87,15 @@ fn of_eight_bits(draws: u64, part: f64) -> Vec<f64> {
         assert!(!says(&result, "pulse-unexplained") && !says(&result, "pulse-clipped"), "{seed}");
         (result.xi.value - 0.18) / result.xi.std.unwrap()
     };
-    (0..draws).map(draw).collect()
+    seeds.map(draw).collect()
 }
 
 /// The noise is below a step, so the baseline is flat. Rounding in the pulse must not pass for another
-/// contact law.
+/// contact law. It would, were it as low in the pulse as in the baseline.
 #[test]
 fn a_flat_baseline_of_eight_bits_is_no_doubt_of_the_contact() {
     for part in [0.0, 1e-3] {
-        assert!(of_eight_bits(4, part).iter().all(|off| off.abs() < 5.0), "{part}");
+        assert!(of_eight_bits(46..50, part).iter().all(|off| off.abs() < 5.0), "{part}");
     }
 }
 
@@ -103,7 +103,7 @@ fn a_flat_baseline_of_eight_bits_is_no_doubt_of_the_contact() {
 #[ignore = "Monte Carlo: cargo test --release -- --ignored"]
 fn uncertainties_of_eight_bits_cover_the_truth() {
     for part in [0.0, 1e-3, 2e-3] {
-        let off = of_eight_bits(60, part);
+        let off = of_eight_bits(0..60, part);
         let within = off.iter().filter(|off| off.abs() < 1.96).count();
         // 95 % of 60 less three standard deviations, √(60·0.95·0.05) = 1.7.
         assert!(within >= 52, "{part}: {within}");
