@@ -65,7 +65,9 @@ fn stated() -> MachineDraft {
         MachineDraft::from_toml(include_str!("../../../examples/hammer_drill/drill.toml")).unwrap();
     let other =
         [("intermediate.travel", 0.0055), ("contacts.buffer.restitution", 0.4), ("flow.leakage", 8.7e-10)];
-    other.iter().for_each(|(key, value)| draft.put(key, *value).unwrap());
+    for (key, value) in other {
+        draft.put(key, value).unwrap();
+    }
     draft
 }
 
