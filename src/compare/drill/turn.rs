@@ -20,8 +20,8 @@ pub struct TurnModel<'a> {
     pub direction: f64,
 }
 
-/// Motion of a machine over its mean turn from top dead centre. Its impacts are as the measurement shows them,
-/// without duration.
+/// Motion of a machine over its mean turn from top dead centre. Its impacts are as the measurement shows
+/// them, without duration.
 #[derive(Debug, Clone)]
 pub struct ModelTurn {
     pub run: Run,

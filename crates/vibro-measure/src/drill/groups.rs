@@ -34,8 +34,8 @@ const PARTED: f64 = 3.0;
 /// Number of standard uncertainties by which the mean velocities of two blows a turn must differ to be
 /// unlike.
 const UNLIKE: f64 = 4.0;
-/// Speed after an impact over that before it, beyond which the mass is struck: one that strikes a mass at rest
-/// is no faster after than before.
+/// Speed after an impact over that before it, beyond which the mass is struck: one that strikes a mass at
+/// rest is no faster after than before.
 const DRIVEN: f64 = 2.0;
 /// Standard uncertainties beyond which a restitution outside 0 to 1 is impossible, not chance.
 const BEYOND: f64 = 2.0;
