@@ -431,7 +431,7 @@ pub const ALL: &[Dialect] = &[
         outcome: read(
             &[ch("Ax", "", 0, 1e3, 0.5e-3), ch("Ay", "", 1, 1e3, 0.5e-3)],
             X::Even(0.0),
-            &["axis-unit-assumed", "unit-unsaid"],
+            &["axis-unit-by-rate", "unit-unsaid"],
         ),
     },
     Dialect {
