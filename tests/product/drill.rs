@@ -101,7 +101,8 @@ fn the_example_comes_out_as_it_was_made() {
     }
     let restitution = &found["restitution"];
     let (value, std) = (restitution["value"].as_f64().unwrap(), restitution["std"].as_f64().unwrap());
-    // Balance of momentum with the struck mass at rest before, as the record of the striker alone must take it.
+    // Balance of momentum with the struck mass at rest before, as the record of the striker alone must take
+    // it.
     let sum = |of: &dyn Fn(&record::Struck) -> f64| made.impacts.iter().map(of).sum::<f64>();
     let truth = sum(&|i| 0.5 * (i.before - i.after) - i.after) / sum(&|i| i.before);
     assert!((value - truth).abs() < 4.0 * std && std < 0.01, "{value} ± {std}, {truth}");
@@ -186,8 +187,8 @@ fn a_campaign_joins_the_bodies_by_the_crank() {
     let machine = &found["results"]["drill_machines"][0];
     assert_eq!(machine["bodies"], serde_json::json!(["striker", "intermediate piston", "bit"]));
     let passages = machine["passages"].as_array().unwrap();
-    // The bodies as the model moves them without scatter from turn to turn. That of 3 % of leakage changes the
-    // means by its square, far below the uncertainty of 90 turns.
+    // The bodies as the model moves them without scatter from turn to turn. That of 3 % of leakage changes
+    // the means by its square, far below the uncertainty of 90 turns.
     let truth = record::machine().unwrap();
     let model = run_of(&truth);
     let near = |estimate: &Value, truth: f64| {
@@ -630,8 +631,8 @@ fn impacts_beyond_the_range_are_in_no_mean() {
             &["--mass", "0.14", "--struck-mass", "0.43"],
         ))
     };
-    // Velocities before the impact scatter by 0.07 m/s about 7.63 m/s. At the beginning of the fits, 0.6 ms before,
-    // they are 0.22 m/s higher: a quarter of them exceeds 7.9 m/s there.
+    // Velocities before the impact scatter by 0.07 m/s about 7.63 m/s. At the beginning of the fits, 0.6 ms
+    // before, they are 0.22 m/s higher: a quarter of them exceeds 7.9 m/s there.
     let some = limited(7.9);
     let impacts = some["impacts"].as_array().unwrap();
     let clipped = |i: &&Value| i["clipped"].as_bool().unwrap();

@@ -74,8 +74,8 @@ impl Body {
     }
 
     /// Scatter from turn to turn of each phase, in turns: that of the nearest impact. Where the impact is too
-    /// small to be found, it follows from the scatter s of the velocity around it: a jump J whose phase scatters
-    /// normally by σ has ∫s²dφ = J²σ/√π.
+    /// small to be found, it follows from the scatter s of the velocity around it: a jump J whose phase
+    /// scatters normally by σ has ∫s²dφ = J²σ/√π.
     fn scatters(&self, jumps: &[Jump], ahead: f64) -> Vec<f64> {
         let largest = jumps.iter().fold(0.0f64, |largest, jump| largest.max(jump.height.abs()));
         let small = jumps.iter().filter(|jump| (LEAST..PART).contains(&(jump.height.abs() / largest)));
@@ -179,8 +179,8 @@ mod tests {
 
     #[test]
     fn each_impact_is_blurred_by_its_own_scatter() {
-        // Phases and heights of jumps, and the scatter of their phases. The last is too small to be found: its
-        // scatter shows in that of the velocity alone.
+        // Phases and heights of jumps, and the scatter of their phases. The last is too small to be found:
+        // its scatter shows in that of the velocity alone.
         let jumps = [(0.1, -3.4, 0.008), (0.3, 4.0, 0.006), (0.7, -0.6, 0.02)];
         let velocity = |phase: f64| -> f64 {
             jumps.iter().map(|(at, height, _)| if *at <= phase { *height } else { 0.0 }).sum()

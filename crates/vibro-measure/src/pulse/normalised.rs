@@ -187,7 +187,8 @@ impl<'a> Normalised<'a> {
     }
 
     /// Standard uncertainty of the level under the contact, over the height of the pulse, that drift, hum and
-    /// 1/f noise leave beyond white noise: the residuals of stretches beside it scatter by it about zero. The white part is that of the differences of neighbours.
+    /// 1/f noise leave beyond white noise: the residuals of stretches beside it scatter by it about zero. The
+    /// white part is that of the differences of neighbours.
     fn level_std(&self, fitted: &FittedPulse) -> f64 {
         let (onset, end) = (fitted.fit.parameters[0], fitted.end());
         let delay = self.filter.as_ref().map_or(0.0, LowPass::delay);

@@ -25,7 +25,8 @@ enum Law {
     Yielding(f64),
 }
 
-/// Force zⁿ + α zˢ z′, with its motion as z′ = w − α zˢ⁺¹/(s + 1), w′ = −zⁿ: neither side jumps where zˢ does.
+/// Force zⁿ + α zˢ z′, with its motion as z′ = w − α zˢ⁺¹/(s + 1), w′ = −zⁿ: neither side jumps where zˢ
+/// does.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Power {
     alpha: f64,
@@ -106,8 +107,8 @@ impl State {
 impl Rebound {
     /// Force k δⁿ + c δˢ δ̇ that does not pull: with both exponents 3/2 that of Hunt & Crossley (1975), and
     /// without losses that of Hertz. α is the loss at unit velocity. `None` for α outside −0.5…100, n outside
-    /// 0.5…4, s outside −0.5…4 or below 0 with α above 10, and where the contact does not end within 200 T. No
-    /// body is softer than n = 1, and no loss falls with the indentation, but a fit to noise may need it.
+    /// 0.5…4, s outside −0.5…4 or below 0 with α above 10, and where the contact does not end within 200 T.
+    /// No body is softer than n = 1, and no loss falls with the indentation, but a fit to noise may need it.
     pub fn power_law(alpha: f64, n: f64, s: f64) -> Option<Rebound> {
         let most = if s < 0.0 { 10.0 } else { 100.0 };
         let possible =
@@ -153,8 +154,8 @@ impl Rebound {
             let mut lines: Vec<f64> = (0..LINES).map(|i| self.at(i as f64 * part)).collect();
             lines.push(0.0);
             if let Some(state) = self.motion(part) {
-                // The force of a loss that hardly depends on the indentation rises within the first line, which
-                // has its impulse.
+                // The force of a loss that hardly depends on the indentation rises within the first line,
+                // which has its impulse.
                 lines[0] = 2.0 * (1.0 - state.v) / part - lines[1];
             }
             lines
@@ -318,8 +319,8 @@ mod tests {
     }
 
     /// A loss of a small exponent rises within the first step, one of a negative exponent begins without a
-    /// bound. Reference: the semi-implicit Euler formula with steps of 2e-6, which errs by about as much, and by
-    /// h^(1 + s) where the force begins without a bound.
+    /// bound. Reference: the semi-implicit Euler formula with steps of 2e-6, which errs by about as much, and
+    /// by h^(1 + s) where the force begins without a bound.
     #[test]
     fn a_loss_that_rises_at_once_is_integrated() {
         for (alpha, n, s) in [(0.3, 1.5, 0.1), (0.5, 1.2, 0.3), (0.2, 2.0, 0.02), (0.4, 1.0, -0.2)] {

@@ -283,8 +283,8 @@ fn a_machine_that_changes_at_top_dead_centre_goes_on() {
     plain.change(&slower).unwrap();
     let next = plain.turn(Some(4)).unwrap();
     assert_eq!((next.samples[0].positions, next.samples[0].piston), (end.end, 0.0));
-    // 13 turns of 1/45 s; the impacts of the next lie in its 1/40 s. The energy book closes within the error of
-    // the integration, 1e-9 in each of some 200 steps of 4 J.
+    // 13 turns of 1/45 s; the impacts of the next lie in its 1/40 s. The energy book closes within the error
+    // of the integration, 1e-9 in each of some 200 steps of 4 J.
     let begun = 13.0 / 45.0;
     assert!(!next.impacts.is_empty());
     assert!(next.impacts.iter().all(|impact| (begun..begun + 1.0 / 40.0).contains(&impact.time)));

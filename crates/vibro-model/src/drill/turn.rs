@@ -154,8 +154,8 @@ const LONGEST: f64 = 0.2e-3;
 impl Turn {
     /// An impact as if it took no time, as a measured velocity shows it: at the instant at which half of the
     /// change has come, with the velocities before and after continued to it along straight lines. By the
-    /// samples of the turn, which began at the time `began` (s) and lasted `period` (s); where they do not hold
-    /// the contact and half of its duration before and after it, as it is.
+    /// samples of the turn, which began at the time `began` (s) and lasted `period` (s); where they do not
+    /// hold the contact and half of its duration before and after it, as it is.
     #[must_use]
     pub fn at_once(&self, impact: &Impact, began: f64, period: f64) -> Impact {
         let is_short = impact.duration > 0.0 && impact.duration <= LONGEST;

@@ -5,9 +5,9 @@
 //! further mode, or one from a prior, weighted by their likelihoods.
 //!
 //! The prior: modes are as dense as the others beside one of them in the band of the fit (a Poisson process
-//! whose rate is known by their number, Jeffreys' prior), of similar damping, and of any order of magnitude in
-//! height. Structures of proportional damping have real modal constants, any other constants of any phase; both
-//! are as likely. Where fewer modes stand for more, their constants have phases.
+//! whose rate is known by their number, Jeffreys' prior), of similar damping, and of any order of magnitude
+//! in height. Structures of proportional damping have real modal constants, any other constants of any phase;
+//! both are as likely. Where fewer modes stand for more, their constants have phases.
 //!
 //! The others follow a further mode by a fit of their own to the lines without it, nearly in proportion to
 //! its height only while that is small. So its posterior is no normal one, and follows by importance sampling

@@ -18,9 +18,9 @@ pub(super) struct Under {
     /// Covariance of the parameters for residuals of unit variance.
     pub cofactor: DMatrix<f64>,
     pub variance: f64,
-    /// Minus twice the logarithm of the evidence of the noise: its likelihood, over all parameters and over its
-    /// variance (restricted likelihood: Harville, Biometrika 61 (1974) 383). The largest likelihood favours the
-    /// noise of the lines that the parameters follow.
+    /// Minus twice the logarithm of the evidence of the noise: its likelihood, over all parameters and over
+    /// its variance (restricted likelihood: Harville, Biometrika 61 (1974) 383). The largest likelihood
+    /// favours the noise of the lines that the parameters follow.
     pub unlikely: f64,
 }
 
@@ -115,8 +115,8 @@ mod tests {
         let other = scaled.refit(&share).unwrap();
         let step = scaled.linear_about(&equal.parameters).under(&share).unwrap().step;
         for ((from, to), step) in equal.parameters.iter().zip(&other.parameters).zip(step.iter()) {
-            // Both fits differ by about 1e-3 of the parameters' scale of 1; a step of Gauss and Newton squares
-            // that.
+            // Both fits differ by about 1e-3 of the parameters' scale of 1; a step of Gauss and Newton
+            // squares that.
             assert!((from + step - to).abs() < 1e-5, "{from} + {step} is not {to}");
         }
         let apart = equal.parameters.iter().zip(&other.parameters).map(|(a, b)| (a - b).abs());

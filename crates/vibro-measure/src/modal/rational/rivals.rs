@@ -4,8 +4,8 @@ use super::{LineNoise, Measured, Scaled};
 use crate::modal::noise::of_both;
 
 /// Equal noise of all lines over the noise in proportion to the response at its peak, standard deviations.
-/// Mostly one of both does not matter: five of six times each end counts. Where both mattered beside the peak,
-/// few lines would take their own scatter for such noise.
+/// Mostly one of both does not matter: five of six times each end counts. Where both mattered beside the
+/// peak, few lines would take their own scatter for such noise.
 const EQUAL: [f64; 12] = [1e-6, 1e-6, 1e-6, 1e-6, 1e-6, 0.01, 0.03, 1e4, 1e4, 1e4, 1e4, 1e4];
 
 /// Noise with its name.
