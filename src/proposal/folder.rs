@@ -4,7 +4,7 @@ use super::{KeyStatus, Table};
 use crate::analysis::{self, Progress, Recordings};
 use crate::campaign::{Campaign, Reading};
 use crate::error::{Error, Result};
-use crate::read::{Folder, Header, MAGNITUDE, SweepList, longest_stretch};
+use crate::read::{Folder, Header, MAGNITUDE, SweepList, is_missing, longest_stretch};
 use crate::record::{Fact, Record, Trace, shown};
 use crate::report::words::Voice;
 use rayon::prelude::*;
@@ -59,9 +59,6 @@ struct Surveyed {
     headers: Result<Vec<Header>>,
 }
 
-/// Key that keeps missing values as such.
-const MISSING_KEPT: &str = "allow_missing";
-
 /// Most digits of a time in s that a table proposes.
 const MOST_DIGITS: usize = 12;
 
@@ -104,24 +101,23 @@ impl Surveyed {
         let found = if timed || !stated { as_stored } else { survey(reading) };
         let lost = found.as_ref().ok().filter(|(_, headers, _)| untimed(headers));
         let stretch = lost.and_then(|(.., findings)| longest_stretch(findings));
-        let lacks = found.as_ref().is_err_and(|error| error.settings().any(|key| key == MISSING_KEPT));
-        let present = lacks.then(|| longest_present(path, &untimed_reading, folder).ok()).flatten();
-        let part = if stretch.is_some() {
-            Some("the longest part without lost samples")
+        let chosen = if stretch.is_some() {
+            let of_stretch = Reading { stretch, ..untimed_reading.clone() };
+            Some((of_stretch, "the longest part without lost samples"))
+        } else if found.as_ref().is_err_and(is_missing) {
+            let present = longest_present(path, &untimed_reading, folder).ok();
+            present.map(|present| (present, "values are missing: the longest part without"))
         } else {
-            present.as_ref().map(|_| "values are missing: the longest part without")
+            None
         };
-        let (reading, found) = if let Some(present) = present {
-            let found = survey(&present);
-            (present, found)
-        } else if stretch.is_some() {
-            let of_stretch = Reading { stretch, ..untimed_reading };
-            let found = survey(&of_stretch);
-            (of_stretch, found)
-        } else if timed {
-            (untimed_reading, found)
-        } else {
-            (reading.clone(), found)
+        let part = chosen.as_ref().map(|(_, why)| *why);
+        let (reading, found) = match chosen {
+            Some((chosen, _)) => {
+                let found = survey(&chosen);
+                (chosen, found)
+            }
+            None if timed => (untimed_reading, found),
+            None => (reading.clone(), found),
         };
         let headers = found.and_then(|(_, headers, _)| {
             let uneven = untimed(&headers) && headers.iter().any(|header| header.dx.is_none());

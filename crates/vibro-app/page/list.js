@@ -67,7 +67,7 @@ function described(record) {
 }
 
 /** What is wrong with a file, without its name. */
-const why = ({ path, problem }) => inShort(problem).split(`${path}, `).at(-1);
+const faultOf = ({ path, problem }) => inShort(problem).split(`${path}, `).at(-1);
 
 /** Rows of the list that are shown at first. */
 const FIRST_ROWS = 12;
@@ -101,7 +101,7 @@ class Recordings {
     this.left = make("div");
     this.host.append(this.left);
     this.known = new Map(read.map(({ path, records }) => [path, records]));
-    this.fold(this.host, `${unread.length === 1 ? "1 file holds" : `${unread.length} files hold`} no record`, unread.map((file) => make("li", {}, ...worded(`${file.path}: ${why(file)}`))));
+    this.fold(this.host, `${unread.length === 1 ? "1 file holds" : `${unread.length} files hold`} no record`, unread.map((file) => make("li", {}, ...worded(`${file.path}: ${faultOf(file)}`))));
   }
 
   /** Names of the channels of a file. */
@@ -145,7 +145,7 @@ class Recordings {
 
   rows(file) {
     const cell = (text, className = "") => make("td", { textContent: text, className });
-    const lacks = (k) => (file.problem && !k ? make("div", { className: "soft", textContent: obstacle(why(file)).split("; expected ")[0] }) : "");
+    const lacks = (k) => (file.problem && !k ? make("div", { className: "soft", textContent: obstacle(faultOf(file)).split("; expected ")[0] }) : "");
     return file.records.map((record, k) => {
       const canvas = make("canvas", { title: "smallest and largest values" });
       Object.assign(canvas.dataset, { path: file.path, record: k });

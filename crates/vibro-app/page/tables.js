@@ -11,10 +11,9 @@ const obstacle = (why) => here(why).split(/\.? Try: |; try: /)[0].replace(/^Left
 const worded = (text) => text.split("`").map((part, k) => (k % 2 ? make("code", { textContent: part }) : part));
 
 /** A sentence of a card with the names of its fields in place of their keys. */
-const inFields = (text, table) => worded(text.replaceAll(/`([a-z_]+)( = [^`]+)?`/g, (all, key, value = "") => {
-  const row = table.keys.find((one) => one.key === key && one.label);
-  return row ? `“${labelOf(row)}”${value}` : all;
-}));
+const inFields = (text, table) => worded(text.replaceAll(/`([a-z_]+)( = [^`]+)?`/g, (all, key, value = "") => (
+  table.keys.some((row) => row.key === key && row.label) ? `“${fieldOf(table, key)}”${value}` : all
+)));
 
 /** Parts and multiples of a unit. */
 const STEPS = { µ: 1e-6, u: 1e-6, m: 1e-3, c: 1e-2, "": 1, k: 1e3, M: 1e6 };
@@ -100,6 +99,9 @@ const [ROW, GAP] = [4, 13];
 
 /** The name of a key in plain words. */
 const labelOf = ({ key, label }) => label?.replaceAll("`", "") ?? key.replaceAll("_", " ");
+
+/** The name of the field of a key in a table. */
+const fieldOf = (table, key) => labelOf(table.keys.find((row) => row.key === key) ?? { key });
 
 /** What tells a table from the others, wherever it stands in the list. */
 function identity(tables, k) {
@@ -213,7 +215,7 @@ class Tables {
     const inOrder = order.sort((a, b) => this.places.get(ids[a]) - this.places.get(ids[b])).map((k) => cards[k]);
     this.host.replaceChildren(...inOrder);
     this.tables = tables;
-    this.under(this.below.id);
+    this.place(this.below.id);
     if (this.below.element.contains(active)) active.focus({ preventScroll: true });
     this.head = make("div", { className: "head" });
     this.host.prepend(this.head);
@@ -228,9 +230,14 @@ class Tables {
     input.setSelectionRange?.(selectionStart, selectionEnd);
   }
 
+  /** As `under`, while the cards are drawn. */
+  place(id) {
+    this.host.querySelector(`[data-table="${CSS.escape(id ?? "")}"]`)?.after(this.below.element);
+  }
+
   /** Puts what stands below a card there. */
   under(id) {
-    this.host.querySelector(`[data-table="${CSS.escape(id ?? "")}"]`)?.after(this.below.element);
+    this.place(id);
     this.sizes.observe(this.below.element);
     this.pack();
   }
@@ -302,7 +309,7 @@ class Tables {
       made.dataset.field = `${id} ${textContent}`;
       return made;
     };
-    const take = ({ key, value }) => button(`set ${labelOf(table.keys.find((row) => row.key === key))} = ${value}`, () => this.set(id, key, value).catch((error) => { wrongs.textContent = here(error.message); }));
+    const take = ({ key, value }) => button(`set ${fieldOf(table, key)} = ${value}`, () => this.set(id, key, value).catch((error) => { wrongs.textContent = here(error.message); }));
     const wrongs = make("span", { className: "wrong" });
     if (proposed.length) card.append(make("div", { className: "does" }, ...proposed.map(take), wrongs));
     // Keys that an error names stand with those that are in use; the title names the file.
@@ -352,17 +359,16 @@ class Tables {
 
   /** The main numbers of a record: one row as a list, several as a table. */
   answer(heads, rows) {
-    const units = heads.indexOf("unit");
+    // A unit of a row stands behind its number.
+    const units = heads.indexOf("unit"), without = (cells) => cells.filter((_, k) => k !== units);
+    const named = without(heads), valued = rows.map((row) => without(row.map((cell, k) => (units > 0 && k === units - 1 ? `${cell} ${row[units]}`.trim() : cell))));
     if (rows.length > 1) {
-      // The unit stands behind its number.
-      const joined = (row) => row.map((cell, k) => (k + 1 === units ? `${cell} ${row[units]}`.trim() : cell)).filter((_, k) => k !== units);
-      if (units > 0) return this.answer(heads.filter((head) => head !== "unit"), rows.map(joined));
       const line = (cells, tag) => make("tr", {}, ...cells.map((textContent) => make(tag, { textContent })));
-      return make("div", { className: "answer" }, make("table", {}, line(heads, "th"), ...rows.map((row) => line(row, "td"))));
+      return make("div", { className: "answer" }, make("table", {}, line(named, "th"), ...valued.map((row) => line(row, "td"))));
     }
-    // The unit stands behind the number.
-    const parts = heads.map((head, k) => [head.match(/^(.*?)(?: \((.*)\))?$/), rows[0][k], heads[k + 1] === "unit" ? rows[0][k + 1] : ""]).filter(([[, name]]) => name !== "unit");
-    return make("p", { className: "answer" }, ...parts.flatMap(([[, name, unit], value, own], k) => [k ? ", " : "", `${name} `, make("b", { textContent: [value, unit || own].filter(Boolean).join(" ") })]));
+    // So does that of the head.
+    const parts = named.map((head, k) => [head.match(/^(.*?)(?: \((.*)\))?$/), valued[0][k]]);
+    return make("p", { className: "answer" }, ...parts.flatMap(([[, name, unit], value], k) => [k ? ", " : "", `${name} `, make("b", { textContent: [value, unit].filter(Boolean).join(" ") })]));
   }
 
   /** Why a table gives no answer, and what else is said of it. */

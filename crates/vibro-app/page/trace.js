@@ -138,7 +138,7 @@ class TraceView {
   /** Buttons for what was tried out, in the colours of its lines, and what else can be done. */
   offer() {
     const button = ({ key, value, times }, k) => {
-      const take = make("button", { textContent: `${times.length} impacts, with ${this.named(key)} = ${value}`, onclick: () => this.state(key, () => value) });
+      const take = make("button", { textContent: `${times.length} impacts, with ${fieldOf(this.table, key)} = ${value}`, onclick: () => this.state(key, () => value) });
       take.style.borderLeft = `6px solid ${colour(TRIALS[k])}`;
       return take;
     };
@@ -146,9 +146,6 @@ class TraceView {
     const help = this.trials.length ? "Each button sets its value; lines in its colour are the impacts found with it. " : "";
     this.said.replaceChildren(...this.changed(), `${this.picks().includes("threshold") ? `${this.counted()} ` : ""}${help}${this.picks().length ? "Drag a line to move it; drag beside the lines to zoom" : "Drag to zoom"}; double-click for all.`);
   }
-
-  /** Name of the field of a key. */
-  named(key) { return labelOf(this.table.keys.find((row) => row.key === key) ?? { key }); }
 
   /** How many impacts there are, and why other sounds above the threshold are none. */
   counted() {
@@ -167,7 +164,7 @@ class TraceView {
     const { key, value, times, why } = this.before, now = this.lost ? [] : this.times, reason = this.refusals(this.table)[0] ?? "";
     const same = times.length === now.length && times.every((t, k) => t === now[k]) && why === reason;
     const text = same ? `nothing changed${reason ? ", the record gives no answer for the same reason" : `, the same ${now.length} impacts`}.` : now.length ? `${times.length || "no"} → ${now.length} impacts.` : "no answer now.";
-    return [make("b", { textContent: `${this.named(key)} = ${value}: ${text}` }), " "];
+    return [make("b", { textContent: `${fieldOf(this.table, key)} = ${value}: ${text}` }), " "];
   }
 
   /** Whether a time is that of a sound. */
@@ -220,7 +217,7 @@ class TraceView {
       const input = make("input", { size: 12, value: this.value(key), placeholder: "not stated", title: PICKS[key].about });
       input.onchange = () => !this.redraws && this.state(key, () => toToml(input.value, PICKS[key].unit));
       inputs[key] = input;
-      fields.append(make("label", {}, `${this.named(key)} `, input));
+      fields.append(make("label", {}, `${fieldOf(this.table, key)} `, input));
     }
     this.inputs = inputs;
     this.said = make("p", { className: "soft" });
@@ -425,14 +422,18 @@ class TraceView {
     this.canvas.onpointerup = () => {
       this.canvas.onpointermove = this.canvas.onpointerup = null;
       this.dragged = undefined;
-      if (line?.key === "threshold" && value && this.level !== undefined && Number(value) * this.heard.median < this.heard.reach) {
-        this.draw();
-        this.inputs.threshold.value = this.value("threshold");
-        this.said.replaceChildren(make("b", { textContent: `Nothing was set: below ${quantity(this.heard.reach, this.data.unit)} sounds are not told from the noise of this record, whatever the threshold is.` }));
-      } else if (line && value) this.state(line.key, () => value);
+      if (line?.key === "threshold" && value && Number(value) * this.heard.median < this.heard.reach) this.belowNoise();
+      else if (line && value) this.state(line.key, () => value);
       else if (!line && Math.abs(moved - begun) > 5) this.go(this.at(Math.min(begun, moved)), this.at(Math.max(begun, moved)));
       else this.draw();
     };
+  }
+
+  /** Leaves the threshold as it was, and says why. */
+  belowNoise() {
+    this.draw();
+    this.inputs.threshold.value = this.value("threshold");
+    this.said.replaceChildren(make("b", { textContent: `Nothing was set: below ${quantity(this.heard.reach, this.data.unit)} sounds are not told from the noise of this record, whatever the threshold is.` }));
   }
 
   drawSpectrum() {

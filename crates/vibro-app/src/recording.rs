@@ -3,7 +3,7 @@
 use crate::words;
 use serde::Serialize;
 use std::path::Path;
-use vibroimpact::read::{Folder, Header, Reader};
+use vibroimpact::read::{Folder, Header, Reader, is_missing};
 
 /// A file: what it is, and its records as far as its head shows them.
 #[derive(Debug, Clone, Serialize)]
@@ -29,7 +29,7 @@ impl SeenRecording {
         let as_it_is = survey(false);
         let problem = as_it_is.as_ref().err().map(words::error);
         // What lacks some values has records all the same.
-        let found = as_it_is.or_else(|_| survey(true));
+        let found = as_it_is.or_else(|error| if is_missing(&error) { survey(true) } else { Err(error) });
         let (format, records) =
             found.map_or_else(|_| ("", Vec::new()), |(format, all, _)| (format.name(), all));
         SeenRecording { path: name, bytes, format, records, problem }

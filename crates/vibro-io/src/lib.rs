@@ -84,6 +84,7 @@ pub use folder::{Digest, Folder, Lock, Manifest, Occupant, Owner, Staged, Walk, 
 pub use format::Format;
 pub use limit::Limit;
 pub use magnitude::MAGNITUDE;
+pub use missing::is_missing;
 pub use reader::{Header, Reader};
 pub use recording::Recording;
 pub use repeated::repeated;

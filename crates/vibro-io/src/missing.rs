@@ -12,8 +12,16 @@ pub(super) const LISTED: usize = 8;
 pub(super) fn refusal(place: Place, found: impl Into<String>) -> Error {
     Error::input(place, found, "a finite number in every place")
         .hint("allow missing values to keep them as such")
-        .setting("allow_missing")
+        .setting(KEPT)
 }
+
+/// Whether an error refuses missing values that could be kept.
+pub fn is_missing(error: &Error) -> bool {
+    error.settings().any(|key| key == KEPT)
+}
+
+/// Setting that keeps missing values as such.
+const KEPT: &str = "allow_missing";
 
 /// Finding that `count` missing values were kept; `None` for 0.
 pub(super) fn kept(count: usize) -> Option<Finding> {

@@ -276,7 +276,7 @@ impl RecordContext<'_> {
     }
 
     /// Unit (s, ms or µs) of a time column without a unit, with its factor to s: the one whose mean step
-    /// agrees with the stated rate.
+    /// agrees with the rate that the user or the head states.
     fn unit_by_rate(&self, values: &[f64]) -> Option<(&'static str, f64)> {
         let step = (values.last()? - values[0]) / values.len().saturating_sub(1).max(1) as f64;
         let rate = self.options.rate.or(self.stated.rate);
